@@ -1,0 +1,1 @@
+"""Gazebo's Python module for ROS clients, under its usual name."""

@@ -1,0 +1,7 @@
+#!/usr/bin/env python3
+"""Drive a robot from the keys of a terminal."""
+import sys
+
+from rosbots_description.cli.teleop_twist_keyboard import main
+
+sys.exit(main())

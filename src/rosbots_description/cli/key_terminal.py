@@ -1,0 +1,55 @@
+"""Single keys from a terminal."""
+
+from __future__ import annotations
+
+import os
+import select
+import termios
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+_POLL = 0.1  # [s] between two looks at whether to go on
+
+
+@contextmanager
+def single_keys(fd: int) -> Iterator[None]:
+    """Have the terminal hand over each key at once and unseen, Ctrl-C included; undo it at the end.
+
+    Output is treated as before, so that lines can be printed as usual.
+    """
+    saved = termios.tcgetattr(fd)
+    mode = termios.tcgetattr(fd)
+    mode[3] &= ~(termios.ECHO | termios.ICANON | termios.ISIG | termios.IEXTEN)  # [3]: local modes
+    mode[6][termios.VMIN], mode[6][termios.VTIME] = 1, 0  # [6]: control characters
+    try:
+        termios.tcsetattr(fd, termios.TCSADRAIN, mode)
+        yield
+    finally:
+        termios.tcsetattr(fd, termios.TCSADRAIN, saved)
+
+
+def read_key(fd: int, timeout: float, go_on: Callable[[], bool]) -> str | None:
+    """Return the next key.
+
+    :param fd: file descriptor of a terminal in single_keys mode.
+    :param timeout: longest wait for a key [s, wall].
+    :param go_on: asked every now and then; false ends the wait.
+    :return: one character; None when no key came.
+    :raises EOFError: the terminal is gone.
+    """
+    end = time.monotonic() + timeout
+    while go_on():
+        patience = min(_POLL, end - time.monotonic())
+        if patience < 0.0:
+            return None
+        if select.select([fd], [], [], patience)[0]:
+            # Unbuffered: keys that came together are read one by one.
+            try:
+                byte = os.read(fd, 1)
+            except OSError as error:  # how Linux tells that the other side hung up
+                raise EOFError('the terminal is gone') from error
+            if not byte:
+                raise EOFError('the terminal is gone')
+            return byte.decode('latin-1')
+    return None

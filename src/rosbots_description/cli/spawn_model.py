@@ -1,0 +1,85 @@
+"""Front end of the executable spawn_model: read the command line, hand over to the ROS client."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+import sys
+from collections.abc import Sequence
+from decimal import Decimal
+
+_NEGATIVE_WITH_EXPONENT = re.compile(r'-(\d+\.?\d*|\.\d+)[eE][-+]?\d+')
+
+
+def _finite(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f'{text!r} is not a finite number')
+    return value
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='spawn_model', description='Put a robot or an object into the running simulation.')
+    form = parser.add_mutually_exclusive_group(required=True)
+    form.add_argument('-urdf', action='store_true', help='the XML is URDF')
+    form.add_argument('-sdf', action='store_true', help='the XML is SDF')
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument('-file', metavar='FILE', help='read the XML from a file')
+    source.add_argument('-param', metavar='NAME', help='read the XML from a ROS parameter')
+    source.add_argument('-database', metavar='MODEL',
+                        help='take MODEL from the online model database (never reachable here)')
+    source.add_argument('-stdin', action='store_true', help='read the XML from standard input')
+    parser.add_argument('-model', metavar='NAME', required=True,
+                        help='name of the model in the simulation')
+    parser.add_argument('-reference_frame', metavar='ENTITY', default='',
+                        help='entity in whose frame the pose is given; default: the world')
+    parser.add_argument('-gazebo_namespace', metavar='NS', default='/gazebo',
+                        help='namespace of the simulator; default: %(default)s')
+    parser.add_argument('-robot_namespace', metavar='NS',
+                        help="namespace for the model's plugins; default: that of this node")
+    parser.add_argument('-unpause', action='store_true', help='let physics run afterwards')
+    parser.add_argument('-wait', metavar='NAME', help='first wait until this model is there')
+    for flag, meaning in (('x', 'position along x [m]'), ('y', 'position along y [m]'),
+                          ('z', 'position along z [m]'), ('R', 'roll [rad]'),
+                          ('P', 'pitch [rad]'), ('Y', 'yaw [rad]')):
+        parser.add_argument(f'-{flag}', metavar='NUMBER', type=_finite, default=0.0,
+                            help=f'{meaning}; default: 0')
+    parser.add_argument('-J', dest='joints', metavar=('JOINT', 'POSITION'), nargs=2,
+                        action='append', default=[],
+                        help='start position of a joint [rad or m]; may be repeated')
+    parser.add_argument('-package_to_model', action='store_true',
+                        help='turn package:// of meshes into model://')
+    parser.add_argument('-b', dest='bond', action='store_true',
+                        help='stay, and delete the model when this program ends')
+    return parser
+
+
+def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
+    """Read the flags (without the program's name); ROS remappings are skipped.
+
+    :return: the flags by name; positions in m, angles in rad.
+    :raises SystemExit: code 2 with usage on stderr for wrong flags, code 0 for -h.
+    """
+    def plain(text):
+        # argparse takes -1e-3 for a flag, but knows -0.001 for a number.
+        return format(Decimal(text), 'f') if _NEGATIVE_WITH_EXPONENT.fullmatch(text) else text
+
+    return _parser().parse_args([plain(text) for text in arguments if ':=' not in text])
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Spawn the model that the command line describes.
+
+    :return: exit code: 0 done, 1 failed (the reason is logged), 2 wrong usage (by SystemExit),
+        130 interrupted.
+    """
+    arguments = sys.argv[1:] if arguments is None else arguments
+    flags = parse_arguments(arguments)
+    # Late, so that -h and wrong usage answer at once and without a ROS installation.
+    from rosbots_description.ros_api import spawn_client
+    return spawn_client.run(flags, arguments)

@@ -1,0 +1,1 @@
+"""The simulator on the ROS graph: the only place that knows rospy and message types."""

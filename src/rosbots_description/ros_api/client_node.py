@@ -1,0 +1,46 @@
+"""Start of a client program's ROS node."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+import threading
+import time
+from collections.abc import Sequence
+
+import rosgraph
+import rospy
+
+logger = logging.getLogger(__name__)
+
+_RETRY = 0.5  # [s] wall time between two tries to reach the master
+
+
+def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> None:
+    """Wait for the ROS master as long as it takes, then start the node.
+
+    rospy waits for the master too, but there Ctrl-C takes seconds and ends in a traceback.
+    Signals that end the program shut the node down from a thread of their own: rospy would do it
+    in the midst of whatever the main thread does, and where that holds a lock (of /rosout, say)
+    it takes 5 s. Hence rospy.on_shutdown functions run beside the main thread.
+
+    :param arguments: the command line without the program's name, for ROS remappings.
+    :param anonymous: make the name unique, unless the command line gives one with __name.
+    :raises KeyboardInterrupt: Ctrl-C while waiting.
+    """
+    if not rosgraph.is_master_online():
+        # Before the node exists logging has no handler but its last resort, standard error.
+        logger.warning('No ROS master at %s. Start roscore; waiting for it.',
+                       rosgraph.get_master_uri())
+        while not rosgraph.is_master_online():
+            time.sleep(_RETRY)
+    # Whoever reads the lines through a pipe wants them as they are written.
+    sys.stdout.reconfigure(line_buffering=True)
+    rospy.init_node(name, [name, *arguments], anonymous, disable_signals=True)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _shut_down)
+
+
+def _shut_down(number: int, _frame) -> None:
+    threading.Thread(target=rospy.signal_shutdown, args=(f'signal {number}',)).start()

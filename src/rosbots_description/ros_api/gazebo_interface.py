@@ -1,0 +1,125 @@
+"""Client side of Gazebo's services: spawn a model, set its joints.
+
+Names, arguments, log lines and results are those of the module ``gazebo_ros.gazebo_interface``,
+under which other people's scripts import these functions.
+"""
+
+# ruff: noqa: PLR0917  (the argument lists are Gazebo's)
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+import rospy
+from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
+from geometry_msgs.msg import Pose
+
+_POLL = 0.05  # [s] wall time between two looks at the shutdown flag
+
+
+def interruptibly(function: Callable, patience: float = math.inf):
+    """Return function(), but stop waiting for it when the node is shut down.
+
+    rospy sits in a socket while a service works and does not hear Ctrl-C there. So the function
+    runs in a thread of its own that may be left behind.
+
+    :param patience: longest time to wait [s, wall].
+    :raises rospy.ROSInterruptException: the node was shut down first.
+    :raises rospy.ROSException: patience ran out.
+    :raises Exception: whatever the function raises.
+    """
+    outcome = {}
+    done = threading.Event()
+
+    def run():
+        try:
+            outcome['result'] = function()
+        except Exception as error:  # handed on to the caller's thread below
+            outcome['error'] = error
+        done.set()
+
+    threading.Thread(target=run, daemon=True).start()
+    give_up = time.monotonic() + patience
+    while not done.wait(_POLL):
+        if time.monotonic() > give_up:
+            raise rospy.ROSException(f'no answer within {patience} s')
+        if rospy.is_shutdown():
+            raise rospy.ROSInterruptException('shut down while waiting')
+    if 'error' in outcome:
+        raise outcome['error']
+    return outcome['result']
+
+
+def _call(service: str, service_class, **request):
+    """Wait without limit for the service and call it.
+
+    :return: the response, or None after a call error (which is logged).
+    :raises rospy.ROSInterruptException: the node was shut down first.
+    """
+    rospy.loginfo('Waiting for service %s', service)
+    interruptibly(lambda: rospy.wait_for_service(service))
+    rospy.loginfo('Calling service %s', service)
+    try:
+        return interruptibly(lambda: rospy.ServiceProxy(service, service_class)(**request))
+    except rospy.ServiceException as error:
+        if rospy.is_shutdown():
+            raise rospy.ROSInterruptException('shut down during the call') from error
+        rospy.logerr('Service call failed: %s', error)
+        return None
+
+
+def _spawn(service: str, *, model_name: str, model_xml: str, robot_namespace: str,
+           initial_pose: Pose, reference_frame: str) -> bool | None:
+    response = _call(service, SpawnModel, model_name=model_name, model_xml=model_xml,
+                     robot_namespace=robot_namespace, initial_pose=initial_pose,
+                     reference_frame=reference_frame)
+    if response is None:
+        return None
+    rospy.loginfo('Spawn status: %s', response.status_message)
+    return response.success
+
+
+def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
+                           initial_pose: Pose, reference_frame: str,
+                           gazebo_namespace: str) -> bool | None:
+    """Put a model given as SDF into the world; wait without limit for the simulator.
+
+    :param robot_namespace: namespace for those of the model's plugins that name none themselves.
+    :param initial_pose: pose [m, quaternion x y z w] in reference_frame.
+    :param reference_frame: name of an entity; empty, 'world' or 'map' for the world frame.
+    :param gazebo_namespace: namespace of the simulator's services, usually '/gazebo'.
+    :return: whether it worked, None after a call error (both are logged).
+    :raises rospy.ROSInterruptException: the node was shut down first.
+    """
+    return _spawn(gazebo_namespace + '/spawn_sdf_model', model_name=model_name,
+                  model_xml=model_xml, robot_namespace=robot_namespace,
+                  initial_pose=initial_pose, reference_frame=reference_frame)
+
+
+def spawn_urdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
+                            initial_pose: Pose, reference_frame: str,
+                            gazebo_namespace: str) -> bool | None:
+    """Put a model given as URDF into the world; else as spawn_sdf_model_client."""
+    return _spawn(gazebo_namespace + '/spawn_urdf_model', model_name=model_name,
+                  model_xml=model_xml, robot_namespace=robot_namespace,
+                  initial_pose=initial_pose, reference_frame=reference_frame)
+
+
+def set_model_configuration_client(model_name: str, model_param_name: str,
+                                   joint_names: Sequence[str], joint_positions: Sequence[float],
+                                   gazebo_namespace: str) -> bool | None:
+    """Set joint positions [rad or m] of a model at once; wait without limit for the simulator.
+
+    :param model_param_name: passed on; simulators do not use it.
+    :return: whether it worked, None after a call error (both are logged).
+    :raises rospy.ROSInterruptException: the node was shut down first.
+    """
+    response = _call(gazebo_namespace + '/set_model_configuration', SetModelConfiguration,
+                     model_name=model_name, urdf_param_name=model_param_name,
+                     joint_names=list(joint_names), joint_positions=list(joint_positions))
+    if response is None:
+        return None
+    rospy.loginfo('Set model configuration status: %s', response.status_message)
+    return response.success

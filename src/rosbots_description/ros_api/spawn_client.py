@@ -1,0 +1,182 @@
+"""The work of the executable spawn_model: fetch the XML, have it spawned, do the extras."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import threading
+import time
+from collections.abc import Sequence
+
+import rospy
+from gazebo_msgs.msg import ModelStates
+from gazebo_msgs.srv import DeleteModel
+from geometry_msgs.msg import Point, Pose, Quaternion
+from std_srvs.srv import Empty
+
+from rosbots_description.ros_api.client_node import start_node
+from rosbots_description.ros_api.gazebo_interface import (
+    interruptibly,
+    set_model_configuration_client,
+    spawn_sdf_model_client,
+    spawn_urdf_model_client,
+)
+from rosbots_description.ros_api.model_source import (
+    MissingFileError,
+    SourceError,
+    canonical_xml,
+    read_file,
+)
+from rosbots_description.sim.pose import from_rpy
+
+DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
+
+_SETTLE = 1.0  # [s] wall time that a simulator may need between its answer and the model's joints
+_LAST_WORD = 1.5  # [s] wall time for the deletion at the end; Ctrl-C has to end us within 2 s
+
+
+def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
+    """Spawn a model as spawn_model's flags say.
+
+    :param flags: see cli.spawn_model; positions in m, angles in rad.
+    :param arguments: the command line without the program's name, for ROS remappings.
+    :return: exit code; every failure has been logged.
+
+    Subscribes (with -wait):
+        <gazebo_namespace>/model_states (gazebo_msgs/ModelStates)
+    Calls:
+        <gazebo_namespace>/spawn_urdf_model or spawn_sdf_model, set_model_configuration (-J),
+        unpause_physics (-unpause), delete_model (-b)
+    """
+    try:
+        start_node('spawn_model', arguments, anonymous=True)
+        if flags.wait and not _wait_for_model(flags.wait, flags.gazebo_namespace):
+            return DONE  # as Gazebo's client: being stopped here counts as a clean end
+        joints = _joint_positions(flags.joints)
+        xml = canonical_xml(_fetch(flags), flags.package_to_model)
+        return _spawn(flags, xml, joints)
+    except MissingFileError as error:
+        rospy.logfatal('%s', error)
+        return FAILED
+    except SourceError as error:
+        rospy.logerr('%s', error)
+        return FAILED
+    except (rospy.ROSInterruptException, KeyboardInterrupt):
+        return INTERRUPTED
+
+
+def _wait_for_model(name: str, gazebo_namespace: str) -> bool:
+    """Return true once the model is there, false when the node is shut down first."""
+    rospy.loginfo('Waiting for model %s before proceeding.', name)
+    there = threading.Event()
+
+    def look(states):
+        if name in states.name:
+            there.set()
+
+    subscriber = rospy.Subscriber(gazebo_namespace + '/model_states', ModelStates, look)
+    # Wall time: simulated time may stand still.
+    while not there.wait(0.1):
+        if rospy.is_shutdown():
+            return False
+    subscriber.unregister()
+    return True
+
+
+def _joint_positions(pairs: list[list[str]]) -> dict[str, float]:
+    """Return joint name -> position [rad or m] from the texts after -J."""
+    joints = {}
+    for name, text in pairs:
+        try:
+            joints[name] = float(text)
+        except ValueError:
+            joints[name] = math.nan
+        if not math.isfinite(joints[name]):
+            raise SourceError(f'Error: -J {name} needs a position [rad or m], not {text!r}')
+    return joints
+
+
+def _fetch(flags: argparse.Namespace) -> bytes | str:
+    """Return the XML from the source that the flags name."""
+    if flags.file is not None:
+        rospy.loginfo('Loading model XML from file %s', flags.file)
+        return read_file(flags.file)
+    if flags.param is not None:
+        rospy.loginfo('Loading model XML from ros parameter %s', flags.param)
+        return _read_parameter(flags.param)
+    if flags.database is not None:
+        rospy.loginfo('Loading model XML from Gazebo Model Database')
+        raise SourceError(f'Error: no model database can be reached, so {flags.database} '
+                          'cannot be taken from it; give the model with -file instead')
+    rospy.loginfo('Loading model XML from stdin')
+    text = sys.stdin.buffer.read()
+    if not text.strip():
+        raise SourceError('Error: stdin buffer was empty')
+    return text
+
+
+def _read_parameter(name: str) -> str:
+    resolved = rospy.resolve_name(name)
+    try:
+        text = rospy.get_param(name)
+    except KeyError as error:
+        raise SourceError(f'Error: param does not exist or is empty: {resolved} was never set; '
+                          'load the model into it first') from error
+    if not isinstance(text, str):
+        raise SourceError(f'Error: param {resolved} holds {type(text).__name__}, not the XML text '
+                          'of a model')
+    if not text.strip():
+        raise SourceError(f'Error: param does not exist or is empty: {resolved} is empty')
+    return text
+
+
+def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int:
+    pose = Pose(Point(flags.x, flags.y, flags.z),
+                Quaternion(*from_rpy(flags.R, flags.P, flags.Y)))
+    namespace = flags.robot_namespace
+    spawn = spawn_urdf_model_client if flags.urdf else spawn_sdf_model_client
+    if not spawn(flags.model, xml, rospy.get_namespace() if namespace is None else namespace,
+                 pose, flags.reference_frame, flags.gazebo_namespace):
+        rospy.logerr('Spawn service failed. Exiting.')
+        return FAILED
+    if joints and not _set_joints(flags, joints):
+        rospy.logerr('SetModelConfiguration service failed. Exiting.')
+        return FAILED
+    if flags.unpause and not _unpause(flags.gazebo_namespace):
+        return FAILED
+    if flags.bond:
+        rospy.on_shutdown(lambda: _delete(flags.model, flags.gazebo_namespace))
+        rospy.loginfo('Waiting for shutdown to delete model %s', flags.model)
+        rospy.spin()
+    return DONE
+
+
+def _set_joints(flags: argparse.Namespace, joints: dict[str, float]) -> bool | None:
+    rospy.loginfo('Giving the joints of %s %.0f s to appear', flags.model, _SETTLE)
+    interruptibly(lambda: time.sleep(_SETTLE))
+    return set_model_configuration_client(flags.model, '', list(joints),
+                                          list(joints.values()), flags.gazebo_namespace)
+
+
+def _unpause(gazebo_namespace: str) -> bool:
+    rospy.loginfo('Unpausing physics')
+    try:
+        interruptibly(rospy.ServiceProxy(gazebo_namespace + '/unpause_physics', Empty))
+    except rospy.ServiceException as error:
+        rospy.logerr('Unpause physics service call failed: %s', error)
+        return False
+    return True
+
+
+def _delete(name: str, gazebo_namespace: str) -> None:
+    """Delete the model in rospy's shutdown, where services can still be called."""
+    rospy.loginfo('Deleting model %s', name)
+    delete = rospy.ServiceProxy(gazebo_namespace + '/delete_model', DeleteModel)
+    try:
+        response = interruptibly(lambda: delete(name), patience=_LAST_WORD)
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        rospy.logerr('Delete model service call failed: %s', error)
+        return
+    if not response.success:
+        rospy.logerr('Delete model service call failed: %s', response.status_message)

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Run the real spawn_model while no simulator is there, then let one appear."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
+
+DEADLINE = 15.0  # [s] for what should take a second; slow machines are no failure
+CTRL_C_LIMIT = 2.0  # [s] promised to the user
+
+
+class SpawnModelTest(unittest.TestCase):
+    """The test node itself plays the simulator's two services."""
+
+    def setUp(self):
+        self._process = None
+        self._output = ''
+        self._requests = []
+        self._services = []
+
+    def tearDown(self):
+        if self._process.poll() is None:
+            self._process.kill()
+        self._process.wait()
+        self._process.stdout.close()
+        for service in self._services:
+            service.shutdown()
+
+    def _start(self, *arguments):
+        self._process = subprocess.Popen(
+            ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-model', 'box', *arguments],
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def _serve(self, name, service_class, answer):
+        def handle(request):
+            self._requests.append(request)
+            return answer(request)
+        self._services.append(rospy.Service(name, service_class, handle))
+
+    def _assert_shows(self, line):
+        """Wait until the program has written the line."""
+        end = time.monotonic() + DEADLINE
+        while line not in self._output and time.monotonic() < end:
+            if select.select([self._process.stdout], [], [], 0.1)[0]:
+                piece = os.read(self._process.stdout.fileno(), 4096)
+                if not piece:
+                    break
+                self._output += piece.decode()
+        self.assertIn(line, self._output)
+
+    def _assert_ends(self, code, within):
+        self.assertEqual(self._process.wait(within), code)
+        self._assert_shows('')
+        self.assertNotIn('Traceback', self._output)
+
+    def test_it_waits_for_the_simulator_and_completes_when_that_comes_up(self):
+        self._start('-param', 'robot', '-z', '0.5', '-x', '-1e-1')
+        self._assert_shows('Loading model XML from ros parameter robot')
+        self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
+        self._serve('/gazebo/spawn_urdf_model', SpawnModel, lambda request: SpawnModelResponse(
+            True, 'SpawnModel: Successfully spawned entity'))
+        self._assert_shows('Calling service /gazebo/spawn_urdf_model')
+        self._assert_shows('Spawn status: SpawnModel: Successfully spawned entity')
+        self._assert_ends(0, DEADLINE)
+        request, = self._requests
+        self.assertEqual((request.model_name, request.robot_namespace), ('box', '/'))
+        position = request.initial_pose.position
+        self.assertEqual((position.x, position.z), (-0.1, 0.5))
+        self.assertEqual(request.model_xml, '<robot name="box"><link name="body" /></robot>')
+
+    def test_ctrl_c_ends_the_waiting(self):
+        self._start('-param', 'robot')
+        self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
+        self._process.send_signal(signal.SIGINT)
+        self._assert_ends(130, CTRL_C_LIMIT)
+
+    def test_ctrl_c_ends_a_call_that_hangs(self):
+        def hang(_):
+            end = time.monotonic() + DEADLINE
+            while self._process.poll() is None and time.monotonic() < end:
+                time.sleep(0.05)
+            return SpawnModelResponse(False, 'late')
+        self._serve('/gazebo/spawn_urdf_model', SpawnModel, hang)
+        self._start('-param', 'robot')
+        self._assert_shows('Calling service /gazebo/spawn_urdf_model')
+        self._process.send_signal(signal.SIGINT)
+        self._assert_ends(130, CTRL_C_LIMIT)
+
+    def test_a_refusal_is_shown_and_gives_1(self):
+        self._serve('/gazebo/spawn_urdf_model', SpawnModel, lambda request: SpawnModelResponse(
+            False, 'SpawnModel: Failure - entity already exists.'))
+        self._start('-param', 'robot')
+        self._assert_shows('Spawn status: SpawnModel: Failure - entity already exists.')
+        self._assert_shows('Spawn service failed. Exiting.')
+        self._assert_ends(1, DEADLINE)
+
+    def test_a_missing_parameter_is_named_and_gives_1(self):
+        self._start('-param', 'no_such_param')
+        self._assert_shows('Error: param does not exist or is empty: /no_such_param')
+        self._assert_ends(1, DEADLINE)
+
+    def test_bound_model_is_deleted_at_the_end(self):
+        self._serve('/gazebo/spawn_urdf_model', SpawnModel,
+                    lambda request: SpawnModelResponse(True, 'spawned'))
+        self._serve('/gazebo/delete_model', DeleteModel,
+                    lambda request: DeleteModelResponse(True, 'deleted'))
+        self._start('-param', 'robot', '-b')
+        self._assert_shows('Waiting for shutdown to delete model box')
+        self._process.send_signal(signal.SIGINT)
+        self._assert_ends(0, CTRL_C_LIMIT)
+        self.assertEqual([request.model_name for request in self._requests], ['box', 'box'])
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_spawn_model')
+    rostest.rosrun('rosbots_description', 'spawn_model', SpawnModelTest, sys.argv)

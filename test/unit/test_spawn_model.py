@@ -1,0 +1,104 @@
+"""The command line of spawn_model and the XML it sends."""
+
+import pytest
+
+from rosbots_description.cli.spawn_model import parse_arguments
+from rosbots_description.ros_api.model_source import (
+    MissingFileError,
+    SourceError,
+    canonical_xml,
+    read_file,
+)
+
+MINIMAL = ['-urdf', '-param', 'robot_description', '-model', 'rosbots']
+
+
+def test_defaults_are_gazebos():
+    flags = parse_arguments(MINIMAL)
+    assert (flags.x, flags.y, flags.z, flags.R, flags.P, flags.Y) == (0, 0, 0, 0, 0, 0)
+    assert (flags.gazebo_namespace, flags.robot_namespace) == ('/gazebo', None)
+    assert (flags.reference_frame, flags.wait, flags.joints) == ('', None, [])
+    assert not (flags.sdf or flags.unpause or flags.bond or flags.package_to_model)
+
+
+def test_the_articles_command_line_with_roslaunch_remappings():
+    flags = parse_arguments(['-urdf', '-param', 'robot_description', '-model', 'rosbots', '-x', '0',
+                             '-y', '-1.5', '-z', '0.5', '__name:=mybot_spawn', '__log:=/x.log'])
+    assert (flags.model, flags.y, flags.z) == ('rosbots', -1.5, 0.5)
+
+
+@pytest.mark.parametrize('text, value', [('-1e-3', -0.001), ('-2.5E+1', -25.0), ('-.5e1', -5.0)])
+def test_negative_exponents_are_numbers(text, value):
+    flags = parse_arguments([*MINIMAL, '-x', text, '-J', 'wheel', text])
+    assert flags.x == value
+    assert float(flags.joints[0][1]) == value
+
+
+def test_unambiguous_prefixes_of_flags_work():
+    assert parse_arguments(['-ur', '-para', 'p', '-mod', 'm']).model == 'm'
+
+
+def test_joints_may_be_repeated():
+    flags = parse_arguments([*MINIMAL, '-J', 'a', '1', '-J', 'b', '-2'])
+    assert flags.joints == [['a', '1'], ['b', '-2']]
+
+
+@pytest.mark.parametrize('arguments, complaint', [
+    (['-urdf', '-param', 'p'], 'required: -model'),
+    (['-param', 'p', '-model', 'm'], '-urdf -sdf is required'),
+    (['-urdf', '-model', 'm'], '-file -param -database -stdin is required'),
+    (['-urdf', '-sdf', '-param', 'p', '-model', 'm'], 'not allowed with'),
+    (['-urdf', '-param', 'p', '-file', 'f', '-model', 'm'], 'not allowed with'),
+    ([*MINIMAL, '-x', 'far'], "'far' is not a finite number"),
+    ([*MINIMAL, '-z', 'nan'], "'nan' is not a finite number"),
+    ([*MINIMAL, '-gazebo'], '-gazebo'),
+    ([*MINIMAL, 'robot.urdf'], 'unrecognized arguments: robot.urdf'),
+])
+def test_wrong_usage_ends_with_2_and_names_the_flag(arguments, complaint, capsys):
+    with pytest.raises(SystemExit) as end:
+        parse_arguments(arguments)
+    assert end.value.code == 2
+    assert complaint in capsys.readouterr().err
+
+
+def test_help_ends_with_0(capsys):
+    with pytest.raises(SystemExit) as end:
+        parse_arguments(['-h'])
+    assert end.value.code == 0
+    assert '-reference_frame' in capsys.readouterr().out
+
+
+def test_xml_is_sent_as_ascii_without_declaration_and_comments():
+    text = '<?xml version="1.0" encoding="utf-8"?><!-- c --><robot name="é"><!-- d -->ü</robot>'
+    assert canonical_xml(text.encode()) == '<robot name="&#233;">&#252;</robot>'
+    assert canonical_xml(text) == canonical_xml(text.encode())
+
+
+def test_package_to_model_touches_only_meshes():
+    text = ('<robot><mesh filename="package://p/a.dae"/><mesh filename="file:///package://b"/>'
+            '<texture filename="package://p/t.png"/></robot>')
+    sent = canonical_xml(text, package_to_model=True)
+    assert '<mesh filename="model://p/a.dae"' in sent
+    assert '"file:///package://b"' in sent and '"package://p/t.png"' in sent
+    assert 'model://' not in canonical_xml(text)
+
+
+@pytest.mark.parametrize('text, complaint', [
+    (b'<robot name="x"><link name="a">', 'Invalid XML: no element found: line 1, column 31'),
+    (b'hello world', 'Invalid XML: syntax error: line 1, column 0'),
+    (b'<?xml version="1.0" encoding="klingon"?><robot/>', 'Invalid XML: unknown encoding'),
+])
+def test_what_is_no_xml_is_refused_with_the_place(text, complaint):
+    with pytest.raises(SourceError, match=complaint):
+        canonical_xml(text)
+
+
+def test_files_that_cannot_be_read_are_named(tmp_path):
+    empty = tmp_path / 'empty.urdf'
+    empty.touch()
+    with pytest.raises(SourceError, match=f'^Error: file {empty} is empty$'):
+        read_file(str(empty))
+    with pytest.raises(MissingFileError, match='specified file /nowhere.urdf does not exist$'):
+        read_file('/nowhere.urdf')
+    with pytest.raises(MissingFileError, match=f'specified file {tmp_path} is not a file$'):
+        read_file(str(tmp_path))

@@ -1,0 +1,88 @@
+"""Single keys from a terminal, on a pseudo-terminal; and the node's settings."""
+
+import contextlib
+import os
+import pty
+import subprocess
+import sys
+import termios
+import time
+from pathlib import Path
+
+import pytest
+
+from rosbots_description.cli.key_terminal import read_key, single_keys
+from rosbots_description.cli.teleop_twist_keyboard import Settings
+
+SOURCE = Path(__file__).resolve().parents[2] / 'src'
+
+
+def _always():
+    return True
+
+
+@pytest.fixture
+def terminal():
+    """The two ends of a pseudo-terminal: the keyboard's and the program's."""
+    keyboard, program = pty.openpty()
+    yield keyboard, program
+    for end in (keyboard, program):
+        with contextlib.suppress(OSError):  # closed by the test
+            os.close(end)
+
+
+def test_keys_come_at_once_one_by_one_and_ctrl_c_is_one_of_them(terminal):
+    keyboard, program = terminal
+    with single_keys(program):
+        os.write(keyboard, b'iq\x03')
+        assert [read_key(program, 5.0, _always) for _ in range(3)] == ['i', 'q', '\x03']
+
+
+def test_terminal_is_restored_even_after_an_error(terminal):
+    _, program = terminal
+    before = termios.tcgetattr(program)
+    with pytest.raises(RuntimeError), single_keys(program):
+        assert termios.tcgetattr(program) != before
+        raise RuntimeError
+    assert termios.tcgetattr(program) == before
+
+
+def test_no_key_gives_none_after_the_timeout(terminal):
+    _, program = terminal
+    start = time.monotonic()
+    with single_keys(program):
+        assert read_key(program, 0.03, _always) is None
+    assert 0.03 <= time.monotonic() - start < 1.0
+
+
+def test_waiting_ends_when_told_to(terminal):
+    _, program = terminal
+    with single_keys(program):
+        assert read_key(program, float('inf'), iter([True, False]).__next__) is None
+
+
+def test_a_terminal_that_hangs_up_is_an_end_of_file(terminal):
+    keyboard, program = terminal
+    os.close(keyboard)
+    with pytest.raises(EOFError):
+        read_key(program, 1.0, _always)
+
+
+def test_without_a_terminal_the_program_says_so_and_fails():
+    program = subprocess.run(
+        [sys.executable, '-c', 'import sys; sys.modules["rospy"] = None\n'
+         'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())'],
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=20, check=False,
+        env={**os.environ, 'PYTHONPATH': str(SOURCE)})
+    assert program.returncode == 1
+    assert 'not a terminal' in program.stderr and 'Traceback' not in program.stderr
+
+
+@pytest.mark.parametrize('wrong', [
+    {'speed': 'fast'}, {'turn': True}, {'speed': float('inf')}, {'key_timeout': -1},
+    {'repeat_rate': float('nan')},
+])
+def test_wrong_parameter_is_named(wrong):
+    (name, value), = wrong.items()
+    with pytest.raises(ValueError, match=f'~{name} must be .*{value!r}'):
+        Settings(**wrong)
