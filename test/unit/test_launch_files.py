@@ -1,0 +1,128 @@
+"""Every launch file loads without a master, explains its arguments, and starts what it says."""
+
+import os
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from roslaunch.config import ROSLaunchConfig
+from roslaunch.xmlloader import XmlLoader
+
+ROOT = Path(__file__).resolve().parents[2]
+FILES = sorted([*ROOT.glob('launch/*.launch'), *ROOT.glob('companions/*/launch/*.launch')])
+
+
+def name(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+@pytest.fixture
+def load(monkeypatch):
+    """Return a function (file name in launch/ or path, arguments) -> ROSLaunchConfig."""
+    places = [str(ROOT), str(ROOT / 'companions'), os.environ.get('ROS_PACKAGE_PATH', '')]
+    monkeypatch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(filter(None, places)))
+    # `env python3` of the xacro script must be the interpreter that runs the tests
+    interpreter = str(Path(sys.executable).parent)
+    monkeypatch.setenv('PATH', os.pathsep.join([interpreter, os.environ['PATH']]))
+    monkeypatch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:1')
+
+    def load_file(path, *arguments):
+        config = ROSLaunchConfig()
+        XmlLoader(resolve_anon=False).load(str(ROOT / 'launch' / path), config, verbose=False,
+                                           argv=list(arguments))
+        assert config.config_errors == []
+        return config
+
+    return load_file
+
+
+def nodes(config) -> dict:
+    return {node.name: f'{node.package}/{node.type}' for node in config.nodes}
+
+
+def arguments(config, node_name: str) -> str:
+    """Return a node's arguments with single blanks between them."""
+    text = next(node.args for node in config.nodes if node.name == node_name)
+    return ' '.join(text.split())
+
+
+def test_the_launch_files_are_there():
+    assert {'load_description', 'rviz', 'simulation', 'spawn'} <= {path.stem for path in FILES}
+
+
+@pytest.mark.parametrize('path', FILES, ids=name)
+def test_launch_file_loads(load, path):
+    load(path)
+
+
+@pytest.mark.parametrize('path', FILES, ids=name)
+def test_every_argument_is_explained(path):
+    silent = [arg.get('name') for arg in ElementTree.parse(path).getroot().findall('arg')
+              if not (arg.get('doc') or '').strip()]
+    assert silent == []
+
+
+def test_load_description_starts_nothing(load):
+    config = load('load_description.launch')
+    assert config.nodes == []
+    assert 'name="rosbots"' in config.params['/robot_description'].value
+
+
+def test_load_description_takes_a_path_with_blanks(load, tmp_path):
+    path = tmp_path / 'my robot.urdf'
+    path.write_text('<robot name="mine"><link name="base"/></robot>', encoding='utf-8')
+    config = load('load_description.launch', f'model:={path}')
+    assert '<robot name="mine">' in config.params['/robot_description'].value
+
+
+def test_rviz_shows_the_robot(load):
+    assert nodes(load('rviz.launch')) == {
+        'joint_state_publisher': 'joint_state_publisher/joint_state_publisher',
+        'robot_state_publisher': 'robot_state_publisher/robot_state_publisher',
+        'rviz': 'rviz/rviz'}
+
+
+def test_rviz_can_be_left_out_and_sliders_be_had(load):
+    assert set(nodes(load('rviz.launch', 'rviz:=false', 'gui:=true'))) == {
+        'joint_state_publisher_gui', 'robot_state_publisher'}
+
+
+def test_rviz_config_shows_the_robot_in_base_link():
+    text = (ROOT / 'config' / 'rosbots.rviz').read_text(encoding='utf-8')
+    assert 'Fixed Frame: base_link' in text
+    assert 'Class: rviz/RobotModel' in text
+
+
+def test_spawn_calls_spawn_model_as_the_article_does(load):
+    config = load('spawn.launch')
+    assert nodes(config) == {'mybot_spawn': 'gazebo_ros/spawn_model'}
+    assert config.nodes[0].output == 'screen'
+    assert arguments(config, 'mybot_spawn') == (
+        '-urdf -param robot_description -model rosbots -x 0 -y 0 -z 0.5 -R 0 -P 0 -Y 0')
+    assert '<robotBaseFrame>base_link<' in config.params['/robot_description'].value
+
+
+def test_spawn_passes_every_argument_on(load):
+    config = load('spawn.launch', 'x:=-1.5', 'y:=2', 'z:=0.1', 'roll:=0.1', 'pitch:=-0.2',
+                  'yaw:=-3', 'model_name:=other', 'robot_namespace:=/r1')
+    assert arguments(config, 'mybot_spawn') == (
+        '-urdf -param robot_description -model other -x -1.5 -y 2 -z 0.1 -R 0.1 -P -0.2 -Y -3'
+        ' -robot_namespace /r1')
+
+
+def test_simulation_has_one_tf_tree_and_no_rviz_unless_wanted(load):
+    config = load('simulation.launch', 'gui:=false', 'x:=-1')
+    assert {'gazebo', 'mybot_spawn', 'robot_state_publisher'} == set(nodes(config))
+    assert '<robotBaseFrame>base_footprint<' in config.params['/robot_description'].value
+    assert ' -x -1 ' in arguments(config, 'mybot_spawn')
+    assert 'rviz' in nodes(load('simulation.launch', 'rviz:=true'))
+
+
+def test_simulation_hands_its_arguments_to_the_simulator(load):
+    config = load('simulation.launch', 'paused:=true', 'world_name:=my.world',
+                  'use_sim_time:=false')
+    assert arguments(config, 'gazebo').startswith('-u ')
+    assert arguments(config, 'gazebo').endswith(' my.world')
+    assert config.params['/use_sim_time'].value is False

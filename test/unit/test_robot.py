@@ -1,0 +1,187 @@
+"""The robot's xacro says what the article says, and gives the TF trees it promises."""
+
+import json
+import os
+import subprocess
+from functools import cache
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+import xacro
+
+ROOT = Path(__file__).resolve().parents[2]
+XACRO = ROOT / 'urdf' / 'rosbots.xacro'
+ARTICLE = json.loads((ROOT / 'test' / 'data' / 'article_robot.json').read_text(encoding='utf-8'))
+TOLERANCE = 1e-9  # in the unit of each number
+
+
+@cache
+def expanded(**arguments: str) -> str:
+    """Return the URDF text for xacro arguments, with the package found where this file lies."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(
+            [str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')]))
+        patch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+        return xacro.process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
+
+
+def robot(**arguments: str) -> ElementTree.Element:
+    return ElementTree.fromstring(expanded(**arguments))
+
+
+def numbers(text: str) -> list:
+    return [float(word) for word in text.split()]
+
+
+def origin(element: ElementTree.Element) -> dict:
+    return {key: numbers(element.find('origin').get(key)) for key in ('xyz', 'rpy')}
+
+
+def shape(geometry: ElementTree.Element) -> dict:
+    (element,) = geometry
+    meaning = {'shape': element.tag}
+    for key, value in element.attrib.items():
+        meaning[key] = {'filename': str, 'scale': numbers}.get(key, float)(value)
+    return meaning
+
+
+def link_meaning(link: ElementTree.Element) -> dict:
+    meaning = {}
+    for part in link:
+        assert part.tag not in meaning, f'{link.get("name")} has two {part.tag}'
+        meaning[part.tag] = {'origin': origin(part)}
+        if part.tag == 'inertial':
+            assert {child.tag for child in part} == {'origin', 'mass', 'inertia'}
+            meaning[part.tag]['mass'] = float(part.find('mass').get('value'))
+            meaning[part.tag]['inertia'] = {key: float(value)
+                                            for key, value in part.find('inertia').attrib.items()}
+        else:
+            assert {child.tag for child in part} == {'origin', 'geometry'}
+            meaning[part.tag]['geometry'] = shape(part.find('geometry'))
+    return meaning
+
+
+def joint_meaning(joint: ElementTree.Element) -> dict:
+    meaning = {'type': joint.get('type'), 'parent': joint.find('parent').get('link'),
+               'child': joint.find('child').get('link'), 'origin': origin(joint)}
+    if joint.find('axis') is not None:
+        meaning['axis'] = numbers(joint.find('axis').get('xyz'))
+    assert {child.tag for child in joint} <= {'parent', 'child', 'origin', 'axis'}
+    return meaning
+
+
+def parameters(tree: ElementTree.Element) -> dict:
+    return {child.tag: child.text for child in tree.find('gazebo/plugin')}
+
+
+def assert_same(actual, expected, where: str) -> None:
+    """Compare nested values; numbers to TOLERANCE, everything else exactly."""
+    if isinstance(expected, dict):
+        assert set(actual) == set(expected), where
+        for key in expected:
+            assert_same(actual[key], expected[key], f'{where} {key}')
+    elif isinstance(expected, list):
+        assert len(actual) == len(expected), where
+        for i, (one, other) in enumerate(zip(actual, expected, strict=True)):
+            assert_same(one, other, f'{where}[{i}]')
+    elif isinstance(expected, float):
+        assert actual == pytest.approx(expected, abs=TOLERANCE, rel=0.0), where
+    else:
+        assert actual == expected, where
+
+
+def test_robot_has_the_articles_parts_and_nothing_else():
+    tree = robot()
+    assert tree.get('name') == ARTICLE['name']
+    assert {child.tag for child in tree} == {'link', 'joint', 'gazebo'}
+    assert len(tree.findall('link')) == 17
+    assert len(tree.findall('joint')) == 16
+    assert len(tree.findall('gazebo')) == 1
+    assert {link.get('name') for link in tree.findall('link')} == set(ARTICLE['links'])
+    assert {joint.get('name') for joint in tree.findall('joint')} == set(ARTICLE['joints'])
+
+
+@pytest.mark.parametrize('name', ARTICLE['links'])
+def test_link_is_the_articles(name):
+    assert_same(link_meaning(robot().find(f"link[@name='{name}']")), ARTICLE['links'][name], name)
+
+
+@pytest.mark.parametrize('name', ARTICLE['joints'])
+def test_joint_is_the_articles(name):
+    joint = robot().find(f"joint[@name='{name}']")
+    assert_same(joint_meaning(joint), ARTICLE['joints'][name], name)
+
+
+def test_plugin_is_the_articles_parameter_by_parameter():
+    (plugin,) = robot().find('gazebo')
+    assert plugin.get('name') == ARTICLE['plugin']['name']
+    assert plugin.get('filename') == ARTICLE['plugin']['filename']
+    assert len(plugin) == len(ARTICLE['plugin']['parameters'])
+    assert parameters(robot()) == ARTICLE['plugin']['parameters']
+
+
+def test_one_tf_tree_changes_two_parameters_and_nothing_else():
+    default, one_tree = robot(), robot(one_tf_tree='true')
+    assert parameters(one_tree) == {**parameters(default), 'robotBaseFrame': 'base_footprint',
+                                    'publishWheelTF': 'false'}
+    for tree in (default, one_tree):
+        tree.remove(tree.find('gazebo'))
+    assert ElementTree.tostring(default) == ElementTree.tostring(one_tree)
+
+
+def tf_parents(tree: ElementTree.Element) -> dict:
+    """Return for each TF frame all its parents, with a robot_state_publisher beside the plugin."""
+    joints = tree.findall('joint')
+    parents = {joint.find('child').get('link'): [joint.find('parent').get('link')]
+               for joint in joints}
+    fixed = {joint.find('child').get('link'): joint.find('parent').get('link')
+             for joint in joints if joint.get('type') == 'fixed'}
+    plugin = parameters(tree)
+    parents.setdefault(plugin['robotBaseFrame'], []).append(plugin['odometryFrame'])
+    for side in ('leftJoint', 'rightJoint'):
+        if plugin['publishWheelTF'] == 'true':
+            joint = tree.find(f"joint[@name='{plugin[side]}']")
+            parent = joint.find('parent').get('link')
+            while parent in fixed:  # the simulator merges links joined by fixed joints
+                parent = fixed[parent]
+            parents[joint.find('child').get('link')].append(parent)
+    return parents
+
+
+def test_default_gives_base_link_and_wheels_a_second_parent_as_the_article_does():
+    twice = {frame for frame, parents in tf_parents(robot()).items() if len(parents) > 1}
+    assert twice == {'base_link', 'wheel_left_link', 'wheel_right_link'}
+
+
+def test_one_tf_tree_hangs_every_frame_once_below_odom():
+    tree = robot(one_tf_tree='true')
+    parents = tf_parents(tree)
+    assert all(len(several) == 1 for several in parents.values())
+    assert set(parents) == set(ARTICLE['links'])
+    assert parents['base_footprint'] == ['odom']
+    assert parents['base_link'] == ['base_footprint']
+    # Without the plugin's wheel transforms the wheels need its joint states.
+    assert parameters(tree)['publishWheelJointState'] == 'true'
+
+
+def test_check_urdf_accepts_the_robot(tmp_path):
+    path = tmp_path / 'rosbots.urdf'
+    path.write_text(expanded(), encoding='utf-8')
+    result = subprocess.run(['check_urdf', str(path)], capture_output=True, text=True, timeout=20,
+                            check=False)
+    assert result.returncode == 0, result.stderr
+    assert 'root Link: base_footprint' in result.stdout
+
+
+def test_xacro_is_executable():
+    assert os.access(XACRO, os.X_OK)
+
+
+def test_every_mesh_of_the_robot_is_in_the_package():
+    files = {mesh.get('filename') for mesh in robot().iter('mesh')}
+    assert len(files) == 4
+    for name in files:
+        prefix, path = name[:30], name[30:]
+        assert prefix == 'package://rosbots_description/'
+        assert (ROOT / path).is_file(), name
