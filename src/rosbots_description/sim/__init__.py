@@ -1,0 +1,1 @@
+"""The simulator: plain values and physics, without ROS."""

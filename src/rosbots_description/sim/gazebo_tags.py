@@ -1,0 +1,271 @@
+"""The <gazebo> blocks of a URDF (contract 4.16): surfaces, looks, flags, sensors, plugins.
+
+Numbers may stand as text or in an attribute `value`. What is wrong as a number is an error; what
+is not simulated is named once. Different from Gazebo on purpose: the surface of a link also
+reaches those of its collisions that have names of their own.
+"""
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
+
+from lxml import etree
+
+from .gazebo_materials import gazebo_material
+from .kinematic_tree import TreeLink
+from .markup_values import (
+    fault,
+    place,
+    scalar,
+    scalar_number,
+    scalar_numbers,
+    suggestion,
+    tag_of,
+    to_element,
+    truth,
+)
+from .spec import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec
+
+# A negative mu means endless friction in Gazebo.
+ENDLESS_FRICTION = 1e6
+
+_SURFACE_NUMBERS = {'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
+                    'minDepth': 'min_depth', 'laserRetro': 'laser_retro'}
+# The same inside <collision>, where SDF's own structure is used.
+_SURFACE_PATHS = {'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': 'mu2',
+                  'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
+                  'surface/contact/ode/max_vel': 'max_vel',
+                  'surface/contact/ode/min_depth': 'min_depth', 'laser_retro': 'laser_retro'}
+_PARTS = ('sensor', 'light', 'projector')
+# Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
+_SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
+                'fudgeFactor', 'springReference', 'canonicalBody'}
+
+
+@dataclass
+class LinkTags:
+    """What the blocks of one link say; only what is written is in the mappings."""
+
+    surface: dict[str, object] = field(default_factory=dict)  # fields of Surface
+    flags: dict[str, object] = field(default_factory=dict)  # fields of LinkSpec
+    material: Material | None = None
+    sensors: list[Element] = field(default_factory=list)
+
+
+@dataclass
+class GazeboTags:
+    """What all blocks say together."""
+
+    links: dict[str, LinkTags] = field(default_factory=dict)
+    kept_joints: dict[str, str] = field(default_factory=dict)  # fixed joint -> what it becomes
+    static: bool = False
+    plugins: list[PluginSpec] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # sentences to warn with
+
+
+def read_gazebo_tags(
+    robot: etree._Element, links: Collection[str], joints: Collection[str]
+) -> GazeboTags:
+    """Read all <gazebo> blocks below <robot>.
+
+    Args:
+        links, joints: the names a `reference` may have.
+    Raises:
+        ModelError: something that must be a finite number is none.
+    """
+    tags = GazeboTags()
+    unread: list[str] = []
+    for block in robot.findall('gazebo'):
+        reference = block.get('reference')
+        if not reference:
+            _read_model_block(block, tags, unread)
+            continue
+        if reference in links:
+            _read_link_block(block, tags.links.setdefault(reference, LinkTags()), tags, unread)
+        if reference in joints:
+            _read_joint_block(block, reference, tags, unread if reference not in links else [])
+        if reference not in links and reference not in joints:
+            names = [*links, *joints]
+            tags.notes.append(
+                f'{place(block)}: there is no link or joint of that name, the block is '
+                f'ignored{suggestion(reference, names)}'
+            )
+    if unread:
+        tags.notes.append('not simulated in <gazebo> blocks: ' + ', '.join(dict.fromkeys(unread)))
+    return tags
+
+
+def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
+    """Return the link with what its blocks say about its shapes, flags and sensors."""
+    if tags is None:
+        return link
+    spec: LinkSpec = link.spec
+    collisions = tuple(
+        replace(shape, surface=replace(shape.surface, **tags.surface)) for shape in spec.collisions
+    ) if tags.surface else spec.collisions
+    visuals = tuple(replace(shape, material=tags.material) for shape in spec.visuals) \
+        if tags.material else spec.visuals
+    spec = replace(
+        spec, collisions=collisions, visuals=visuals, sensors=tuple(tags.sensors), **tags.flags
+    )
+    return replace(link, spec=spec, flags=dict(tags.flags))
+
+
+def inject_namespace(root: etree._Element, robot_namespace: str) -> None:
+    """Give each <plugin>, at any depth, a <robotNamespace> unless it has one, in place.
+
+    An empty `robot_namespace` changes nothing (contract 2.6, step 6).
+    """
+    if not robot_namespace:
+        return
+    for plugin in root.iter('plugin'):
+        if plugin.find('robotNamespace') is None:
+            child = etree.SubElement(plugin, 'robotNamespace')
+            child.text = robot_namespace
+            child.sourceline = plugin.sourceline
+
+
+def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]) -> None:
+    for child in block:
+        match child.tag:
+            case 'static':
+                tags.static = truth(child)
+            case 'plugin':
+                _read_plugin(child, tags)
+            case _:
+                unread.append(_mention(child))
+
+
+def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
+    filename = element.get('filename', '').strip()
+    if not filename:
+        tags.notes.append(
+            f'{place(element)}: a <plugin> without filename is ignored; '
+            'filename="libgazebo_ros_….so" picks the code'
+        )
+        return
+    tags.plugins.append(PluginSpec(element.get('name', ''), filename, to_element(element)))
+
+
+def _read_link_block(
+    block: etree._Element, link: LinkTags, tags: GazeboTags, unread: list[str]
+) -> None:
+    for child in block:
+        tag = child.tag
+        if tag in _SURFACE_NUMBERS:
+            _set_surface(link, _SURFACE_NUMBERS[tag], child)
+        elif tag in _LINK_READERS:
+            _LINK_READERS[tag](child, link)
+        elif tag in _PARTS:
+            link.sensors.append(to_element(child))
+        elif tag == 'material':
+            _read_script(child, link, tags)
+        elif tag == 'visual':
+            _read_visual(child, link, tags)
+        elif tag not in _JOINT_TAGS:
+            unread.append(_mention(child))
+
+
+def _set_surface(link: LinkTags, key: str, element: etree._Element) -> None:
+    value = scalar_number(element)
+    if key in ('mu', 'mu2') and value < 0.0:
+        value = ENDLESS_FRICTION
+    elif value < 0.0 and key != 'laser_retro':
+        raise fault(element, f'<{tag_of(element)}> is {value:g}; it must not be negative')
+    link.surface[key] = value
+
+
+def _read_direction(element: etree._Element, link: LinkTags) -> None:
+    link.surface['fdir1'] = scalar_numbers(element, 3)
+
+
+def _read_max_contacts(element: etree._Element, link: LinkTags) -> None:
+    link.surface['max_contacts'] = int(scalar_number(element))
+
+
+def _read_damping(element: etree._Element, link: LinkTags) -> None:
+    value = scalar_number(element)
+    link.flags |= {'linear_damping': value, 'angular_damping': value}
+
+
+def _read_self_collide(element: etree._Element, link: LinkTags) -> None:
+    link.flags['self_collide'] = truth(element)
+
+
+def _read_gravity_off(element: etree._Element, link: LinkTags) -> None:
+    # Gazebo's way round: whatever is not a clear no turns gravity off.
+    link.flags['gravity'] = scalar(element).lower() in ('false', 'no', '0')
+
+
+def _read_gravity(element: etree._Element, link: LinkTags) -> None:
+    link.flags['gravity'] = truth(element)
+
+
+def _read_collision(element: etree._Element, link: LinkTags) -> None:
+    for path, key in _SURFACE_PATHS.items():
+        child = element.find(path)
+        if child is not None:
+            _set_surface(link, key, child)
+    for path, reader in (
+        ('surface/friction/ode/fdir1', _read_direction), ('max_contacts', _read_max_contacts)
+    ):
+        child = element.find(path)
+        if child is not None:
+            reader(child, link)
+
+
+_LINK_READERS: Mapping[str, Callable[[etree._Element, LinkTags], None]] = {
+    'fdir1': _read_direction,
+    'maxContacts': _read_max_contacts,
+    'dampingFactor': _read_damping,
+    'selfCollide': _read_self_collide,
+    'self_collide': _read_self_collide,
+    'turnGravityOff': _read_gravity_off,
+    'gravity': _read_gravity,
+    'collision': _read_collision,
+}
+
+
+def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> None:
+    script = scalar(element)
+    material = gazebo_material(script)
+    if material is None:
+        tags.notes.append(
+            f"{place(element)}: material '{script}' is none of Gazebo's, grey is shown; "
+            'Gazebo/Red is an example of one'
+        )
+        material = Material(script=script)
+    link.material = material
+
+
+def _read_visual(element: etree._Element, link: LinkTags, tags: GazeboTags) -> None:
+    name = element.find('material/script/name')
+    if name is not None:
+        _read_script(name, link, tags)
+    colour = element.find('material/diffuse')
+    if colour is None:
+        colour = element.find('material/ambient')
+    if colour is not None:
+        link.material = Material(scalar_numbers(colour, 4))
+
+
+_JOINT_TAGS = _SOLVER_TAGS | {'disableFixedJointLumping', 'preserveFixedJoint'}
+
+
+def _read_joint_block(
+    block: etree._Element, joint: str, tags: GazeboTags, unread: list[str]
+) -> None:
+    for child in block:
+        match child.tag:
+            case 'preserveFixedJoint':
+                if truth(child):
+                    tags.kept_joints[joint] = FIXED
+            case 'disableFixedJointLumping':
+                if truth(child):
+                    # Where both are given, preserveFixedJoint wins, whichever comes first.
+                    tags.kept_joints.setdefault(joint, REVOLUTE)
+            case tag if tag not in _SOLVER_TAGS:
+                unread.append(_mention(child))
+
+
+def _mention(element: etree._Element) -> str:
+    return f'<{tag_of(element)}> (line {element.sourceline})'

@@ -1,0 +1,146 @@
+"""Links and joints as a description gives them, before lumping, proven to be one tree."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from lxml import etree
+
+from .markup_values import fault, suggestion
+from .pose import IDENTITY, Pose
+from .spec import FIXED, JointSpec, LinkSpec
+
+WORLD = 'world'  # a root of that name stands for the world: the model is bolted to it
+FREE = 'free'  # a joint type that ties nothing: the child becomes a tree of its own
+
+
+@dataclass(frozen=True)
+class TreeLink:
+    """A link as described; shape names are the description's own, '' where it gives none.
+
+    `flags` are the fields of `spec` a <gazebo> block sets explicitly; they pass on to the link
+    this one is lumped into.
+    """
+
+    spec: LinkSpec
+    element: etree._Element
+    flags: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TreeJoint:
+    """A joint as described; `origin` is the child's frame in the parent's at position zero."""
+
+    spec: JointSpec
+    element: etree._Element
+    origin: Pose = IDENTITY
+    lump: bool = False  # the child becomes part of the parent
+
+
+@dataclass(frozen=True)
+class Tree:
+    """All links and joints, connected: one root, every other link child of exactly one joint."""
+
+    root: str
+    links: Mapping[str, TreeLink]
+    joint_to: Mapping[str, TreeJoint]  # child link -> the joint above it
+    joints_below: Mapping[str, tuple[TreeJoint, ...]]  # parent link -> joints, by name
+
+    def depth_first(self) -> list[str]:
+        """Return the links, parents before children, siblings by the name of their joint.
+
+        This is the order in which Gazebo lists the links of a URDF: urdfdom keeps joints by name.
+        """
+        order, waiting = [], [self.root]
+        while waiting:
+            name = waiting.pop()
+            order.append(name)
+            waiting.extend(joint.spec.child for joint in reversed(self.joints_below.get(name, ())))
+        return order
+
+    def lumps(self, joint: TreeJoint) -> bool:
+        """Tell whether a joint's child becomes part of its parent."""
+        bolts = self.root == WORLD and joint.spec.parent == WORLD
+        return joint.spec.type == FIXED and joint.lump and not bolts
+
+
+def build_tree(
+    robot: etree._Element, links: Sequence[TreeLink], joints: Sequence[TreeJoint]
+) -> Tree:
+    """Connect links and joints.
+
+    Raises:
+        ModelError: no link, duplicate names, a joint to an unknown link, a link below two joints,
+            no root or several, a ring.
+    """
+    by_name = _unique(links, 'link')
+    _unique(joints, 'joint')
+    if not by_name:
+        raise fault(robot, 'the model has no <link>; a model needs at least one, with a mass')
+    joint_to: dict[str, TreeJoint] = {}
+    below: dict[str, list[TreeJoint]] = {}
+    for joint in joints:
+        for role, name in (('parent', joint.spec.parent), ('child', joint.spec.child)):
+            if name not in by_name:
+                raise fault(
+                    joint.element,
+                    f"{role} link '{name}' does not exist{suggestion(name, by_name)}",
+                )
+        first = joint_to.setdefault(joint.spec.child, joint)
+        if first is not joint:
+            raise fault(
+                joint.element,
+                f"child link '{joint.spec.child}' is already the child of joint "
+                f"'{first.spec.name}' (line {first.element.sourceline}); a link hangs on one joint",
+            )
+        below.setdefault(joint.spec.parent, []).append(joint)
+    root = _find_root(robot, by_name, joint_to)
+    tree = Tree(
+        root, by_name, joint_to,
+        {name: tuple(sorted(group, key=lambda joint: joint.spec.name))
+         for name, group in below.items()},
+    )
+    _refuse_rings(tree)
+    return tree
+
+
+def _unique(items: Sequence, kind: str) -> dict:
+    by_name: dict = {}
+    for item in items:
+        first = by_name.setdefault(item.spec.name, item)
+        if first is not item:
+            raise fault(
+                item.element,
+                f"there is a {kind} '{item.spec.name}' already in line "
+                f'{first.element.sourceline}; {kind} names must differ',
+            )
+    return by_name
+
+
+def _find_root(
+    robot: etree._Element, links: Mapping[str, TreeLink], joint_to: Mapping[str, TreeJoint]
+) -> str:
+    roots = [name for name in links if name not in joint_to]
+    if len(roots) == 1:
+        return roots[0]
+    if not roots:
+        first = next(iter(joint_to.values()))
+        raise fault(first.element, 'the joints form a ring; one link must be child of no joint')
+    shown = ', '.join(f"'{name}' (line {links[name].element.sourceline})" for name in roots[:6])
+    more = f' and {len(roots) - 6} more' if len(roots) > 6 else ''
+    raise fault(
+        robot,
+        f'{len(roots)} links are child of no joint: {shown}{more}; a model has one root, '
+        'connect the others with a joint',
+    )
+
+
+def _refuse_rings(tree: Tree) -> None:
+    reached = set(tree.depth_first())
+    lost = [name for name in tree.links if name not in reached]
+    if lost:
+        shown = ', '.join(f"'{name}'" for name in lost[:6])
+        raise fault(
+            tree.joint_to[lost[0]].element,
+            f"the joints of {shown} form a ring apart from the root '{tree.root}'; "
+            'every link must hang on the root',
+        )

@@ -1,0 +1,231 @@
+"""Merge links that fixed joints hold together, as sdformat 9 does for Gazebo (contract 4.16).
+
+The child's mass, shapes and joints go to the nearest ancestor that moves on its own, its heir.
+Shapes get the names by which Gazebo's users know them:
+`<heir>_fixed_joint_lump__<child>_collision`.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from .errors import ModelError
+from .inertia import merge
+from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
+from .markup_values import fault
+from .pose import IDENTITY, Pose, compose
+from .repointing import move_part
+from .spec import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
+
+# PyBullet handles a tree of more joints only up to the first question about it.
+MAX_JOINTS = 127
+
+_LUMPED = '_fixed_joint_lump__'
+
+Shape = TypeVar('Shape', Collision, Visual)
+
+
+@dataclass(frozen=True)
+class Lumped:
+    """The outcome: links and joints that remain, and what became of the others."""
+
+    links: tuple[LinkSpec, ...]
+    joints: tuple[JointSpec, ...]
+    heirs: Mapping[str, tuple[str, Pose]]  # lumped link -> its heir, and its pose in the heir
+    vanished: tuple[str, ...]  # links that are not simulated
+    massless: tuple[str, ...]  # links without mass that are the cause
+    conflicts: tuple[str, ...]  # lumped links whose flags changed their heir
+
+
+def lump(tree: Tree) -> Lumped:
+    """Merge what fixed joints hold together.
+
+    A link without mass is not simulated, nor is anything that hangs on it by a joint that stays;
+    its own shapes live on where it is lumped into a link that has a mass.
+
+    Raises:
+        ModelError: a tree keeps more joints than the engine can hold.
+    """
+    order = tree.depth_first()
+    homes = _homes(tree, order)
+    vanished, massless = _massless(tree, order, homes)
+    members: dict[str, list[str]] = {}
+    for name in order:
+        if name not in vanished and homes[name][0] != WORLD:
+            members.setdefault(homes[name][0], []).append(name)
+    poses = _poses_in_model(tree, order)
+    kept = [name for name in order if name in members]
+    joints = tuple(
+        _rehang(tree.joint_to[name], homes) for name in kept
+        if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
+    )
+    _check_joint_count(tree, kept)
+    return Lumped(
+        links=tuple(_merge_link(tree, name, members[name], homes, poses[name]) for name in kept),
+        joints=joints,
+        heirs={name: homes[name] for heir in kept for name in members[heir] if name != heir},
+        vanished=tuple(name for name in order if name in vanished),
+        massless=tuple(massless),
+        conflicts=tuple(_conflicts(tree, members)),
+    )
+
+
+def _homes(tree: Tree, order: Sequence[str]) -> dict[str, tuple[str, Pose]]:
+    """Return for each link the link it belongs to (itself, or its heir) and its pose in that."""
+    homes: dict[str, tuple[str, Pose]] = {}
+    for name in order:
+        joint = tree.joint_to.get(name)
+        if joint is not None and tree.lumps(joint):
+            heir, frame = homes[joint.spec.parent]
+            homes[name] = (heir, compose(frame, joint.origin))
+        else:
+            homes[name] = (name, IDENTITY)
+    return homes
+
+
+def _massless(
+    tree: Tree, order: Sequence[str], homes: Mapping[str, tuple[str, Pose]]
+) -> tuple[set[str], list[str]]:
+    """Return the links that vanish, and among them those without mass, which are the cause.
+
+    As in sdformat 9 a lumped link without mass (its own lumped children counted) also takes along
+    what hangs on it by joints that stay.
+    """
+    mass = {name: _mass(tree.links[name].spec.inertial) for name in order}
+    for name in reversed(order):
+        joint = tree.joint_to.get(name)
+        if joint is not None and tree.lumps(joint):
+            mass[joint.spec.parent] += mass[name]
+    cut_off: set[str] = set()  # links below which nothing is modelled
+    vanished: set[str] = set()
+    causes: list[str] = []
+    for name in order:
+        if name == WORLD and name == tree.root:
+            continue
+        joint = tree.joint_to.get(name)
+        above = joint.spec.parent if joint else None
+        if above in cut_off or mass[name] == 0.0:
+            cut_off.add(name)
+        heir = homes[name][0]
+        if heir in vanished or (heir == name and name in cut_off):
+            vanished.add(name)
+            if mass[name] == 0.0 and above not in vanished:
+                causes.append(name)
+            elif above is not None and above in cut_off and above not in vanished:
+                causes.append(above)
+    return vanished, list(dict.fromkeys(causes))
+
+
+def _mass(inertial: Inertial | None) -> float:
+    return 0.0 if inertial is None else inertial.mass
+
+
+def _poses_in_model(tree: Tree, order: Sequence[str]) -> dict[str, Pose]:
+    poses: dict[str, Pose] = {}
+    for name in order:
+        joint = tree.joint_to.get(name)
+        poses[name] = compose(poses[joint.spec.parent], joint.origin) if joint else IDENTITY
+    return poses
+
+
+def _rehang(joint: TreeJoint, homes: Mapping[str, tuple[str, Pose]]) -> JointSpec:
+    return replace(joint.spec, parent=homes[joint.spec.parent][0])
+
+
+def _check_joint_count(tree: Tree, kept: Sequence[str]) -> None:
+    count: dict[str, int] = {}
+    base: dict[str, str] = {}  # link -> the first link of its tree
+    for name in tree.depth_first():
+        joint = tree.joint_to.get(name)
+        free = joint is None or joint.spec.type == FREE or joint.spec.parent == WORLD
+        base[name] = name if free else base[joint.spec.parent]
+    for name in kept:
+        if base[name] == name:
+            continue
+        count[base[name]] = count.get(base[name], 0) + 1
+        if count[base[name]] > MAX_JOINTS:
+            raise fault(
+                tree.joint_to[name].element,
+                f'the tree has more than {MAX_JOINTS} joints that stay; '
+                'the physics engine holds no more: fix some, or spawn parts as models of their own',
+            )
+
+
+def _merge_link(
+    tree: Tree,
+    name: str,
+    members: Sequence[str],
+    homes: Mapping[str, tuple[str, Pose]],
+    pose: Pose,
+) -> LinkSpec:
+    collisions: list[Collision] = []
+    visuals: list[Visual] = []
+    sensors: list[Element] = []
+    bodies: list[tuple[Pose, Inertial]] = []
+    flags: dict[str, object] = {}
+    for member in members:
+        link, frame = tree.links[member], homes[member][1]
+        collisions += [_move(shape, frame, member) for shape in link.spec.collisions]
+        visuals += [_move(shape, frame, member) for shape in link.spec.visuals]
+        sensors += [move_part(part, frame) for part in link.spec.sensors]
+        if _mass(link.spec.inertial) > 0.0:
+            bodies.append((frame, link.spec.inertial))
+        flags.update(link.flags)
+    return replace(
+        tree.links[name].spec,
+        pose=pose,
+        inertial=merge(bodies),
+        collisions=_named(collisions, name, '_collision'),
+        visuals=_named(visuals, name, '_visual'),
+        sensors=tuple(sensors),
+        **flags,
+    )
+
+
+def _move(shape: Shape, frame: Pose, link: str) -> Shape:
+    """Return the shape posed in the heir's frame, under its own name or else its link's."""
+    return replace(shape, name=shape.name or link, pose=compose(frame, shape.pose))
+
+
+def _named(shapes: Sequence[Shape], heir: str, suffix: str) -> tuple[Shape, ...]:
+    """Return the shapes under Gazebo's names: numbered over the whole link from the second on.
+
+    As in sdformat, what already begins with the heir's name gets no prefix.
+    """
+    named = []
+    for i, shape in enumerate(shapes):
+        name = shape.name + suffix + (f'_{i}' if i else '')
+        named.append(replace(shape, name=name if name.startswith(heir) else heir + _LUMPED + name))
+    return tuple(named)
+
+
+def _conflicts(tree: Tree, members: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return the lumped links whose flags change what their heir would have been."""
+    return [
+        member for heir, names in members.items() for member in names
+        if member != heir and any(
+            getattr(tree.links[heir].spec, key) != value
+            for key, value in tree.links[member].flags.items()
+        )
+    ]
+
+
+def require_links(tree: Tree, lumped: Lumped) -> None:
+    """Refuse a model of which nothing remains.
+
+    Raises:
+        ModelError: no link has a mass.
+    """
+    if not lumped.links:
+        first = tree.links[next(iter(lumped.massless), tree.root)]
+        raise _nothing_left(first.spec.name, first.element)
+
+
+def _nothing_left(name: str, element) -> ModelError:
+    if name == WORLD:
+        return fault(element, 'the model has only the world itself; add a link with a mass')
+    return fault(
+        element,
+        "it has no mass, and so nothing of the model can be simulated; give it an <inertial> with "
+        'a <mass> greater than zero and an <inertia>',
+    )

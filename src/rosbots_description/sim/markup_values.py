@@ -1,0 +1,179 @@
+"""Read names, numbers, poses and plain element trees from parsed XML, and word complaints.
+
+Every complaint says source, line, the link, joint or plugin it is about, the fault and the cure.
+"""
+
+import math
+from collections.abc import Collection
+from difflib import get_close_matches
+
+from lxml import etree
+
+from .errors import ModelError
+from .pose import IDENTITY, Pose, from_rpy
+from .spec import Element
+
+MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
+
+# Elements with a name of their own, which a message should mention.
+_OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'name',
+           'plugin': 'name', 'sensor': 'name', 'material': 'name'}
+_TRUE = {'true', 'yes', '1'}
+_COUNTS = {1: 'one finite number', 2: 'two finite numbers', 3: 'three finite numbers',
+           4: 'four finite numbers', 6: 'six finite numbers', 7: 'seven finite numbers'}
+
+
+def tag_of(element: etree._Element) -> str:
+    """Return the element's name as written, prefix included."""
+    name = etree.QName(element).localname if element.tag.startswith('{') else element.tag
+    return f'{element.prefix}:{name}' if element.prefix else name
+
+
+def fault(element: etree._Element, sentence: str) -> ModelError:
+    """Return the error to raise about `element`: source, line and owner before the sentence."""
+    return ModelError(f'{place(element)}: {sentence}')
+
+
+def place(element: etree._Element) -> str:
+    """Return where an element stands, e.g. "robot_description, line 12: joint 'j1'"."""
+    where = f'{element.getroottree().docinfo.URL}, line {element.sourceline}'
+    owner = _owner(element)
+    return f'{where}: {owner}' if owner else where
+
+
+def _owner(element: etree._Element) -> str:
+    for candidate in (element, *element.iterancestors()):
+        name = candidate.get(_OWNERS[candidate.tag]) if candidate.tag in _OWNERS else None
+        if name:
+            shown = name if len(name) <= 60 else f'{name[:57]}...'
+            if candidate.tag == 'gazebo':
+                return f"<gazebo reference='{shown}'>"
+            return f"{candidate.tag} '{shown}'"
+    return ''
+
+
+def suggestion(name: str, known: Collection[str]) -> str:
+    """Return "; did you mean 'x'?" where a known name is close, else the known ones, if few."""
+    close = get_close_matches(name, list(known)[:1000], n=1)
+    if close:
+        return f"; did you mean '{close[0]}'?"
+    if 0 < len(known) <= 8:
+        return '; there are ' + ', '.join(f"'{other}'" for other in known)
+    return ''
+
+
+def required_name(element: etree._Element) -> str:
+    """Return the `name` attribute.
+
+    Raises:
+        ModelError: it is missing, empty or longer than the engine can hold.
+    """
+    name = element.get('name', '').strip()
+    if not name:
+        raise fault(element, f'a <{tag_of(element)}> without name; add name="..."')
+    if len(name) > MAX_NAME:
+        raise fault(
+            element, f'its name has {len(name)} characters; at most {MAX_NAME} are accepted'
+        )
+    return name
+
+
+def numbers(
+    element: etree._Element,
+    attribute: str,
+    default: tuple[float, ...] | None = None,
+    count: int = 3,
+) -> tuple[float, ...]:
+    """Return `count` finite numbers from an attribute; `default` where it is missing.
+
+    Raises:
+        ModelError: no number, not finite, another count; or missing without a default.
+    """
+    text = element.get(attribute)
+    if text is None:
+        if default is None:
+            raise fault(
+                element, f'<{tag_of(element)}> has no {attribute}; it takes {_COUNTS[count]}'
+            )
+        return default
+    values = parse_numbers(text, count)
+    if values is None:
+        raise fault(
+            element,
+            f'{attribute}="{text}" of <{tag_of(element)}> is wrong; it takes {_COUNTS[count]}',
+        )
+    return values
+
+
+def number(element: etree._Element, attribute: str, default: float | None = None) -> float:
+    """Return one finite number from an attribute, as `numbers` does."""
+    return numbers(element, attribute, None if default is None else (default,), 1)[0]
+
+
+def positive(element: etree._Element, attribute: str, count: int = 1) -> tuple[float, ...]:
+    """Return sizes: finite numbers greater than zero [m]."""
+    values = numbers(element, attribute, count=count)
+    if min(values) <= 0.0:
+        raise fault(
+            element,
+            f'{attribute}="{element.get(attribute)}" of <{tag_of(element)}> is wrong; '
+            'a size must be greater than zero',
+        )
+    return values
+
+
+def parse_numbers(text: str, count: int) -> tuple[float, ...] | None:
+    """Return `count` finite numbers separated by blanks, or None where the text is not that."""
+    parts = text.split()
+    if len(parts) != count or '_' in text:
+        return None
+    try:
+        values = tuple(float(part) for part in parts)
+    except ValueError:
+        return None
+    return values if all(math.isfinite(value) for value in values) else None
+
+
+def scalar(element: etree._Element) -> str:
+    """Return the value of <tag value="x"/> or <tag>x</tag>, without surrounding blanks."""
+    return (element.get('value') or element.text or '').strip()
+
+
+def scalar_number(element: etree._Element) -> float:
+    """Return the finite number of <tag value="1"/> or <tag>1</tag>."""
+    return scalar_numbers(element, 1)[0]
+
+
+def scalar_numbers(element: etree._Element, count: int) -> tuple[float, ...]:
+    """Return the finite numbers of <tag value="1 2 3"/> or <tag>1 2 3</tag>."""
+    values = parse_numbers(scalar(element), count)
+    if values is None:
+        raise fault(
+            element, f"<{tag_of(element)}> is '{scalar(element)}'; it takes {_COUNTS[count]}"
+        )
+    return values
+
+
+def truth(element: etree._Element) -> bool:
+    """Tell whether the element says true, yes or 1; everything else is false, as in Gazebo."""
+    return scalar(element).lower() in _TRUE
+
+
+def origin(element: etree._Element) -> Pose:
+    """Return the pose of the child <origin xyz rpy/> [m, rad]; the identity without one."""
+    child = element.find('origin')
+    if child is None:
+        return IDENTITY
+    zero = (0.0, 0.0, 0.0)
+    return Pose(numbers(child, 'xyz', zero), from_rpy(*numbers(child, 'rpy', zero)))
+
+
+def to_element(element: etree._Element) -> Element:
+    """Return an XML element with all below it as plain values."""
+    return Element(
+        tag=tag_of(element),
+        text=(element.text or '').strip(),
+        attributes=dict(element.attrib),
+        children=tuple(to_element(child) for child in element),
+        line=element.sourceline or 0,
+    )

@@ -1,0 +1,280 @@
+"""Read mesh files (.dae, .stl, .obj) into plain triangles that nothing downstream can choke on.
+
+The physics engine dies of many malformed mesh files, so it never gets the user's. Units and node
+transforms of a Collada file are applied; its up_axis is not, since neither RViz nor PyBullet
+applies it and picture and physics must agree. Nothing here prints or opens the network.
+"""
+
+import hashlib
+import io
+import logging
+import os
+import re
+import threading
+import warnings
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from lxml import etree
+
+from .errors import ModelError
+
+MAX_BYTES = 50_000_000
+MAX_TRIANGLES = 500_000
+FORMATS = ('.dae', '.stl', '.obj')
+
+Colour = tuple[float, float, float, float]
+GREY: Colour = (0.7, 0.7, 0.7, 1.0)
+
+# A material this transparent is nearly always an exporter's slip: the part is shown.
+_INVISIBLE = 0.01
+
+# Filters of warnings belong to the whole process; two threads must not change them at a time.
+_SILENCE = threading.Lock()
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Triangles of one colour."""
+
+    vertices: np.ndarray  # (n, 3) [m]
+    faces: np.ndarray  # (m, 3), numbers of vertices
+    normals: np.ndarray | None  # (n, 3), unit vectors at the vertices
+    rgba: Colour  # red, green, blue, alpha in 0..1
+
+
+@dataclass(frozen=True, eq=False)
+class MeshData:
+    """A mesh file's content; `digest` identifies the file's bytes."""
+
+    digest: str
+    parts: tuple[Part, ...]
+
+    def triangles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return all parts as one: vertices (n, 3) [m] and faces (m, 3)."""
+        starts = np.cumsum([0, *(len(part.vertices) for part in self.parts)])
+        return (
+            np.concatenate([part.vertices for part in self.parts]),
+            np.concatenate([part.faces + start
+                            for part, start in zip(self.parts, starts, strict=False)]),
+        )
+
+
+def check_mesh(path: str) -> None:
+    """Make sure that a mesh file can be simulated and shown.
+
+    A file that was good stays good until it changes, so this costs nothing the second time.
+
+    Raises:
+        ModelError: the sentence names the file and what is wrong with it.
+    """
+    _check(path, *_state(path))
+
+
+def read_mesh(path: str) -> MeshData:
+    """Return the triangles of a mesh file.
+
+    Raises:
+        ModelError: the file is missing, of another format, too big, broken or empty.
+    """
+    return _read(path, *_state(path))
+
+
+def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | None, Colour], ...]:
+    """Return what a mesh file looks like, by colour: (vertices, faces, normals or None, rgba).
+
+    Vertices (n, 3) in metres, faces (m, 3), normals (n, 3). Colours are the diffuse ones of
+    Collada and of an .obj's .mtl; what has none is grey.
+
+    Raises:
+        ModelError: as `read_mesh`.
+    """
+    return tuple((p.vertices, p.faces, p.normals, p.rgba) for p in read_mesh(path).parts)
+
+
+def _state(path: str) -> tuple[int, int]:
+    """Return what changes when the file changes: time of change [ns] and size."""
+    try:
+        state = os.stat(path)
+    except (OSError, ValueError) as error:
+        raise ModelError(
+            f"mesh file '{path}' does not exist or cannot be reached; check name and package"
+        ) from error
+    return state.st_mtime_ns, state.st_size
+
+
+@lru_cache(maxsize=4096)
+def _check(path: str, mtime_ns: int, size: int) -> None:
+    _read(path, mtime_ns, size)
+
+
+@lru_cache(maxsize=16)
+def _read(path: str, mtime_ns: int, size: int) -> MeshData:
+    extension = os.path.splitext(path)[1].lower()
+    if extension not in FORMATS:
+        raise _fault(path, f"format '{extension}' is not read; convert it to {', '.join(FORMATS)}")
+    if not os.path.isfile(path):
+        raise _fault(path, 'is no file')
+    if size > MAX_BYTES:
+        raise _fault(path, f'has {size} bytes; at most {MAX_BYTES} are accepted: simplify it')
+    try:
+        with open(path, 'rb') as file:
+            content = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise _fault(path, f'cannot be read: {error.strerror}') from error
+    parts = _check_parts(path, _parse(path, extension, content))
+    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(parts))
+
+
+def _fault(path: str, sentence: str) -> ModelError:
+    return ModelError(f"mesh file '{path}' {sentence}")
+
+
+def _parse(path: str, extension: str, content: bytes) -> list[Part]:
+    # A broken file may raise anything, memory and interrupts apart: the parsers are not ours.
+    try:
+        with _SILENCE, warnings.catch_warnings(), np.errstate(all='ignore'):
+            warnings.simplefilter('ignore')
+            return _PARSERS[extension](content, path)
+    except ModelError:
+        raise
+    except Exception as error:
+        reason = ' '.join(str(error).split())[:200] or type(error).__name__
+        raise _fault(path, f'is broken or no {extension} file: {reason}') from error
+
+
+def _parse_collada(content: bytes, path: str) -> list[Part]:
+    _quiet_trimesh()
+    from trimesh.exchange.dae import load_collada
+
+    if not content.removeprefix(b'\xef\xbb\xbf').lstrip().startswith(b'<'):
+        raise _fault(path, 'is broken or no .dae file: it does not begin as XML')
+    _refuse_unknown_positions(content, path)
+    scene = load_collada(io.BytesIO(content))
+    parts = []
+    for node in scene['graph']:
+        geometry = scene['geometry'][node['geometry']]
+        unit = _metres(geometry['metadata'].get('units', 'meters'))
+        matrix = np.array(node['matrix'], dtype=float)
+        parts.append(_part(geometry, matrix, unit))
+    return parts
+
+
+def _refuse_unknown_positions(content: bytes, path: str) -> None:
+    """Refuse a NaN among a Collada file's vertices, since pycollada takes it for zero."""
+    if not re.search(rb'[\s>]-?nan\b', content, re.IGNORECASE):
+        return
+    root = etree.fromstring(content, etree.XMLParser(resolve_entities=False, no_network=True))
+    positions = {
+        use.get('source', '').removeprefix('#') for use in root.iterfind('.//{*}vertices/{*}input')
+        if use.get('semantic') == 'POSITION'
+    }
+    for source in root.iterfind('.//{*}source'):
+        numbers = source.findtext('{*}float_array', '')
+        if source.get('id') in positions and 'nan' in numbers.lower():
+            raise _fault(path, 'is broken: a coordinate is no finite number')
+
+
+def _metres(units: str) -> float:
+    """Return the length of a Collada unit [m], as trimesh words it: '0.01 * meters'."""
+    return float(units.split('*', maxsplit=1)[0]) if '*' in units else 1.0
+
+
+def _parse_obj(content: bytes, path: str) -> list[Part]:
+    _quiet_trimesh()
+    from trimesh.exchange.obj import load_obj
+    from trimesh.resolvers import FilePathResolver
+
+    loaded = load_obj(io.BytesIO(content), resolver=FilePathResolver(path))
+    return [_part(geometry, np.eye(4), 1.0) for geometry in loaded.get('geometry', {}).values()]
+
+
+def _parse_stl(content: bytes, path: str) -> list[Part]:
+    _quiet_trimesh()
+    from trimesh.exchange.stl import load_stl
+
+    loaded = load_stl(io.BytesIO(content))
+    if 'geometry' in loaded:  # a text file of several solids
+        return [_part(solid, np.eye(4), 1.0) for solid in loaded['geometry'].values()]
+    return [_part({**loaded, 'vertex_normals': None}, np.eye(4), 1.0)]
+
+
+_PARSERS = {'.dae': _parse_collada, '.obj': _parse_obj, '.stl': _parse_stl}
+
+
+@lru_cache(maxsize=1)
+def _quiet_trimesh() -> None:
+    """Keep trimesh's remarks off the terminal; it is imported late, as it costs start-up time."""
+    log = logging.getLogger('trimesh')
+    log.addHandler(logging.NullHandler())
+    log.propagate = False
+
+
+def _part(geometry: dict, matrix: np.ndarray, unit: float) -> Part:
+    vertices = np.asarray(geometry['vertices'], dtype=float).reshape(-1, 3)
+    faces = np.asarray(geometry['faces'], dtype=np.int64).reshape(-1, 3)
+    normals = geometry.get('vertex_normals')
+    linear = matrix[:3, :3]
+    vertices = (vertices @ linear.T + matrix[:3, 3]) * unit
+    if np.linalg.det(linear) < 0.0:
+        faces = faces[:, ::-1]  # a mirror turns the triangles inside out
+    if normals is not None:
+        normals = _turn_normals(np.asarray(normals, dtype=float), linear, len(vertices))
+    return Part(vertices, faces, normals, _colour(geometry.get('visual')))
+
+
+def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.ndarray | None:
+    """Return unit normals after the transform, or None where they are not usable."""
+    if normals.shape != (count, 3) or abs(np.linalg.det(linear)) < 1e-300:
+        return None
+    normals = normals @ np.linalg.inv(linear)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    if not np.isfinite(length).all() or (length == 0.0).any():
+        return None
+    return normals / length
+
+
+def _colour(visual: object) -> Colour:
+    material = getattr(visual, 'material', None)
+    if material is None:
+        return GREY
+    rgba = np.asarray(material.main_color, dtype=float)[:4] / 255.0
+    if rgba.shape != (4,) or not np.isfinite(rgba).all():
+        return GREY
+    red, green, blue, alpha = (float(value) for value in np.clip(rgba, 0.0, 1.0))
+    return (red, green, blue, alpha if alpha > _INVISIBLE else 1.0)
+
+
+def _check_parts(path: str, parts: list[Part]) -> list[Part]:
+    parts = [part for part in parts if len(part.faces)]
+    count = sum(len(part.faces) for part in parts)
+    if count == 0:
+        raise _fault(path, 'holds no triangles; export the mesh again, triangulated')
+    if count > MAX_TRIANGLES:
+        raise _fault(
+            path, f'has {count} triangles; at most {MAX_TRIANGLES} are accepted: simplify it'
+        )
+    for part in parts:
+        if part.faces.min() < 0 or part.faces.max() >= len(part.vertices):
+            raise _fault(path, 'is broken: a triangle names a vertex that does not exist')
+        if not np.isfinite(part.vertices).all():
+            raise _fault(path, 'is broken: a coordinate is no finite number')
+    return parts
+
+
+def _by_colour(parts: list[Part]) -> tuple[Part, ...]:
+    """Return the parts with those of equal colour joined, in order of first appearance."""
+    groups: dict[Colour, list[Part]] = {}
+    for part in parts:
+        groups.setdefault(part.rgba, []).append(part)
+    joined = []
+    for rgba, group in groups.items():
+        vertices, faces = MeshData('', tuple(group)).triangles()
+        have_normals = all(part.normals is not None for part in group)
+        normals = np.concatenate([part.normals for part in group]) if have_normals else None
+        for array in (vertices, faces, normals):
+            if array is not None:
+                array.setflags(write=False)  # it is shared by all who read the file
+        joined.append(Part(vertices, faces, normals, rgba))
+    return tuple(joined)

@@ -1,0 +1,207 @@
+"""A model as plain values: what every parser produces and the engine simulates.
+
+A `ModelSpec` is complete (defaults filled in), lumped (fixed joints merged as Gazebo does),
+validated (finite numbers, one tree per root, known files) and in SI units. Nothing here knows
+URDF, SDF, PyBullet or ROS.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .pose import IDENTITY, Pose, Vector
+
+
+@dataclass(frozen=True)
+class Box:
+    """A cuboid centred on its origin; `size` is its full extent along x, y, z [m]."""
+
+    size: Vector
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A ball centred on its origin; radius [m]."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder about z, centred on its origin; radius and full length [m]."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """An endless plane through its origin; `normal` is a unit vector, `size` is for looks [m]."""
+
+    normal: Vector = (0.0, 0.0, 1.0)
+    size: tuple[float, float] = (100.0, 100.0)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A triangle mesh read from `path` (an absolute file path) and scaled along its axes.
+
+    `uri` is what the description said, for messages and markers.
+    """
+
+    path: str
+    scale: Vector = (1.0, 1.0, 1.0)
+    uri: str = ''
+
+
+Geometry = Box | Sphere | Cylinder | Plane | Mesh
+
+
+@dataclass(frozen=True)
+class Surface:
+    """How a collision touches others; defaults are those of SDF (contract 4.16)."""
+
+    mu: float = 1.0  # friction coefficient along the first direction
+    mu2: float = 1.0  # along the second direction
+    fdir1: Vector = (0.0, 0.0, 0.0)  # first friction direction; zeros: the engine's choice
+    kp: float = 1e12  # contact stiffness [N/m]
+    kd: float = 1.0  # contact damping [N s/m]
+    max_vel: float = 0.01  # largest speed that corrects a penetration [m/s]
+    min_depth: float = 0.0  # penetration that is left uncorrected [m]
+    max_contacts: int = 10
+    laser_retro: float = 0.0
+
+
+@dataclass(frozen=True)
+class Collision:
+    """A shape that touches, posed in its link's frame."""
+
+    name: str
+    geometry: Geometry
+    pose: Pose = IDENTITY
+    surface: Surface = Surface()
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a visual looks: colour as red, green, blue, alpha in 0..1, and Gazebo's script name."""
+
+    rgba: tuple[float, float, float, float] = (0.7, 0.7, 0.7, 1.0)
+    script: str = ''
+
+
+@dataclass(frozen=True)
+class Visual:
+    """A shape that is only seen, posed in its link's frame.
+
+    A mesh keeps its own colours while `material` is None.
+    """
+
+    name: str
+    geometry: Geometry
+    pose: Pose = IDENTITY
+    material: Material | None = None
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass [kg], centre of mass in the link's frame, and the inertia tensor about it [kg m^2].
+
+    The tensor's axes are those of `pose`.
+    """
+
+    mass: float
+    pose: Pose = IDENTITY
+    ixx: float = 0.0
+    iyy: float = 0.0
+    izz: float = 0.0
+    ixy: float = 0.0
+    ixz: float = 0.0
+    iyz: float = 0.0
+
+
+@dataclass(frozen=True)
+class Element:
+    """One XML element of a plugin or sensor block, in plain values, with where it was read."""
+
+    tag: str
+    text: str = ''
+    attributes: Mapping[str, str] = field(default_factory=dict)
+    children: tuple['Element', ...] = ()
+    line: int = 0
+
+    def child(self, tag: str) -> 'Element | None':
+        """Return the first child of that tag, or None."""
+        return next((child for child in self.children if child.tag == tag), None)
+
+
+@dataclass(frozen=True)
+class PluginSpec:
+    """A plugin as the description asks for it: `filename` picks the code, `element` its tags."""
+
+    name: str
+    filename: str
+    element: Element
+
+
+@dataclass(frozen=True)
+class LinkSpec:
+    """A rigid body; `pose` is where it stands in the model frame with all joints at zero."""
+
+    name: str
+    pose: Pose = IDENTITY
+    inertial: Inertial | None = None
+    collisions: tuple[Collision, ...] = ()
+    visuals: tuple[Visual, ...] = ()
+    gravity: bool = True
+    self_collide: bool = False
+    kinematic: bool = False  # moved by its user only; forces and contacts do not move it
+    linear_damping: float = 0.0
+    angular_damping: float = 0.0
+    sensors: tuple[Element, ...] = ()
+
+
+REVOLUTE = 'revolute'  # includes continuous: a revolute joint without limits
+PRISMATIC = 'prismatic'
+FIXED = 'fixed'
+
+
+@dataclass(frozen=True)
+class JointSpec:
+    """A connection; its frame stands in the child link at `pose`, `axis` is a unit vector in it.
+
+    Limits are None where there is none: position [rad or m], effort [N m or N], velocity
+    [rad/s or m/s]. Damping is [N m s/rad or N s/m], friction [N m or N].
+    """
+
+    name: str
+    type: str
+    parent: str  # a link's name, or 'world'
+    child: str
+    pose: Pose = IDENTITY
+    axis: Vector = (0.0, 0.0, 1.0)
+    lower: float | None = None
+    upper: float | None = None
+    effort: float | None = None
+    velocity: float | None = None
+    damping: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True)
+class ModelSpec:
+    """A whole model, ready to be simulated.
+
+    Links stand in the order of the description after lumping; the first one is canonical. Joints
+    connect them into one or more trees.
+    """
+
+    name: str
+    links: tuple[LinkSpec, ...]
+    joints: tuple[JointSpec, ...] = ()
+    plugins: tuple[PluginSpec, ...] = ()
+    static: bool = False
+    lumped: Mapping[str, str] = field(default_factory=dict)  # link that disappeared -> its heir
+
+    def link(self, name: str) -> LinkSpec | None:
+        """Return the link of that name, or None."""
+        return next((link for link in self.links if link.name == name), None)

@@ -1,0 +1,137 @@
+"""From the text of a URDF to a `ModelSpec`, by the rules that Gazebo applies (contract 4.16)."""
+
+import logging
+from dataclasses import replace
+
+from lxml import etree
+
+from .errors import ModelError
+from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
+from .inertia import turnable
+from .kinematic_tree import WORLD, Tree, build_tree
+from .lumping import Lumped, lump, require_links
+from .markup import parse
+from .markup_values import fault, origin, required_name, tag_of
+from .meshes import check_mesh
+from .pose import IDENTITY, Pose
+from .repointing import repoint_plugin
+from .spec import LinkSpec, ModelSpec
+from .urdf_parts import LinkReader, read_joint
+from .uris import FindPackage, substitute_in_tree
+
+logger = logging.getLogger(__name__)
+
+
+def load_urdf(
+    text: str | bytes,
+    name: str,
+    *,
+    source: str = 'robot_description',
+    robot_namespace: str = '',
+    find_package: FindPackage | None = None,
+) -> tuple[ModelSpec, Pose]:
+    """Read, check and lump a URDF.
+
+    Args:
+        name: of the model; the robot's own name does not matter, as in Gazebo.
+        source: where the text comes from, a file or parameter; it begins every message.
+        robot_namespace: given to plugins that have no <robotNamespace>; '' for none.
+        find_package: package name -> its directory, or None if unknown, for package://.
+
+    Returns:
+        The model, and the <origin> directly below <robot>, which the caller composes with the
+        pose it spawns at: initial o origin.
+
+    Raises:
+        UnknownPackage: a package:// address names a package that is not to be found.
+        ModelError: the description cannot be simulated; the sentence says where and why.
+
+    What can be simulated, but not quite as written, is a warning, one line for each kind.
+    """
+    robot = parse(text, source)
+    if robot.tag != 'robot':
+        raise fault(robot, f'the first element is <{tag_of(robot)}>; a URDF begins with <robot>')
+    if find_package is not None:
+        substitute_in_tree(robot, find_package)
+    inject_namespace(robot, robot_namespace)
+    notes: list[str] = []
+    tree, tags = _read(robot, notes)
+    lumped = lump(tree)
+    require_links(tree, lumped)
+    spec = ModelSpec(
+        name,
+        _turnable_links(lumped.links, notes),
+        lumped.joints,
+        tuple(repoint_plugin(plugin, lumped.heirs) for plugin in tags.plugins),
+        tags.static,
+        {link: heir for link, (heir, _) in lumped.heirs.items()},
+    )
+    pose = _robot_origin(robot)
+    for note in [*notes, *_lumping_notes(lumped)]:
+        logger.warning("model '%s' (%s): %s", name, source, note.removeprefix(f'{source}, '))
+    return spec, pose
+
+
+def _read(robot: etree._Element, notes: list[str]) -> tuple[Tree, GazeboTags]:
+    link_elements, joint_elements = robot.findall('link'), robot.findall('joint')
+    tags = read_gazebo_tags(
+        robot,
+        [required_name(element) for element in link_elements],
+        [required_name(element) for element in joint_elements],
+    )
+    notes += tags.notes
+    joints = [read_joint(element, tags.kept_joints, notes) for element in joint_elements]
+    reader = LinkReader(robot, check_mesh)
+    links = [
+        apply_tags(link, tags.links.get(link.spec.name))
+        for link in (reader.read(element) for element in link_elements)
+    ]
+    notes += reader.notes
+    tree = build_tree(robot, links, joints)
+    world = tree.links[tree.root].spec if tree.root == WORLD else None
+    if world and (world.collisions or world.visuals or world.inertial):
+        notes.append("'world': a root of that name stands for the world itself; what the "
+                     'description puts into it is not simulated, as in Gazebo')
+    return tree, tags
+
+
+def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
+    """Return the links, those without resistance to turning with some; `notes` names them."""
+    turned = tuple(replace(link, inertial=turnable(link.inertial)) for link in links)
+    changed = [new.name for old, new in zip(links, turned, strict=True)
+               if new.inertial is not old.inertial]
+    if changed:
+        notes.append(
+            f'{_names(changed)}: an inertia of zero cannot be simulated; '
+            'that of a small ball of the same mass is used'
+        )
+    return turned
+
+
+def _lumping_notes(lumped: Lumped) -> list[str]:
+    notes = []
+    if lumped.vanished:
+        notes.append(
+            f'{_names(lumped.massless)}: no mass (no <inertial>, or zero), and so '
+            f'not simulated, as in Gazebo: {_names(lumped.vanished)}; give each an <inertial>'
+        )
+    if lumped.conflicts:
+        notes.append(
+            f'{_names(lumped.conflicts)}: gravity, selfCollide or damping set for a link behind '
+            'a fixed joint counts for the whole link it is merged into, as in Gazebo'
+        )
+    return notes
+
+
+def _robot_origin(robot: etree._Element) -> Pose:
+    """Return the pose directly below <robot>; one that is malformed counts as none, as upstream."""
+    try:
+        return origin(robot)
+    except ModelError as error:
+        logger.error('%s; the model stands where it is spawned', error)
+        return IDENTITY
+
+
+def _names(names: tuple[str, ...] | list[str], most: int = 12) -> str:
+    shown = ', '.join(f"'{name}'" for name in names[:most])
+    return shown + (f' and {len(names) - most} more' if len(names) > most else '')

@@ -1,0 +1,291 @@
+"""Read the parts of a URDF: shapes, looks, masses, links and joints, each number checked."""
+
+from collections.abc import Callable, Mapping
+
+from lxml import etree
+
+from .errors import ModelError
+from .gazebo_materials import gazebo_material
+from .inertia import is_positive
+from .kinematic_tree import FREE, TreeJoint, TreeLink
+from .markup_values import (
+    fault,
+    number,
+    numbers,
+    origin,
+    place,
+    positive,
+    required_name,
+    suggestion,
+)
+from .pose import Vector
+from .spec import (
+    FIXED,
+    PRISMATIC,
+    REVOLUTE,
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    Material,
+    Mesh,
+    Sphere,
+    Visual,
+)
+from .uris import file_path
+
+# URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
+_JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC,
+                'fixed': FIXED, 'floating': FREE, 'planar': FREE}
+
+CheckMesh = Callable[[str], object]  # raises ModelError for a file that cannot be used
+
+
+class LinkReader:
+    """Reads <link> elements; knows the robot's named materials and which meshes are good.
+
+    Colour rule: Gazebo ignores URDF colours and shows grey. Here a <gazebo> material comes first
+    (`gazebo_tags`), else the URDF's own colour counts, so that a robot looks as in RViz; without
+    either a primitive is grey and a mesh keeps its own colours.
+    """
+
+    def __init__(self, robot: etree._Element, check_mesh: CheckMesh) -> None:
+        self._check_mesh = check_mesh
+        self._materials: dict[str, Material] = {}
+        self.notes: list[str] = []  # sentences to warn with
+        for element in robot.iterfind('material'):
+            colour = self._colour(element)
+            if colour is not None:
+                self._materials[required_name(element)] = colour
+        # urdfdom also lets a colour given inside one link count for others.
+        for element in robot.iterfind('link/visual/material'):
+            colour = self._colour(element)
+            if colour is not None and element.get('name'):
+                self._materials.setdefault(element.get('name'), colour)
+
+    def read(self, element: etree._Element) -> TreeLink:
+        """Return the link of a <link> element.
+
+        Raises:
+            ModelError: a name, number, geometry or mesh file is missing or wrong.
+        """
+        spec = LinkSpec(
+            required_name(element),
+            inertial=_inertial(element),
+            collisions=tuple(
+                Collision(child.get('name', ''), self._geometry(child), origin(child))
+                for child in element.iterfind('collision')
+            ),
+            visuals=tuple(self._visual(child) for child in element.iterfind('visual')),
+        )
+        return TreeLink(spec, element)
+
+    def _visual(self, element: etree._Element) -> Visual:
+        geometry = self._geometry(element)
+        material = self._material(element.find('material'))
+        if material is None and not isinstance(geometry, Mesh):
+            material = Material()
+        return Visual(element.get('name', ''), geometry, origin(element), material)
+
+    def _material(self, element: etree._Element | None) -> Material | None:
+        if element is None:
+            return None
+        name = element.get('name', '')
+        found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
+        if found is None and element.find('texture') is None:
+            self.notes.append(
+                f"{place(element)}: material '{name}' has no <color> anywhere, it is shown grey"
+                f'{suggestion(name, self._materials)}'
+            )
+        return found
+
+    def _colour(self, element: etree._Element) -> Material | None:
+        colour = element.find('color')
+        if colour is None:
+            return None
+        rgba = numbers(colour, 'rgba', count=4)
+        return Material(tuple(min(1.0, max(0.0, value)) for value in rgba))
+
+    def _geometry(self, element: etree._Element) -> Geometry:
+        geometry = element.find('geometry')
+        shape = geometry[0] if geometry is not None and len(geometry) else None
+        if shape is None:
+            raise fault(
+                element,
+                f'a <{element.tag}> without shape; put <geometry> with a box, cylinder, sphere '
+                'or mesh into it',
+            )
+        match shape.tag:
+            case 'box':
+                return Box(positive(shape, 'size', 3))
+            case 'sphere':
+                return Sphere(positive(shape, 'radius')[0])
+            case 'cylinder':
+                return Cylinder(positive(shape, 'radius')[0], positive(shape, 'length')[0])
+            case 'mesh':
+                return self._mesh(shape)
+        raise fault(
+            shape, f"geometry '{shape.tag}' is unknown; there are box, cylinder, sphere and mesh"
+        )
+
+    def _mesh(self, element: etree._Element) -> Mesh:
+        filename = element.get('filename', '').strip()
+        if not filename:
+            raise fault(element, 'a <mesh> without filename; add filename="package://…"')
+        scale = numbers(element, 'scale', (1.0, 1.0, 1.0))
+        if 0.0 in scale:
+            raise fault(
+                element, f'scale="{element.get("scale")}" of <mesh> is wrong; no factor may be zero'
+            )
+        path = file_path(element, filename)
+        try:
+            self._check_mesh(path)
+        except ModelError as error:
+            raise fault(element, str(error)) from error
+        return Mesh(path, scale, element.get('uri', filename))
+
+
+def _inertial(link: etree._Element) -> Inertial | None:
+    """Return the mass properties, or None where the link has none or a mass of zero."""
+    element = link.find('inertial')
+    if element is None:
+        return None
+    mass_element, inertia = element.find('mass'), element.find('inertia')
+    if mass_element is None:
+        raise fault(element, 'an <inertial> without <mass value="…"/> [kg]')
+    mass = number(mass_element, 'value')
+    if mass < 0.0:
+        raise fault(mass_element, f'mass {mass:g} kg is negative; a mass is greater than zero')
+    if inertia is None:
+        raise fault(element, 'an <inertial> without <inertia ixx iyy izz ixy ixz iyz/> [kg m^2]')
+    moments = {key: number(inertia, key) for key in ('ixx', 'iyy', 'izz')}
+    products = {key: number(inertia, key, 0.0) for key in ('ixy', 'ixz', 'iyz')}
+    inertial = Inertial(mass, origin(element), **moments, **products)
+    if any((*moments.values(), *products.values())):
+        for key, value in moments.items():
+            if value <= 0.0:
+                raise fault(
+                    inertia,
+                    f'{key}="{inertia.get(key)}" of <inertia> is wrong; '
+                    'a moment of inertia is greater than zero',
+                )
+        if not is_positive(inertial):
+            raise fault(
+                inertia,
+                'the products ixy, ixz, iyz are too great beside ixx, iyy, izz: about some axis '
+                'the moment of inertia is negative',
+            )
+    return inertial if mass > 0.0 else None
+
+
+def read_joint(
+    element: etree._Element, kept: Mapping[str, str], notes: list[str]
+) -> TreeJoint:
+    """Return the joint of a <joint> element.
+
+    Args:
+        kept: fixed joints that are not lumped, and what they become (`GazeboTags.kept_joints`).
+        notes: takes sentences to warn with.
+    Raises:
+        ModelError: a name, link, type or number is missing or wrong.
+    """
+    name = required_name(element)
+    written = element.get('type', '')
+    kind = _JOINT_TYPES.get(written)
+    if kind is None:
+        raise fault(
+            element,
+            f"type '{written}' is unknown; there are {', '.join(_JOINT_TYPES)}"
+            if written else f'it has no type; there are {", ".join(_JOINT_TYPES)}',
+        )
+    parent, child = _end(element, 'parent'), _end(element, 'child')
+    if kind == FREE:
+        notes.append(
+            f'{place(element)}: a {written} joint ties nothing here, '
+            f"'{child}' and what hangs on it move freely"
+        )
+    if kind in (FIXED, FREE):
+        lump = kind == FIXED and name not in kept
+        limits = {'lower': 0.0, 'upper': 0.0} if kept.get(name) == REVOLUTE else {}
+        spec = JointSpec(name, kept.get(name, kind) if kind == FIXED else kind,
+                         parent, child, **limits)
+        return TreeJoint(spec, element, origin(element), lump)
+    dynamics = element.find('dynamics')
+    return TreeJoint(
+        JointSpec(
+            name, kind, parent, child, axis=_axis(element),
+            damping=_not_negative(dynamics, 'damping'),
+            friction=_not_negative(dynamics, 'friction'),
+            **_limits(element, written, notes),
+        ),
+        element, origin(element),
+    )
+
+
+def _end(element: etree._Element, role: str) -> str:
+    end = element.find(role)
+    link = '' if end is None else end.get('link', '').strip()
+    if not link:
+        raise fault(element, f'it has no {role} link; add <{role} link="…"/>')
+    return link
+
+
+def _axis(element: etree._Element) -> Vector:
+    """Return the unit axis in the joint's frame; x where none is given, as in URDF."""
+    axis = element.find('axis')
+    if axis is None:
+        return (1.0, 0.0, 0.0)
+    x, y, z = numbers(axis, 'xyz', (1.0, 0.0, 0.0))
+    largest = max(abs(x), abs(y), abs(z))
+    if largest == 0.0:
+        raise fault(
+            axis, f'xyz="{axis.get("xyz")}" of <axis> has no direction; one of the three '
+            'must not be zero, e.g. "0 0 1"',
+        )
+    # Scaled first, so that neither tiny nor huge numbers are squared.
+    x, y, z = x / largest, y / largest, z / largest
+    length = (x * x + y * y + z * z) ** 0.5
+    return (x / length, y / length, z / length)
+
+
+def _not_negative(element: etree._Element | None, attribute: str) -> float:
+    if element is None:
+        return 0.0
+    value = number(element, attribute, 0.0)
+    if value < 0.0:
+        raise fault(
+            element, f'{attribute}="{element.get(attribute)}" of <{element.tag}> is negative; '
+            'it takes energy out of a motion and is zero or more',
+        )
+    return value
+
+
+def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str, float]:
+    """Return the limits as fields of JointSpec; a negative effort or velocity is no limit."""
+    limit = element.find('limit')
+    if limit is None:
+        if written != 'continuous':
+            raise fault(
+                element,
+                f'a {written} joint needs <limit lower upper effort velocity/>'
+                + ('; or make it continuous' if written == 'revolute' else ''),
+            )
+        return {}
+    limits: dict[str, float] = {}
+    for key in ('effort', 'velocity'):
+        value = number(limit, key)
+        if value >= 0.0:
+            limits[key] = value
+    lower, upper = number(limit, 'lower', 0.0), number(limit, 'upper', 0.0)
+    if written == 'continuous':
+        return limits
+    if lower > upper:
+        notes.append(
+            f'{place(limit)}: lower limit {lower:g} is above upper limit {upper:g}, '
+            'the two are switched'
+        )
+        lower, upper = upper, lower
+    return limits | {'lower': lower, 'upper': upper}

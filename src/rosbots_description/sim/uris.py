@@ -1,0 +1,102 @@
+"""Turn the addresses in a model description into files: package://, file:// and plain paths."""
+
+import os
+import re
+from collections.abc import Callable
+from urllib.parse import unquote
+
+from lxml import etree
+
+from .errors import ModelError
+from .markup_values import fault, place
+
+FindPackage = Callable[[str], str | None]  # package name -> its directory, None if unknown
+
+_PACKAGE = re.compile(r'package://([^/\s"\'<>]*)')
+
+
+class UnknownPackage(ModelError):  # noqa: N818 (short, as it is used as a kind of answer)
+    """A package:// address names a package that is not to be found; `package` is its name."""
+
+    def __init__(self, package: str, where: str = '') -> None:
+        super().__init__(
+            f"{where + ': ' if where else ''}package '{package}' of package://{package}/ is "
+            'unknown; build it into the workspace, or add its folder to ROS_PACKAGE_PATH where '
+            'the simulator is started'
+        )
+        self.package = package
+
+
+def substitute_packages(text: str, find_package: FindPackage) -> str:
+    """Return `text` with each package://NAME replaced by the directory of that package.
+
+    A bare absolute path results, with no file:// before it (contract 2.6, step 3).
+
+    Raises:
+        UnknownPackage: a package is not to be found.
+    """
+
+    def directory(match: re.Match[str]) -> str:
+        found = find_package(match[1])
+        if not found:
+            raise UnknownPackage(match[1])
+        return str(found).rstrip('/')
+
+    return _PACKAGE.sub(directory, text)
+
+
+def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
+    """Replace package:// in all attributes and texts below `root`, in place.
+
+    A <mesh> keeps what the description said in an extra attribute `uri`.
+
+    Raises:
+        UnknownPackage: a package is not to be found; the message names the line.
+    """
+    known: dict[str, str | None] = {}
+
+    def find_once(package: str) -> str | None:
+        if package not in known:
+            known[package] = find_package(package)
+        return known[package]
+
+    for element in root.iter(etree.Element):
+        try:
+            for key, value in element.attrib.items():
+                if 'package://' in value:
+                    element.set(key, substitute_packages(value, find_once))
+                    if element.tag == 'mesh' and key == 'filename':
+                        element.set('uri', value)
+            if element.text and 'package://' in element.text:
+                element.text = substitute_packages(element.text, find_once)
+        except UnknownPackage as error:
+            raise UnknownPackage(error.package, place(element)) from None
+
+
+def file_path(element: etree._Element, uri: str) -> str:
+    """Return the absolute path of a file address: file:///path or /path.
+
+    Args:
+        element: what names the file, for the message.
+    Raises:
+        ModelError: the address has another form.
+    """
+    if uri.startswith('file://'):
+        path = unquote(uri.removeprefix('file://'))
+    elif '://' in uri:
+        scheme = uri.split('://', 1)[0]
+        if scheme == 'package':
+            raise fault(element, f"'{uri}': packages cannot be looked up here; use file:///path")
+        raise fault(
+            element,
+            f"'{uri}': {scheme}:// addresses are not read here; "
+            'use package://PACKAGE/file or file:///path',
+        )
+    else:
+        path = uri
+    if not os.path.isabs(path):
+        raise fault(
+            element,
+            f"'{uri}' is no absolute address; use package://PACKAGE/file or file:///path",
+        )
+    return os.path.normpath(path)

@@ -1,0 +1,205 @@
+"""What the <gazebo> blocks of a URDF say reaches links, joints and plugins."""
+
+import pytest
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.gazebo_tags import ENDLESS_FRICTION
+from rosbots_description.sim.spec import Material, Surface
+from rosbots_description.sim.urdf import load_urdf
+
+GREY = (0.7, 0.7, 0.7, 1.0)
+BALL = '<geometry><sphere radius="1"/></geometry>'
+INERTIAL = ('<inertial><mass value="1"/>'
+            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
+FULL = f'{INERTIAL}<collision>{BALL}</collision><visual>{BALL}</visual>'
+# b stands 1 m before a, a quarter turn to the left, and c moves on b.
+ROBOT = (
+    f'<link name="a">{FULL}</link><link name="b">{FULL}</link><link name="c">{FULL}</link>'
+    '<joint name="ab" type="fixed"><parent link="a"/><child link="b"/>'
+    '<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/></joint>'
+    '<joint name="bc" type="continuous"><parent link="b"/><child link="c"/></joint>'
+)
+
+
+def load(blocks, **options):
+    return load_urdf(f'<robot name="r">{ROBOT}\n{blocks}</robot>', 'bot', source='s', **options)[0]
+
+
+def plugin(inside):
+    return f'<gazebo><plugin name="p" filename="libp.so">{inside}</plugin></gazebo>'
+
+
+def texts(element):
+    return {child.tag: child.text for child in element.children}
+
+
+def words(text):
+    return [float(word) for word in text.split()]
+
+
+def test_without_blocks_everything_has_sdfs_defaults():
+    spec = load('')
+    assert spec.static is False
+    assert spec.plugins == ()
+    link = spec.link('c')
+    assert link.collisions[0].surface == Surface()
+    assert (link.gravity, link.self_collide, link.linear_damping) == (True, False, 0.0)
+
+
+@pytest.mark.parametrize('form', ['<{0}>{1}</{0}>', '<{0} value="{1}"/>', '<{0}> {1} </{0}>'])
+def test_a_surface_is_read_from_text_or_attribute(form):
+    values = {'mu1': 0.5, 'mu2': 0.6, 'kp': 1e6, 'kd': 100.0, 'maxVel': 1.0, 'minDepth': 0.001,
+              'maxContacts': 5, 'laserRetro': 2.0}
+    tags = ''.join(form.format(tag, value) for tag, value in values.items())
+    tags += form.format('fdir1', '1 0 0')
+    surface = load(f'<gazebo reference="c">{tags}</gazebo>').link('c').collisions[0].surface
+    assert surface == Surface(0.5, 0.6, (1.0, 0.0, 0.0), 1e6, 100.0, 1.0, 0.001, 5, 2.0)
+
+
+def test_a_surface_in_sdfs_own_structure_is_read_too():
+    block = ('<gazebo reference="c"><collision><surface><friction><ode><mu>0.1</mu><mu2>0.2</mu2>'
+             '</ode></friction><contact><ode><kp>5</kp></ode></contact></surface>'
+             '<max_contacts>3</max_contacts></collision></gazebo>')
+    surface = load(block).link('c').collisions[0].surface
+    assert (surface.mu, surface.mu2, surface.kp, surface.max_contacts) == (0.1, 0.2, 5.0, 3)
+
+
+def test_a_lumped_links_surface_and_looks_reach_its_own_shapes_only():
+    block = '<gazebo reference="b"><mu1>0.2</mu1><material>Gazebo/Red</material></gazebo>'
+    base = load(block).link('a')
+    assert [shape.surface.mu for shape in base.collisions] == [1.0, 0.2]
+    assert [shape.material.rgba for shape in base.visuals] == [GREY, (1.0, 0.0, 0.0, 1.0)]
+
+
+def test_a_negative_friction_means_endless():
+    spec = load('<gazebo reference="c"><mu1>-1</mu1></gazebo>')
+    assert spec.link('c').collisions[0].surface.mu == ENDLESS_FRICTION
+
+
+@pytest.mark.parametrize(('text', 'gravity'), [
+    ('true', False), ('1', False), ('false', True), ('No', True), ('0', True), ('what', False),
+])
+def test_turning_gravity_off_reads_words_gazebos_way(text, gravity):
+    block = f'<gazebo reference="c"><turnGravityOff>{text}</turnGravityOff></gazebo>'
+    assert load(block).link('c').gravity is gravity
+
+
+def test_self_collision_and_damping_are_set():
+    link = load('<gazebo reference="c"><selfCollide>Yes</selfCollide>'
+                '<dampingFactor>0.3</dampingFactor></gazebo>').link('c')
+    assert (link.self_collide, link.linear_damping, link.angular_damping) == (True, 0.3, 0.3)
+
+
+def test_a_flag_of_a_lumped_link_counts_for_its_heir_with_a_warning(caplog):
+    spec = load('<gazebo reference="b"><turnGravityOff>true</turnGravityOff></gazebo>')
+    assert spec.link('a').gravity is False
+    assert spec.link('c').gravity is True
+    assert "'b': gravity, selfCollide or damping set for a link behind a fixed joint" in caplog.text
+
+
+def test_an_unknown_material_is_grey_with_a_warning(caplog):
+    spec = load('<gazebo reference="c"><material>Gazebo/Puce</material></gazebo>')
+    assert spec.link('c').visuals[0].material == Material(script='Gazebo/Puce')
+    assert "<gazebo reference='c'>: material 'Gazebo/Puce' is none of Gazebo's" in caplog.text
+
+
+def test_a_visual_block_gives_a_colour():
+    spec = load('<gazebo reference="c"><visual><material><ambient>0 0 0 1</ambient>'
+                '<diffuse>0.1 0.2 0.3 1</diffuse></material></visual></gazebo>')
+    assert spec.link('c').visuals[0].material == Material((0.1, 0.2, 0.3, 1.0))
+
+
+def test_static_is_a_property_of_the_model():
+    assert load('<gazebo><static>true</static></gazebo>').static is True
+
+
+def test_a_plugin_is_kept_with_all_its_elements_and_lines():
+    (p,) = load(plugin('\n<a>1</a><b c="2"><d> x y </d></b>')).plugins
+    assert (p.name, p.filename) == ('p', 'libp.so')
+    assert texts(p.element) == {'a': '1', 'b': ''}
+    assert p.element.child('b').attributes == {'c': '2'}
+    assert p.element.child('b').child('d').text == 'x y'
+    assert (p.element.line, p.element.child('a').line) == (2, 3)
+
+
+def test_a_plugin_without_filename_is_ignored_with_a_warning(caplog):
+    assert load('<gazebo><plugin name="p"/></gazebo>').plugins == ()
+    assert "plugin 'p': a <plugin> without filename is ignored" in caplog.text
+
+
+@pytest.mark.parametrize(('inside', 'expected'), [
+    ('', '/bot'), ('<robotNamespace>own</robotNamespace>', 'own'), ('<robotNamespace/>', ''),
+])
+def test_the_namespace_goes_to_plugins_that_have_none(inside, expected):
+    (p,) = load(plugin(inside), robot_namespace='/bot').plugins
+    assert p.element.child('robotNamespace').text == expected
+
+
+def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere():
+    block = ('<gazebo reference="c"><sensor name="s"><plugin name="p" filename="l"/>'
+             '</sensor></gazebo>')
+    (sensor,) = load(block, robot_namespace='/bot').link('c').sensors
+    assert sensor.child('plugin').child('robotNamespace').text == '/bot'
+    (sensor,) = load(block).link('c').sensors
+    assert sensor.child('plugin').children == ()
+
+
+def test_sensors_lights_and_projectors_are_kept_in_their_link():
+    block = ('<gazebo reference="c"><sensor name="s"/><light name="l"/>'
+             '<projector name="p"/></gazebo>')
+    assert [part.tag for part in load(block).link('c').sensors] == ['sensor', 'light', 'projector']
+
+
+@pytest.mark.parametrize(('pose', 'expected'), [
+    ('', (1.0, 0.0, 0.0, 0.0, 0.0, 1.5707963268)),
+    ('<pose>1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
+    ('<pose relative_to="b">1 0 0 0 0 0</pose>', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+])
+def test_the_sensor_of_a_lumped_link_is_posed_in_the_heir(pose, expected):
+    block = f'<gazebo reference="b"><sensor name="s">{pose}<x/></sensor></gazebo>'
+    (sensor,) = load(block).link('a').sensors
+    assert words(sensor.child('pose').text) == pytest.approx(expected)
+    assert sensor.child('x') is not None
+
+
+def test_a_body_name_of_a_lumped_link_becomes_the_heirs_with_the_offset():
+    (p,) = load(plugin('<bodyName>b</bodyName><xyzOffset>0 1 0</xyzOffset>')).plugins
+    found = texts(p.element)
+    assert found['bodyName'] == 'a'
+    assert words(found['xyzOffset']) == pytest.approx([0, 0, 0], abs=1e-9)
+    assert words(found['rpyOffset']) == pytest.approx([0, 0, 1.5707963268])
+
+
+def test_both_names_of_one_lumped_link_count_its_offset_once():
+    (p,) = load(plugin('<bodyName>b</bodyName><frameName>b</frameName>')).plugins
+    found = texts(p.element)
+    assert (found['bodyName'], found['frameName']) == ('a', 'a')
+    assert words(found['xyzOffset']) == pytest.approx([1, 0, 0])
+
+
+def test_other_names_in_plugins_stay():
+    inside = '<robotBaseFrame>b</robotBaseFrame><linkName>b</linkName><bodyName>c</bodyName>'
+    (p,) = load(plugin(inside)).plugins
+    assert texts(p.element) == {'robotBaseFrame': 'b', 'linkName': 'b', 'bodyName': 'c'}
+
+
+def test_what_is_not_simulated_is_named_once(caplog):
+    load('<gazebo reference="c"><glow/><glow/></gazebo>\n<gazebo><wind/></gazebo>'
+         '<gazebo reference="bc"><springStiffness>1</springStiffness><stopCfm>0</stopCfm></gazebo>')
+    assert caplog.messages == [
+        "model 'bot' (s): not simulated in <gazebo> blocks: <glow> (line 2), <wind> (line 3), "
+        '<springStiffness> (line 3)'
+    ]
+
+
+def test_a_block_for_nothing_is_named_with_what_might_be_meant(caplog):
+    load('<gazebo reference="ac"/>')
+    assert "there is no link or joint of that name, the block is ignored" in caplog.text
+
+
+@pytest.mark.parametrize(('tag', 'text'), [
+    ('mu1', 'abc'), ('kp', 'nan'), ('kd', '-1'), ('fdir1', '1 0'), ('dampingFactor', ''),
+])
+def test_a_broken_number_in_a_block_is_an_error(tag, text):
+    with pytest.raises(ModelError, match=rf"^s, line 2: <gazebo reference='c'>: <{tag}> is "):
+        load(f'<gazebo reference="c"><{tag}>{text}</{tag}></gazebo>')

@@ -1,0 +1,100 @@
+"""Mass properties: principal axes, sums, and bodies that can turn."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rosbots_description.sim.inertia import (
+    STAND_IN_RADIUS,
+    is_positive,
+    merge,
+    principal_axes,
+    tensor,
+    turnable,
+)
+from rosbots_description.sim.pose import IDENTITY, Pose, from_rpy, rotate
+from rosbots_description.sim.spec import Inertial
+
+
+def in_link_axes(moments, axes):
+    turn = np.array([rotate(axes, axis) for axis in np.eye(3).tolist()]).T
+    return turn @ np.diag(moments) @ turn.T
+
+
+def test_a_diagonal_tensor_keeps_its_axes_and_order():
+    turned = from_rpy(0.1, 0.2, 0.3)
+    inertial = Inertial(1.0, Pose(orientation=turned), ixx=3.0, iyy=1.0, izz=2.0)
+    assert principal_axes(inertial) == ((3.0, 1.0, 2.0), turned)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_the_principal_axes_give_the_tensor_back(seed):
+    random = np.random.default_rng(seed)
+    root = random.normal(size=(3, 3))
+    full = root @ root.T
+    inertial = Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
+                        ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
+    moments, axes = principal_axes(inertial)
+    assert math.isclose(math.hypot(*axes), 1.0)
+    np.testing.assert_allclose(in_link_axes(moments, axes), full, atol=1e-12)
+
+
+def test_a_small_product_turns_the_axes_only_a_little():
+    _, axes = principal_axes(Inertial(1.0, ixx=3.0, iyy=1.0, izz=2.0, ixy=1e-6))
+    assert axes[3] > 0.999999
+
+
+def test_the_axes_are_given_in_the_links_frame():
+    turned = Pose(orientation=from_rpy(0.0, 0.0, math.pi / 2))
+    inertial = Inertial(1.0, turned, ixx=2.0, iyy=2.0, izz=5.0, ixz=1.0)
+    moments, axes = principal_axes(inertial)
+    # A quarter turn about z carries the product xz over to yz.
+    expected = [[2.0, 0.0, 0.0], [0.0, 2.0, 1.0], [0.0, 1.0, 5.0]]
+    np.testing.assert_allclose(in_link_axes(moments, axes), expected, atol=1e-12)
+
+
+def test_two_masses_turn_about_their_common_centre():
+    ball = Inertial(2.0, ixx=0.1, iyy=0.1, izz=0.1)
+    both = merge([(IDENTITY, ball), (Pose((0.0, 0.0, 3.0)), ball)])
+    assert both.mass == 4.0
+    assert both.pose == Pose((0.0, 0.0, 1.5))
+    # Steiner: 2 * (0.1 + 2 kg * (1.5 m)^2) across, nothing added along.
+    np.testing.assert_allclose(tensor(both), np.diag([9.2, 9.2, 0.2]))
+
+
+def test_turned_parts_bring_their_tensor_in_turned():
+    turned = Pose(orientation=from_rpy(0.0, 0.0, math.pi / 2))
+    part = Inertial(1.0, turned, ixx=1.0, iyy=2.0, izz=3.0)
+    frame = Pose(orientation=from_rpy(math.pi / 2, 0.0, 0.0))
+    merged = merge([(frame, part)])
+    # The part's x ends along z, its y along -x, its z along -y.
+    np.testing.assert_allclose(tensor(merged), np.diag([2.0, 3.0, 1.0]), atol=1e-12)
+
+
+def test_a_single_part_in_place_is_left_alone():
+    part = Inertial(1.0, Pose((1.0, 2.0, 3.0), from_rpy(0.1, 0.0, 0.0)), ixx=1.0, iyy=2.0, izz=3.0)
+    assert merge([(IDENTITY, part)]) is part
+
+
+def test_a_body_without_inertia_gets_that_of_a_ball():
+    ball = 0.4 * 2.0 * STAND_IN_RADIUS**2
+    turned = turnable(Inertial(2.0))
+    assert (turned.ixx, turned.iyy, turned.izz) == (ball, ball, ball)
+
+
+def test_only_the_axis_without_inertia_gets_some():
+    stick = merge([(IDENTITY, Inertial(1.0)), (Pose((0.0, 0.0, 1.0)), Inertial(1.0))])
+    turned = turnable(stick)
+    assert (turned.ixx, turned.iyy) == (0.5, 0.5)
+    assert turned.izz == pytest.approx(0.4 * 2.0 * STAND_IN_RADIUS**2)
+
+
+def test_a_tensor_of_no_real_body_is_left_alone():
+    obstacle = Inertial(1.0, ixx=1.0, iyy=100.0, izz=1.0)
+    assert turnable(obstacle) is obstacle
+
+
+def test_a_negative_principal_moment_is_seen():
+    assert not is_positive(Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0, ixy=2.0))
+    assert is_positive(Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0, ixy=1.0))

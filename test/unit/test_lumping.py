@@ -1,0 +1,211 @@
+"""Fixed joints vanish as in sdformat: names, masses, poses, and what goes with them."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xacro
+
+from rosbots_description.sim.inertia import tensor
+from rosbots_description.sim.pose import Pose, compose, from_rpy
+from rosbots_description.sim.urdf import load_urdf
+
+ROOT = Path(__file__).resolve().parents[2]
+BALL = '<geometry><sphere radius="1"/></geometry>'
+
+
+def mass(kilograms):
+    return (f'<inertial><mass value="{kilograms}"/>'
+            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
+
+
+def link(name, kilograms=1.0, shapes=''):
+    return f'<link name="{name}">{mass(kilograms) if kilograms else ""}{shapes}</link>'
+
+
+def joint(name, parent, child, kind='fixed', inside=''):
+    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
+            f'<child link="{child}"/>{inside}</joint>')
+
+
+def load(body):
+    return load_urdf(f'<robot name="r">{body}</robot>', 'bot')[0]
+
+
+def names(items):
+    return [item.name for item in items]
+
+
+@pytest.fixture(scope='module')
+def article():
+    """The robot of the article, as spawned."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('ROS_PACKAGE_PATH', str(ROOT))
+        patch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+        text = xacro.process_file(str(ROOT / 'urdf/rosbots.xacro'), mappings={}).toxml()
+    find = {'rosbots_description': str(ROOT)}.get
+    return load_urdf(text, 'rosbots', robot_namespace='/', find_package=find)[0]
+
+
+def test_the_articles_robot_has_three_links_of_1_4_kg(article):
+    assert names(article.links) == ['base_footprint', 'wheel_left_link', 'wheel_right_link']
+    assert [link.inertial.mass for link in article.links] == pytest.approx([0.6, 0.4, 0.4])
+
+
+def test_the_articles_base_has_the_mass_properties_measured_in_gazebo(article):
+    base = article.link('base_footprint').inertial
+    np.testing.assert_allclose(base.pose.position, (-0.0667, 0.0167, 0.0933), atol=5e-5)
+    np.testing.assert_allclose((base.ixx, base.iyy, base.izz), (0.0175, 0.0300, 0.0452), atol=5e-5)
+
+
+def test_the_articles_wheels_hang_on_the_base(article):
+    left, right = article.joints
+    assert (left.name, left.parent, left.child) == (
+        'wheel_left_joint', 'base_footprint', 'wheel_left_link')
+    assert article.link('wheel_right_link').pose == compose(
+        Pose((0.0, 0.0, 0.05)), Pose((0.15, -0.5625, 0.3), from_rpy(-1.57, 0.0, 0.0)))
+    assert right.axis == (0.0, 0.0, 1.0)
+
+
+def test_the_articles_lumped_shapes_have_gazebos_names(article):
+    shapes = names(article.link('base_footprint').collisions)
+    assert shapes[:3] == [
+        'base_footprint_fixed_joint_lump__base_link_collision',
+        'base_footprint_fixed_joint_lump__batery_link_collision_1',
+        'base_footprint_fixed_joint_lump__caster_back_link_collision_2',
+    ]
+    assert len(shapes) == 14
+    assert names(article.link('wheel_left_link').collisions) == ['wheel_left_link_collision']
+
+
+def test_the_articles_lumped_links_have_one_heir(article):
+    assert len(article.lumped) == 14
+    assert set(article.lumped.values()) == {'base_footprint'}
+
+
+def test_shapes_are_named_and_numbered_as_in_gazebo():
+    spec = load(
+        link('base', shapes=f'<collision>{BALL}</collision>'
+                            f'<collision name="own">{BALL}</collision>')
+        + link('arm', shapes=f'<collision name="pad">{BALL}</collision><visual>{BALL}</visual>')
+        + link('tip', shapes=f'<collision>{BALL}</collision><visual>{BALL}</visual>')
+        + link('base_lid', shapes=f'<collision>{BALL}</collision>')
+        + joint('a', 'base', 'arm') + joint('b', 'arm', 'tip') + joint('c', 'base', 'base_lid')
+    )
+    assert names(spec.links[0].collisions) == [
+        'base_collision',
+        'base_fixed_joint_lump__own_collision_1',
+        'base_fixed_joint_lump__pad_collision_2',
+        'base_fixed_joint_lump__tip_collision_3',
+        'base_lid_collision_4',  # begins with the heir's name, so sdformat adds no prefix
+    ]
+    assert names(spec.links[0].visuals) == [
+        'base_fixed_joint_lump__arm_visual', 'base_fixed_joint_lump__tip_visual_1']
+
+
+def test_shapes_and_joints_move_into_the_heirs_frame():
+    quarter = '<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>'
+    spec = load(
+        link('base') + link('arm')
+        + link('hand', shapes=f'<collision><origin xyz="1 0 0"/>{BALL}</collision>')
+        + link('finger')
+        + joint('a', 'base', 'arm', inside=quarter) + joint('b', 'arm', 'hand', inside=quarter)
+        + joint('c', 'hand', 'finger', 'continuous', '<origin xyz="0 1 0"/>')
+    )
+    base, finger = spec.links
+    assert base.collisions[0].pose.position == pytest.approx((0.0, 1.0, 0.0))
+    assert finger.pose.position == pytest.approx((1.0, 0.0, 0.0))
+    assert spec.joints[0].parent == 'base'
+    assert spec.joints[0].pose == Pose()
+
+
+def test_masses_merge_by_the_parallel_axis_theorem_in_turned_frames():
+    inertial = ('<inertial><origin xyz="0 0 1"/><mass value="1"/>'
+                '<inertia ixx="1" iyy="2" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>')
+    spec = load(
+        '<link name="base"/>' + f'<link name="a">{inertial}</link><link name="b">{inertial}</link>'
+        + joint('ja', 'base', 'a')
+        + joint('jb', 'base', 'b', inside=f'<origin rpy="{math.pi / 2} 0 0" xyz="0 1 1"/>')
+    )
+    merged = spec.links[0].inertial
+    # b's centre: (0 1 1) + z turned to -y = (0 0 1); both centres coincide, b's y and z swap.
+    assert merged.mass == 2.0
+    np.testing.assert_allclose(merged.pose.position, (0.0, 0.0, 1.0), atol=1e-12)
+    np.testing.assert_allclose(tensor(merged), np.diag([2.0, 5.0, 5.0]), atol=1e-12)
+
+
+def kept(tag, joint_name='j'):
+    return f'<gazebo reference="{joint_name}"><{tag}>true</{tag}></gazebo>'
+
+
+def test_a_preserved_joint_stays_fixed():
+    spec = load(link('a') + link('b') + joint('j', 'a', 'b') + kept('preserveFixedJoint'))
+    assert names(spec.links) == ['a', 'b']
+    assert (spec.joints[0].type, spec.joints[0].parent) == ('fixed', 'a')
+
+
+def test_lumping_switched_off_makes_a_joint_that_cannot_turn():
+    spec = load(link('a') + link('b') + joint('j', 'a', 'b') + kept('disableFixedJointLumping'))
+    (j,) = spec.joints
+    assert (j.type, j.lower, j.upper) == ('revolute', 0.0, 0.0)
+
+
+@pytest.mark.parametrize('tags', [
+    ('preserveFixedJoint', 'disableFixedJointLumping'),
+    ('disableFixedJointLumping', 'preserveFixedJoint'),
+])
+def test_of_both_ways_to_keep_a_joint_preserving_wins(tags):
+    blocks = ''.join(kept(tag) for tag in tags)
+    (j,) = load(link('a') + link('b') + joint('j', 'a', 'b') + blocks).joints
+    assert j.type == 'fixed'
+
+
+def test_a_robot_below_world_is_bolted_and_lumped_further_up():
+    spec = load(
+        link('world', 0) + link('base') + link('arm')
+        + joint('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>') + joint('j', 'base', 'arm')
+    )
+    assert names(spec.links) == ['base']
+    assert spec.links[0].pose.position == (0.0, 0.0, 2.0)
+    (bolt,) = spec.joints
+    assert (bolt.type, bolt.parent, bolt.child) == ('fixed', 'world', 'base')
+
+
+def test_what_stands_in_the_world_link_itself_is_named_as_not_simulated(caplog):
+    load(link('world', 0, f'<collision>{BALL}</collision>') + link('a') + joint('j', 'world', 'a'))
+    assert "'world': a root of that name stands for the world itself" in caplog.text
+
+
+def test_a_movable_link_without_mass_vanishes_with_all_below_it(caplog):
+    spec = load(
+        link('base') + link('hub', 0) + link('tyre') + link('cap')
+        + joint('a', 'base', 'hub', 'continuous') + joint('b', 'hub', 'tyre', 'continuous')
+        + joint('c', 'tyre', 'cap')
+    )
+    assert names(spec.links) == ['base']
+    assert spec.joints == ()
+    assert len(caplog.messages) == 1
+    assert re.search(r"'hub': no mass .* not simulated, as in Gazebo: 'hub', 'tyre', 'cap'",
+                     caplog.text)
+
+
+def test_a_fixed_link_without_mass_lives_on_but_what_moves_below_it_does_not(caplog):
+    spec = load(
+        link('base') + link('mount', 0, f'<collision>{BALL}</collision>') + link('wheel')
+        + joint('a', 'base', 'mount') + joint('b', 'mount', 'wheel', 'continuous')
+    )
+    assert names(spec.links) == ['base']
+    assert names(spec.links[0].collisions) == ['base_fixed_joint_lump__mount_collision']
+    assert "'mount': no mass" in caplog.text
+    assert "as in Gazebo: 'wheel'" in caplog.text
+
+
+def test_a_root_without_mass_is_saved_by_a_fixed_child_that_has_some(caplog):
+    spec = load(
+        link('footprint', 0) + link('base') + link('wheel')
+        + joint('a', 'footprint', 'base') + joint('b', 'base', 'wheel', 'continuous')
+    )
+    assert names(spec.links) == ['footprint', 'wheel']
+    assert caplog.text == ''

@@ -1,0 +1,284 @@
+"""Mesh files: read as RViz reads them, refused when broken, made ready for the engine."""
+
+import logging
+import math
+import os
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rosbots_description.sim import mesh_reading
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.mesh_reading import GREY, read_mesh
+from rosbots_description.sim.meshes import HULL_DIRECTIONS, MeshStore, check_mesh, visual_parts
+
+TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
+ASCII_STL = ('solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n'
+             'endloop\nendfacet\nendsolid s\n')
+BINARY_STL = b' ' * 80 + struct.pack('<I12fH', 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="{unit}"/><up_axis>{up}</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert>
+<diffuse><color>0.2 0.4 0.6 1</color></diffuse></lambert></technique></profile_COMMON></effect>
+</library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="9">{points}</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="mat"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>{index}</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><matrix>{matrix}</matrix>
+<instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="mat" target="#m"/></technique_common></bind_material>
+</instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
+VERTICES = '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>'
+IDENTITY = '1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1'
+
+
+def collada(**changes):
+    values = {'unit': '1', 'up': 'Z_UP', 'points': '0 0 0 1 0 0 0 1 0', 'index': '0 1 2',
+              'matrix': IDENTITY}
+    return COLLADA.format(**(values | changes))
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write_file(name, content):
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return str(path)
+
+    return write_file
+
+
+def corners(path):
+    vertices, faces = read_mesh(path).triangles()
+    return vertices[faces[0]].tolist()
+
+
+@pytest.mark.parametrize(('name', 'content'), [
+    ('m.obj', TRIANGLE), ('M.OBJ', TRIANGLE), ('m.stl', ASCII_STL), ('M.STL', BINARY_STL),
+    ('m.dae', collada()), ('M.DAE', collada()), ('y.dae', collada(up='Y_UP')),
+    ('quad.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nf 1 2 3\nf 1 2 3 4\n'),
+    ('negative.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n'),
+])
+def test_every_format_gives_the_same_triangle(write, name, content):
+    assert corners(write(name, content)) == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+def test_unit_and_node_transform_of_a_collada_file_are_applied(write):
+    path = write('m.dae', collada(unit='0.01', matrix='2 0 0 10 0 1 0 20 0 0 1 30 0 0 0 1'))
+    np.testing.assert_allclose(corners(path), [[0.1, 0.2, 0.3], [0.12, 0.2, 0.3], [0.1, 0.21, 0.3]])
+
+
+def test_a_mirroring_node_keeps_the_outside_outside(write):
+    path = write('m.dae', collada(matrix='-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1'))
+    a, b, c = np.array(corners(path))
+    assert np.cross(b - a, c - a)[2] > 0.0
+
+
+def test_the_colour_of_a_collada_material_is_seen(write):
+    ((vertices, faces, _, rgba),) = visual_parts(write('m.dae', collada()))
+    assert vertices.shape == (3, 3)
+    assert faces.shape == (1, 3)
+    assert rgba == pytest.approx((0.2, 0.4, 0.6, 1.0), abs=0.005)
+
+
+def test_an_obj_has_a_part_for_each_material_and_grey_where_it_has_none(write):
+    write('m.mtl', 'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n')
+    path = write('m.obj', 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n'
+                          'usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 4\n')
+    assert {part[3] for part in visual_parts(path)} == {(1, 0, 0, 1), (0, 0, 1, 1)}
+    assert visual_parts(write('plain.obj', TRIANGLE))[0][3] == GREY
+
+
+def complaint(path):
+    with pytest.raises(ModelError) as caught:
+        check_mesh(path)
+    sentence = str(caught.value)
+    assert sentence.startswith(f"mesh file '{path}' ")
+    assert '\n' not in sentence
+    return sentence
+
+
+BROKEN = {
+    'a.dae': collada().replace('<p>0 1 2</p>', ''),
+    'b.dae': collada().replace(VERTICES, ''),
+    'c.dae': collada(index='0 1 1000000'),
+    'c2.dae': collada(index='0 1 3'),
+    'd.dae': collada(points='0 0 0 NaN 0 0 0 1 0'),
+    'd2.dae': collada(points='0 0 0 inf 0 0 0 1 0'),
+    'e.dae': collada(points=''),
+    'f.dae': collada().replace('<scene><instance_visual_scene url="#s"/></scene>', ''),
+    'g.dae': collada()[:700],
+    'h.dae': 'PK\x03\x04',
+    'i.dae': '',
+    'j.dae': '<html/>',
+    'k.dae': collada(points='0 0 x 1 0 0 0 1 0'),
+    'a.obj': 'f 1 2 3\n',
+    'b.obj': 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1000000000\n',
+    'c.obj': 'v 0 0 0\nv 1 0 0\nf 1 2\n',
+    'd.obj': 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n',
+    'e.obj': 'v 0 0 0\nv 1 0 0\nv 0 1 0\n',
+    'f.obj': b'\x00\xff\xfe\x01',
+    'g.obj': '',
+    'h.obj': 'v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3\n',
+    'a.stl': 'solid s\nendsolid s\n',
+    'b.stl': BINARY_STL[:100],
+    'c.stl': ASCII_STL.replace('vertex 1 0 0', 'vertex nan 0 0'),
+    'd.stl': '',
+    'e.stl': b' ' * 80 + struct.pack('<I', 0),
+    'f.stl': b' ' * 80 + struct.pack('<I', 4_000_000_000),
+}
+
+
+@pytest.mark.parametrize('name', BROKEN)
+def test_a_broken_file_is_named(write, name):
+    sentence = complaint(write(name, BROKEN[name]))
+    assert 'is broken' in sentence or 'holds no triangles' in sentence
+
+
+def test_a_normal_that_is_no_number_does_not_matter(write):
+    normals = ('<source id="n"><float_array id="na" count="3">NaN NaN NaN</float_array>'
+               '<technique_common><accessor source="#na" count="1" stride="3">'
+               '<param name="X" type="float"/><param name="Y" type="float"/>'
+               '<param name="Z" type="float"/></accessor></technique_common></source>')
+    check_mesh(write('m.dae', collada().replace(VERTICES, normals + VERTICES)))
+
+
+def test_a_missing_file_is_named(tmp_path):
+    assert 'does not exist' in complaint(str(tmp_path / 'no.dae'))
+
+
+def test_a_folder_is_no_mesh(tmp_path):
+    (tmp_path / 'm.dae').mkdir()
+    assert 'is no file' in complaint(str(tmp_path / 'm.dae'))
+
+
+def test_a_name_with_a_null_is_no_file():
+    assert 'does not exist' in complaint('/a\0.dae')
+
+
+def test_another_format_is_named_with_those_that_are_read(write):
+    sentence = complaint(write('m.glb', ''))
+    assert "format '.glb' is not read; convert it to .dae, .stl, .obj" in sentence
+
+
+def test_a_file_too_big_or_too_fine_is_refused(write, monkeypatch):
+    monkeypatch.setattr(mesh_reading, 'MAX_BYTES', 10)
+    assert 'at most 10 are accepted' in complaint(write('a.obj', TRIANGLE))
+    monkeypatch.undo()
+    monkeypatch.setattr(mesh_reading, 'MAX_TRIANGLES', 1)
+    assert 'has 2 triangles; at most 1' in complaint(write('b.obj', TRIANGLE + 'f 3 2 1\n'))
+
+
+def test_a_broken_file_that_is_mended_is_read_again(write):
+    path = write('m.obj', 'f 1 2 3\n')
+    complaint(path)
+    write('m.obj', TRIANGLE)
+    check_mesh(path)
+
+
+def test_nothing_is_printed_about_odd_files(write, capfd, caplog, recwarn):
+    logging.getLogger('trimesh').propagate = True  # as if nobody had read a mesh yet
+    mesh_reading._quiet_trimesh.cache_clear()
+    path = write('m.obj', 'mtllib gone.mtl\nusemtl red\n' + TRIANGLE)
+    check_mesh(path)
+    complaint(write('n.stl', ASCII_STL.replace('vertex 1 0 0', 'vertex 1 x 0')))
+    assert capfd.readouterr() == ('', '')
+    assert caplog.text == ''
+    assert len(recwarn) == 0
+
+
+def read_obj(path):
+    rows = [line.split() for line in Path(path).read_text(encoding='ascii').splitlines()]
+    points = np.array([[float(x) for x in row[1:]] for row in rows if row[0] == 'v'])
+    faces = np.array([[int(x) - 1 for x in row[1:]] for row in rows if row[0] == 'f'])
+    return points, faces
+
+
+def sphere(count):
+    """Return an .obj whose vertices lie on a unit sphere."""
+    angles = np.random.default_rng(1).normal(size=(count, 3))
+    points = angles / np.linalg.norm(angles, axis=1, keepdims=True)
+    lines = [f'v {x} {y} {z}' for x, y, z in points]
+    return '\n'.join(lines + [f'f {i} {i + 1} {i + 2}' for i in range(1, count - 1)])
+
+
+def test_the_hull_of_few_points_is_exact_and_scaled(write, tmp_path):
+    store = MeshStore(tmp_path / 'cache')
+    points, faces = read_obj(store.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
+    assert sorted(points.tolist()) == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
+    assert set(faces.ravel()) == {0, 1, 2}
+
+
+def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, tmp_path):
+    path = write('ball.obj', sphere(6000))
+    points, faces = read_obj(MeshStore(tmp_path / 'cache').collision_hull(path))
+    assert len(points) <= HULL_DIRECTIONS + 6
+    assert set(faces.ravel()) == set(range(len(points)))
+    full, _ = read_mesh(path).triangles()
+    np.testing.assert_allclose(points.max(axis=0), full.max(axis=0), rtol=1e-8)
+    directions = np.random.default_rng(2).normal(size=(500, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    lost = (full @ directions.T).max(axis=0) - (points @ directions.T).max(axis=0)
+    assert lost.max() < 0.01
+
+
+def test_the_hull_leaves_out_points_no_triangle_uses(write, tmp_path):
+    path = write('m.obj', 'v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n')
+    points, _ = read_obj(MeshStore(tmp_path / 'cache').collision_hull(path))
+    assert points.max() == 1.0
+
+
+def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, tmp_path):
+    path = write('m.obj', TRIANGLE)
+    store = MeshStore(tmp_path / 'cache')
+    points, faces = read_obj(store.collision_surface(path, (-1.0, 1.0, 1.0)))
+    a, b, c = points[faces[0]]
+    assert sorted(points.tolist()) == [[-1, 0, 0], [0, 0, 0], [0, 1, 0]]
+    assert np.cross(b - a, c - a)[2] == 1.0
+
+
+def test_a_file_is_written_once_for_all_runs_and_places(write, tmp_path):
+    first = MeshStore(tmp_path / 'cache').collision_hull(write('m.obj', TRIANGLE))
+    written = os.stat(first).st_mtime_ns
+    other = tmp_path / 'elsewhere'
+    other.mkdir()
+    (other / 'n.obj').write_text(TRIANGLE)
+    assert MeshStore(tmp_path / 'cache').collision_hull(str(other / 'n.obj')) == first
+    assert os.stat(first).st_mtime_ns == written
+    assert len(os.listdir(tmp_path / 'cache')) == 1
+
+
+def test_scale_kind_and_content_have_files_of_their_own(write, tmp_path):
+    store = MeshStore(tmp_path / 'cache')
+    path = write('m.obj', TRIANGLE)
+    files = {store.collision_hull(path), store.collision_surface(path),
+             store.collision_hull(path, (1.0, 1.0, math.pi)),
+             store.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n'))}
+    assert len(files) == 4
+
+
+def test_a_cache_that_cannot_be_made_is_replaced_by_a_temporary_one(write, tmp_path, caplog):
+    store = MeshStore(write('occupied', 'a file, not a folder'))
+    assert 'cannot be written' in caplog.text
+    path = store.collision_hull(write('m.obj', TRIANGLE))
+    assert os.path.isfile(path)
+    store.close()
+    assert not os.path.exists(path)
+
+
+def test_a_cache_that_goes_away_is_replaced_by_a_temporary_one(write, tmp_path, caplog):
+    store = MeshStore(tmp_path / 'cache')
+    (tmp_path / 'cache').rmdir()
+    assert os.path.isfile(store.collision_hull(write('m.obj', TRIANGLE)))
+    assert 'a temporary one is used' in caplog.text

@@ -1,0 +1,361 @@
+"""URDF texts become models; those that cannot say where, what and how to mend it."""
+
+import logging
+import math
+
+import pytest
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.pose import Pose, from_rpy
+from rosbots_description.sim.spec import Box, Cylinder, Material, Mesh, Sphere
+from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.uris import UnknownPackage
+
+MASS = ('<inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
+TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
+
+
+def load(body, **options):
+    spec, _ = load_urdf(f'<robot name="r">{body}</robot>', 'bot', source='bot.urdf', **options)
+    return spec
+
+
+def link(name, inside=MASS):
+    return f'<link name="{name}">{inside}</link>'
+
+
+def joint(name, parent, child, kind='continuous', inside=''):
+    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
+            f'<child link="{child}"/>{inside}</joint>')
+
+
+def complaint(body, **options):
+    with pytest.raises(ModelError) as caught:
+        load(body, **options)
+    sentence = str(caught.value)
+    assert sentence.startswith('bot.urdf, line ')
+    assert '\n' not in sentence
+    return sentence
+
+
+def geometry(shape, name='a'):
+    return link(name, f'{MASS}<collision><geometry>{shape}</geometry></collision>')
+
+
+def test_the_obstacle_of_the_course_loads_as_written():
+    text = """<robot name="simple_box"><link name="my_box">
+      <inertial><origin xyz="2 0 0"/><mass value="1.0"/>
+        <inertia ixx="1.0" ixy="0.0" ixz="0.0" iyy="100.0" iyz="0.0" izz="1.0"/></inertial>
+      <visual><origin xyz="2 0 1"/><geometry><box size="1 1 2"/></geometry></visual>
+      <collision><origin xyz="2 0 1"/><geometry><box size="1 1 2"/></geometry></collision>
+      </link><gazebo reference="my_box"><material>Gazebo/Blue</material></gazebo></robot>"""
+    spec, pose = load_urdf(text, 'my_object')
+    box = spec.link('my_box')
+    assert pose == Pose()
+    assert spec.name == 'my_object'
+    assert box.collisions[0].geometry == Box((1.0, 1.0, 2.0))
+    assert box.collisions[0].pose.position == (2.0, 0.0, 1.0)
+    assert box.visuals[0].material == Material((0.0, 0.0, 1.0, 1.0), 'Gazebo/Blue')
+    assert (box.inertial.ixx, box.inertial.iyy, box.inertial.izz) == (1.0, 100.0, 1.0)
+    assert box.inertial.pose.position == (2.0, 0.0, 0.0)
+
+
+def test_links_stand_where_the_joints_put_them():
+    spec = load(
+        link('a') + link('b') + link('c')
+        + joint('ab', 'a', 'b', inside='<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>')
+        + joint('bc', 'b', 'c', inside='<origin xyz="1 0 0"/>')
+    )
+    assert spec.link('b').pose == Pose((1.0, 0.0, 0.0), from_rpy(0.0, 0.0, math.pi / 2))
+    assert spec.link('c').pose.position == pytest.approx((1.0, 1.0, 0.0))
+
+
+def test_links_come_depth_first_by_the_name_of_the_joint():
+    spec = load(
+        link('late') + link('root') + link('early') + link('deep')
+        + joint('z', 'root', 'late') + joint('a', 'root', 'early') + joint('b', 'early', 'deep')
+    )
+    assert [link.name for link in spec.links] == ['root', 'early', 'deep', 'late']
+    assert [joint.name for joint in spec.joints] == ['a', 'b', 'z']
+
+
+def test_a_revolute_joint_has_its_limits_and_unit_axis():
+    spec = load(link('a') + link('b') + joint(
+        'j', 'a', 'b', 'revolute',
+        '<axis xyz="0 3 4"/><limit lower="-1" upper="2" effort="5" velocity="6"/>'
+        '<dynamics damping="0.1" friction="0.2"/>',
+    ))
+    (j,) = spec.joints
+    assert (j.type, j.parent, j.child, j.pose) == ('revolute', 'a', 'b', Pose())
+    assert j.axis == pytest.approx((0.0, 0.6, 0.8))
+    assert (j.lower, j.upper, j.effort, j.velocity) == (-1.0, 2.0, 5.0, 6.0)
+    assert (j.damping, j.friction) == (0.1, 0.2)
+
+
+def test_a_continuous_joint_has_no_position_limits_and_turns_about_x_by_default():
+    (j,) = load(link('a') + link('b') + joint(
+        'j', 'a', 'b', inside='<limit lower="-1" upper="1" effort="5" velocity="-1"/>')).joints
+    assert (j.lower, j.upper, j.effort, j.velocity) == (None, None, 5.0, None)
+    assert j.axis == (1.0, 0.0, 0.0)
+
+
+def test_a_tiny_axis_is_a_direction_all_the_same():
+    (j,) = load(link('a') + link('b')
+                + joint('j', 'a', 'b', inside='<axis xyz="0 0 -1e-200"/>')).joints
+    assert j.axis == (0.0, 0.0, -1.0)
+
+
+def test_limits_the_wrong_way_round_are_switched_with_a_warning(caplog):
+    (j,) = load(link('a') + link('b') + joint(
+        'j', 'a', 'b', 'prismatic', '<limit lower="2" upper="-1" effort="0" velocity="0"/>')).joints
+    assert (j.lower, j.upper, j.effort, j.velocity) == (-1.0, 2.0, 0.0, 0.0)
+    assert 'the two are switched' in caplog.text
+
+
+@pytest.mark.parametrize('kind', ['floating', 'planar'])
+def test_a_joint_that_ties_nothing_leaves_its_child_free_with_a_warning(kind, caplog):
+    spec = load(link('a') + link('b') + joint('j', 'a', 'b', kind, '<origin xyz="0 0 2"/>'))
+    assert spec.joints == ()
+    assert spec.link('b').pose.position == (0.0, 0.0, 2.0)
+    assert f"joint 'j': a {kind} joint ties nothing here" in caplog.text
+
+
+def test_all_shapes_are_read():
+    shapes = ['<box size="1 2 3"/>', '<sphere radius="1"/>', '<cylinder radius="1" length="2"/>']
+    spec = load(link('a', MASS + ''.join(
+        f'<collision><geometry>{shape}</geometry></collision>' for shape in shapes)))
+    assert [c.geometry for c in spec.links[0].collisions] == [
+        Box((1.0, 2.0, 3.0)), Sphere(1.0), Cylinder(1.0, 2.0)]
+    assert [c.name for c in spec.links[0].collisions] == [
+        'a_collision', 'a_collision_1', 'a_collision_2']
+
+
+def test_a_mesh_is_found_in_its_package_and_keeps_its_address(tmp_path):
+    (tmp_path / 'm.obj').write_text(TRIANGLE)
+    spec = load(geometry('<mesh filename="package://p/m.obj" scale="1 -2 3"/>'),
+                find_package={'p': str(tmp_path)}.get)
+    (shape,) = spec.links[0].collisions
+    assert shape.geometry == Mesh(str(tmp_path / 'm.obj'), (1.0, -2.0, 3.0), 'package://p/m.obj')
+
+
+@pytest.mark.parametrize(('material', 'colour'), [
+    ('<material name="mine"><color rgba="0.1 0.2 0.3 1"/></material>', (0.1, 0.2, 0.3, 1.0)),
+    ('<material name="global"/>', (0.4, 0.5, 0.6, 1.0)),
+    ('<material name="Gazebo/Red"/>', (1.0, 0.0, 0.0, 1.0)),
+    ('<material name="of_another_link"/>', (0.9, 0.8, 0.7, 1.0)),
+    ('', (0.7, 0.7, 0.7, 1.0)),
+])
+def test_a_visual_has_the_urdfs_colour_or_else_grey(material, colour, caplog):
+    ball = '<geometry><sphere radius="1"/></geometry>'
+    spec = load(
+        '<material name="global"><color rgba="0.4 0.5 0.6 1"/></material>'
+        + link('a', f'{MASS}<visual>{ball}{material}</visual>')
+        + link('b', f'{MASS}<visual>{ball}<material name="of_another_link">'
+                    '<color rgba="0.9 0.8 0.7 1"/></material></visual>')
+        + joint('j', 'a', 'b')
+    )
+    assert spec.link('a').visuals[0].material.rgba == colour
+    assert caplog.text == ''
+
+
+def test_a_material_without_colour_is_grey_with_a_warning(caplog):
+    visual = '<visual><geometry><sphere radius="1"/></geometry><material name="bleu"/></visual>'
+    spec = load('<material name="blue"><color rgba="0 0 1 1"/></material>'
+                + link('a', MASS + visual))
+    assert spec.links[0].visuals[0].material == Material()
+    assert "material 'bleu' has no <color> anywhere, it is shown grey; did you mean 'blue'?" \
+        in caplog.text
+
+
+def test_a_mesh_without_material_keeps_its_own_colours(tmp_path):
+    (tmp_path / 'm.obj').write_text(TRIANGLE)
+    spec = load(link('a', MASS + f'<visual><geometry><mesh filename="{tmp_path}/m.obj"/>'
+                                 '</geometry></visual>'))
+    assert spec.links[0].visuals[0].material is None
+
+
+def test_the_robots_own_origin_comes_back_for_the_caller():
+    _, pose = load_urdf(f'<robot><origin xyz="1 2 3" rpy="0 0 1"/>{link("a")}</robot>', 'bot')
+    assert pose == Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.0))
+
+
+def test_a_malformed_robot_origin_counts_as_none_with_an_error_in_the_log(caplog):
+    _, pose = load_urdf(f'<robot><origin xyz="1 x 3"/>{link("a")}</robot>', 'bot')
+    assert pose == Pose()
+    assert [record.levelno for record in caplog.records] == [logging.ERROR]
+
+
+def test_an_inertia_of_zero_is_replaced_with_a_warning(caplog):
+    zero = '<inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/>'
+    spec = load(link('a', f'<inertial><mass value="2"/>{zero}</inertial>'))
+    inertial = spec.links[0].inertial
+    assert inertial.mass == 2.0
+    assert min(inertial.ixx, inertial.iyy, inertial.izz) > 0.0
+    assert "'a': an inertia of zero cannot be simulated" in caplog.text
+
+
+def test_what_a_simulator_has_no_use_for_is_no_matter(caplog):
+    load(link('a') + '<transmission name="t"><x/></transmission><unknown/>'
+         + link('b') + joint('j', 'a', 'b', inside='<mimic joint="j"/><safety_controller/>'))
+    assert caplog.text == ''
+
+
+@pytest.mark.parametrize(('body', 'expected'), [
+    ('', 'the model has no <link>'),
+    (link('a') + link('a'), "there is a link 'a' already in line 1"),
+    (link('a') + link('b') + link('c') + joint('j', 'a', 'b') + joint('j', 'a', 'c'),
+     "joint 'j': there is a joint 'j' already in line 1"),
+    (link('a') + link('b'), "2 links are child of no joint: 'a' (line 1), 'b' (line 1)"),
+    (link('a') + link('b') + joint('j', 'a', 'b') + joint('k', 'b', 'a'),
+     "joint 'j': the joints form a ring; one link must be child of no joint"),
+    (link('a') + link('b') + link('c') + joint('j', 'b', 'c') + joint('k', 'c', 'b'),
+     "the joints of 'b', 'c' form a ring apart from the root 'a'"),
+    (link('a') + joint('j', 'a', 'a'), 'the joints form a ring'),
+    (link('a') + link('b') + link('c') + joint('j', 'a', 'c') + joint('k', 'b', 'c'),
+     "joint 'k': child link 'c' is already the child of joint 'j' (line 1)"),
+    (link('base') + link('wheel') + joint('j1', 'base', 'whel'),
+     "joint 'j1': child link 'whel' does not exist; did you mean 'wheel'?"),
+    (link('base') + joint('j1', 'chassis', 'base'),
+     "joint 'j1': parent link 'chassis' does not exist; there are 'base'"),
+    (link('a') + '<joint name="j" type="fixed"><child link="a"/></joint>',
+     "joint 'j': it has no parent link; add <parent link="),
+    (link('a') + '<joint name="j" type="fixed"><parent link="a"/></joint>',
+     "joint 'j': it has no child link; add <child link="),
+    (link('a') + link('b') + joint('j', 'a', 'b', 'hinge'),
+     "type 'hinge' is unknown; there are revolute"),
+    (link('a') + link('b') + joint('j', 'a', 'b', ''), 'it has no type; there are revolute'),
+    ('<link/>', 'a <link> without name'),
+    (link('n' * 1001), 'its name has 1001 characters; at most 1000'),
+    (link('a') + link('b') + joint('j' * 1100, 'a', 'b'), 'its name has 1100 characters'),
+])
+def test_a_broken_tree_is_named(body, expected):
+    assert expected in complaint(body)
+
+
+@pytest.mark.parametrize(('inside', 'expected'), [
+    ('<axis xyz="0 0 0"/>', 'xyz="0 0 0" of <axis> has no direction'),
+    ('<axis xyz="0 1"/>', 'xyz="0 1" of <axis> is wrong; it takes three finite numbers'),
+    ('<axis xyz="0 0 nan"/>', 'xyz="0 0 nan" of <axis> is wrong'),
+    ('<origin xyz="0 a 0"/>', 'xyz="0 a 0" of <origin> is wrong'),
+    ('<origin rpy="0 inf 0"/>', 'rpy="0 inf 0" of <origin> is wrong'),
+    ('<origin xyz="1,5 0 0"/>', 'xyz="1,5 0 0" of <origin> is wrong'),
+    ('<origin xyz="1_0 0 0"/>', 'xyz="1_0 0 0" of <origin> is wrong'),
+    ('<limit effort="x" velocity="1"/>',
+     'effort="x" of <limit> is wrong; it takes one finite number'),
+    ('<limit effort="1"/>', '<limit> has no velocity; it takes one finite number'),
+    ('<limit effort="1" velocity="1" upper="1e999"/>', 'upper="1e999" of <limit> is wrong'),
+    ('<dynamics damping="-1"/>', 'damping="-1" of <dynamics> is negative'),
+])
+def test_a_broken_number_in_a_joint_is_named(inside, expected):
+    sentence = complaint(link('a') + link('b') + joint('j', 'a', 'b', inside=inside))
+    assert "line 1: joint 'j': " + expected in sentence
+
+
+@pytest.mark.parametrize('kind', ['revolute', 'prismatic'])
+def test_a_joint_that_needs_limits_says_so(kind):
+    assert f'a {kind} joint needs <limit lower upper effort velocity/>' in complaint(
+        link('a') + link('b') + joint('j', 'a', 'b', kind))
+
+
+def inertial(mass='1', **moments):
+    values = {'ixx': '1', 'iyy': '1', 'izz': '1', 'ixy': '0', 'ixz': '0', 'iyz': '0'} | moments
+    text = ' '.join(f'{key}="{value}"' for key, value in values.items())
+    return link('a', f'<inertial><mass value="{mass}"/><inertia {text}/></inertial>')
+
+
+@pytest.mark.parametrize(('body', 'expected'), [
+    (inertial('-1'), 'mass -1 kg is negative'),
+    (inertial('abc'), 'value="abc" of <mass> is wrong; it takes one finite number'),
+    (inertial('1,5'), 'value="1,5" of <mass> is wrong'),
+    (inertial('nan'), 'value="nan" of <mass> is wrong'),
+    (inertial(ixx='-1'),
+     'ixx="-1" of <inertia> is wrong; a moment of inertia is greater than zero'),
+    (inertial(izz='0'), 'izz="0" of <inertia> is wrong'),
+    (inertial(iyy='inf'), 'iyy="inf" of <inertia> is wrong'),
+    (inertial(ixy='2'), 'about some axis the moment of inertia is negative'),
+    (link('a', '<inertial><mass value="1"/></inertial>'), 'an <inertial> without <inertia'),
+    (link('a', '<inertial><inertia ixx="1" iyy="1" izz="1"/></inertial>'),
+     'an <inertial> without <mass'),
+    (link('a', '<inertial><mass value="1"/><inertia ixx="1" izz="1"/></inertial>'),
+     '<inertia> has no iyy'),
+    (geometry('<box size="1 -1 1"/>'), 'size="1 -1 1" of <box> is wrong; a size must be greater'),
+    (geometry('<box size="1 1"/>'), 'size="1 1" of <box> is wrong; it takes three finite numbers'),
+    (geometry('<box/>'), '<box> has no size'),
+    (geometry('<sphere radius="0"/>'), 'radius="0" of <sphere> is wrong'),
+    (geometry('<cylinder radius="1" length="-1"/>'), 'length="-1" of <cylinder> is wrong'),
+    (geometry('<capsule radius="1"/>'), "geometry 'capsule' is unknown; there are box, cylinder"),
+    (geometry('<mesh/>'), 'a <mesh> without filename'),
+    (geometry('<mesh filename="/x.dae" scale="1 0 1"/>'), 'scale="1 0 1" of <mesh> is wrong'),
+    (geometry('<mesh filename="http://x/y.dae"/>'),
+     "'http://x/y.dae': http:// addresses are not read"),
+    (geometry(''), 'a <collision> without shape'),
+    (link('a', MASS + '<visual/>'), 'a <visual> without shape'),
+    (link('a', MASS + '<visual><geometry><box size="1 1 1"/></geometry><material name="m">'
+                      '<color rgba="1 1"/></material></visual>'),
+     'rgba="1 1" of <color> is wrong; it takes four finite numbers'),
+])
+def test_a_broken_part_of_a_link_is_named(body, expected):
+    sentence = complaint(body)
+    assert expected in sentence
+    assert "'a': " in sentence or "'m': " in sentence
+
+
+def test_a_missing_mesh_is_named_with_file_link_and_line(tmp_path):
+    sentence = complaint('\n\n' + geometry('<mesh filename="package://p/wheel.dae"/>'),
+                         find_package={'p': str(tmp_path)}.get)
+    assert sentence.startswith(
+        f"bot.urdf, line 3: link 'a': mesh file '{tmp_path}/wheel.dae' does not exist")
+
+
+def test_a_broken_mesh_is_named_with_file_and_link(tmp_path):
+    (tmp_path / 'm.obj').write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
+    sentence = complaint(geometry(f'<mesh filename="file://{tmp_path}/m.obj"/>'))
+    assert f"link 'a': mesh file '{tmp_path}/m.obj' is broken" in sentence
+
+
+def test_an_unknown_package_anywhere_is_an_error_of_its_own():
+    body = link('a') + '<gazebo><plugin filename="x"><f>package://nope/x</f></plugin></gazebo>'
+    with pytest.raises(UnknownPackage) as caught:
+        load(body, find_package={}.get)
+    assert caught.value.package == 'nope'
+
+
+def test_another_root_than_robot_is_named():
+    with pytest.raises(ModelError, match=r'^s, line 1: the first element is <sdf>'):
+        load_urdf('<sdf version="1.6"/>', 'bot', source='s')
+
+
+def test_unexpanded_xacro_is_named_before_anything_else():
+    assert 'unexpanded xacro' in complaint('<link name="${a}"/>')
+
+
+@pytest.mark.parametrize('body', [
+    link('a', ''), inertial('0'), link('world', ''),
+    link('world', '') + link('a', '') + joint('j', 'world', 'a', 'fixed'),
+])
+def test_a_model_of_which_nothing_has_mass_is_refused(body):
+    assert 'with a' in complaint(body)
+
+
+def test_the_name_of_the_model_and_the_source_begin_a_warning(caplog):
+    load(link('a') + '\n<gazebo reference="b"/>')
+    assert caplog.messages[0].startswith(
+        "model 'bot' (bot.urdf): line 2: <gazebo reference='b'>: there is no link or joint")
+
+
+def test_more_joints_than_the_engine_holds_are_refused():
+    links = ''.join(link(f'l{i}') for i in range(129))
+    joints = ''.join(joint(f'j{i:03}', f'l{i}', f'l{i + 1}') for i in range(128))
+    assert 'more than 127 joints' in complaint(links + joints)
+
+
+def test_a_long_chain_of_fixed_links_is_lumped_in_good_time():
+    count = 5000
+    ball = '<collision><geometry><sphere radius="1"/></geometry></collision>'
+    links = link('l0') + ''.join(link(f'l{i}', ball) for i in range(1, count))
+    joints = ''.join(joint(f'j{i}', f'l{i}', f'l{i + 1}', 'fixed', '<origin xyz="0 0 1"/>')
+                     for i in range(count - 1))
+    spec = load(links + joints)
+    assert len(spec.links) == 1
+    assert spec.links[0].collisions[-1].pose.position == (0.0, 0.0, count - 1.0)

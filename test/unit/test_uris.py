@@ -1,0 +1,61 @@
+"""Addresses of packages and files."""
+
+import pytest
+from lxml import etree
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.markup import parse
+from rosbots_description.sim.uris import (
+    UnknownPackage,
+    file_path,
+    substitute_in_tree,
+    substitute_packages,
+)
+
+FOLDERS = {'bot': '/opt/bot', 'odd': '/opt/a & b/'}
+
+
+def test_a_package_becomes_its_directory_without_file_prefix():
+    text = 'package://bot/m.dae and package://odd/x package://bot'
+    assert substitute_packages(text, FOLDERS.get) == '/opt/bot/m.dae and /opt/a & b/x /opt/bot'
+
+
+def test_an_unknown_package_is_named():
+    with pytest.raises(UnknownPackage, match="package 'nope' of .* is unknown") as caught:
+        substitute_packages('package://nope/m.dae', FOLDERS.get)
+    assert caught.value.package == 'nope'
+
+
+def test_the_whole_tree_is_substituted_and_meshes_remember_what_was_written():
+    root = parse(
+        '<robot><mesh filename="package://bot/m.dae"/>'
+        '<plugin><config>package://odd/c.yaml</config></plugin></robot>', 's',
+    )
+    substitute_in_tree(root, FOLDERS.get)
+    assert root.find('mesh').get('filename') == '/opt/bot/m.dae'
+    assert root.find('mesh').get('uri') == 'package://bot/m.dae'
+    assert root.findtext('plugin/config') == '/opt/a & b/c.yaml'
+
+
+def test_a_comment_may_name_any_package():
+    substitute_in_tree(parse('<robot><!-- package://nope/ --></robot>', 's'), FOLDERS.get)
+
+
+def test_an_unknown_package_in_a_tree_is_named_with_its_line():
+    text = '<robot>\n<link name="a"><mesh filename="package://nope/m.dae"/></link></robot>'
+    root = parse(text, 's')
+    with pytest.raises(UnknownPackage, match=r"^s, line 2: link 'a': package 'nope'"):
+        substitute_in_tree(root, FOLDERS.get)
+
+
+@pytest.mark.parametrize(('uri', 'path'), [
+    ('/a/b.dae', '/a/b.dae'), ('file:///a/b%20c.dae', '/a/b c.dae'), ('/a/../b.dae', '/b.dae'),
+])
+def test_file_addresses_become_paths(uri, path):
+    assert file_path(etree.Element('mesh'), uri) == path
+
+
+@pytest.mark.parametrize('uri', ['http://x/m.dae', 'model://x/m.dae', 'm.dae', 'package://x/m.dae'])
+def test_other_addresses_are_refused_with_a_cure(uri):
+    with pytest.raises(ModelError, match='use .*file:///path'):
+        file_path(parse('<mesh/>', 's'), uri)
