@@ -1,0 +1,81 @@
+"""Drawing: surfaces that are only seen, and a camera to see them by."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .engine import pybullet
+from .pose import Pose, Vector
+
+_SUN = (2.0, -1.0, 4.0)  # where the light comes from
+
+
+@dataclass(frozen=True)
+class Triangles:
+    """A surface in one colour: vertices (n, 3) [m], faces (m, 3), rgba in 0..1."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    rgba: tuple[float, float, float, float]
+
+
+class Canvas:
+    """Things that are only seen, in a PyBullet world of their own, and a camera to see them by.
+
+    Drawing is done in software, so it needs neither a display nor a graphics card.
+    """
+
+    def __init__(self) -> None:
+        self._client = pybullet.connect(pybullet.DIRECT)
+
+    def close(self) -> None:
+        """Free the canvas."""
+        pybullet.disconnect(self._client)
+
+    def add(self, surface: Triangles) -> int:
+        """Put a surface into the picture; return the number to place and remove it by."""
+        shape = pybullet.createVisualShape(
+            pybullet.GEOM_MESH,
+            vertices=surface.vertices.tolist(),
+            indices=surface.faces.ravel().tolist(),
+            rgbaColor=surface.rgba,
+            physicsClientId=self._client,
+        )
+        return pybullet.createMultiBody(baseVisualShapeIndex=shape, physicsClientId=self._client)
+
+    def remove(self, number: int) -> None:
+        """Take a surface out of the picture."""
+        pybullet.removeBody(number, self._client)
+
+    def place(self, number: int, pose: Pose) -> None:
+        """Move a surface."""
+        pybullet.resetBasePositionAndOrientation(number, *pose, self._client)
+
+    def picture(
+        self, size: tuple[int, int], eye: Vector, target: Vector, field_of_view: float
+    ) -> np.ndarray:
+        """Return what is seen from `eye` looking at `target` [m], z up: (height, width, 3) bytes.
+
+        Args:
+            size: width and height in pixels.
+            field_of_view: from the lower to the upper edge [rad].
+        """
+        width, height = size
+        near, far = 0.05, 100.0  # [m]
+        view = pybullet.computeViewMatrix(eye, target, (0.0, 0.0, 1.0))
+        projection = pybullet.computeProjectionMatrixFOV(
+            math.degrees(field_of_view), width / height, near, far
+        )
+        pixels = pybullet.getCameraImage(
+            width,
+            height,
+            view,
+            projection,
+            lightDirection=_SUN,
+            shadow=0,  # they cost six times the rest
+            renderer=pybullet.ER_TINY_RENDERER,
+            flags=pybullet.ER_NO_SEGMENTATION_MASK,
+            physicsClientId=self._client,
+        )[2]
+        return np.reshape(pixels, (height, width, 4))[:, :, :3].astype(np.uint8)

@@ -1,0 +1,44 @@
+"""Simulated time: a whole number of steps, so that it never drifts and always repeats."""
+
+NANOSECONDS = 1_000_000_000  # per second
+
+
+class SimClock:
+    """Counts steps; the time is `steps` times the step size since the last change of that size.
+
+    `now_ns` [ns] is exact and the one to stamp and compare with; `now` [s] is for people.
+    """
+
+    def __init__(self, step_size: float) -> None:
+        self.steps = 0
+        self.step_ns = nanoseconds(step_size)
+        self._origin_ns = 0  # the time at which the present step size began to count
+        self._origin_steps = 0
+
+    @property
+    def now_ns(self) -> int:
+        """Return the simulated time [ns]."""
+        return self._origin_ns + (self.steps - self._origin_steps) * self.step_ns
+
+    @property
+    def now(self) -> float:
+        """Return the simulated time [s]."""
+        return self.now_ns / NANOSECONDS
+
+    def set_step_size(self, step_size: float) -> None:
+        """Let every step from now on last `step_size` [s]."""
+        self._origin_ns, self._origin_steps = self.now_ns, self.steps
+        self.step_ns = nanoseconds(step_size)
+
+    def first_step_after(self, time_ns: int) -> int:
+        """Return the count of the first step whose time is later than `time_ns`."""
+        return self._origin_steps + (time_ns - self._origin_ns) // self.step_ns + 1
+
+    def reset(self) -> None:
+        """Begin again at time zero."""
+        self.steps = self._origin_ns = self._origin_steps = 0
+
+
+def nanoseconds(seconds: float) -> int:
+    """Return `seconds` as whole nanoseconds."""
+    return round(seconds * NANOSECONDS)

@@ -1,0 +1,369 @@
+"""The physics engine: the only module that knows PyBullet. Specs and names in, plain values out.
+
+PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
+frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a
+cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
+"""
+
+import contextlib
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .bullet_description import (
+    RIDER_MASS,
+    MeshFile,
+    Tree,
+    describe_tree,
+    friction,
+    kinematic_trees,
+    rider_surfaces,
+)
+from .inertia import principal_axes
+from .physics import PhysicsSettings
+from .pose import Pose, Twist, Vector, add, compose, cross, inverse, rotate, subtract
+from .spec import FIXED, Collision, Cylinder, Inertial, JointSpec, LinkSpec, ModelSpec
+
+# A wheel touches along a line and scrubs when it turns on the spot. Its torque per normal force is
+# this share of the wheel's width: 1/4 if the line is pressed evenly, 0 if only one edge touches.
+_SCRUB = 1 / 8
+_MASSLESS = Inertial(0.0)
+_ANY_SPEED = 1e9  # [rad/s or m/s] PyBullet would stop every joint at 100
+_STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
+
+
+@contextlib.contextmanager
+def _silent() -> Iterator[None]:
+    """Send what C code prints to nowhere; Python's own streams are flushed first."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    saved = [os.dup(1), os.dup(2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(saved[0], 1)
+        os.dup2(saved[1], 2)
+        for descriptor in (nowhere, *saved):
+            os.close(descriptor)
+
+
+with _silent():  # it announces its build time
+    import pybullet
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Where a link lives in PyBullet, and the way from its centre of mass to its frame.
+
+    An index of -1 is the base of the body.
+    """
+
+    body: int
+    index: int
+    origin_in_com: Pose
+    com_in_origin: Pose
+
+
+class Body:
+    """A model in the engine. Links and joints are addressed by their names."""
+
+    def __init__(self) -> None:
+        self.parts: dict[str, _Part] = {}
+        self.joints: dict[str, tuple[int, int]] = {}
+        self.roots: list[str] = []  # links that the engine moves as bases
+        self.bodies: list[int] = []
+
+
+class Engine:
+    """One PyBullet world in this process, without window and without chatter."""
+
+    def __init__(
+        self, physics: PhysicsSettings, mesh_file: MeshFile, surface_file: MeshFile
+    ) -> None:
+        """Open an empty world.
+
+        Args:
+            mesh_file: gives the file of a mesh's convex hull, for bodies that move.
+            surface_file: gives the file of a mesh's exact surface, for bodies that stand.
+        """
+        self._mesh_file = mesh_file
+        self._surface_file = surface_file
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self._step = pybullet.stepSimulation
+        self._weightless: dict[int, list[tuple[int, float]]] = {}  # body -> (index, mass)
+        self.apply(physics)
+
+    def close(self) -> None:
+        """Free the world; the engine cannot be used afterwards."""
+        pybullet.disconnect(self._client)
+
+    def apply(self, physics: PhysicsSettings) -> None:
+        """Use these settings from the next step on."""
+        self._gravity = physics.gravity
+        pybullet.setGravity(*physics.gravity, physicsClientId=self._client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=physics.step_size,
+            numSolverIterations=max(1, physics.sor_pgs_iters),
+            numSubSteps=0,
+            enableFileCaching=0,  # else a second model under a file name gets the first one's text
+            physicsClientId=self._client,
+        )
+        self._physics = physics
+
+    def reset(self) -> None:
+        """Remove everything; the same bodies added again then move bit for bit as before."""
+        pybullet.resetSimulation(physicsClientId=self._client)
+        self._weightless.clear()
+        self.apply(self._physics)
+
+    def step(self, steps: int) -> None:
+        """Advance physics by whole steps."""
+        step, client = self._step, self._client
+        for _ in range(steps):
+            if self._weightless:
+                self._lift_weightless()
+            step(client)
+
+    def add(self, spec: ModelSpec, pose: Pose) -> Body:
+        """Put a model into the world, its frame at `pose`, all joints at zero."""
+        body = Body()
+        for tree in kinematic_trees(spec):
+            self._add_tree(body, tree, pose)
+        self._exclude_collisions_within(body, spec)
+        return body
+
+    def remove(self, body: Body) -> None:
+        """Take a model out of the world."""
+        for number in body.bodies:
+            self._weightless.pop(number, None)
+            pybullet.removeBody(number, self._client)
+
+    def link_pose(self, body: Body, link: str) -> Pose:
+        """Return where the link's frame stands in the world."""
+        part = body.parts[link]
+        if part.index < 0:
+            com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
+        else:
+            com = Pose(*self._link_state(part)[:2])
+        return compose(com, part.origin_in_com)
+
+    def link_state(self, body: Body, link: str) -> tuple[Pose, Twist]:
+        """Return the pose of the link's frame and the velocity of its origin, in world axes."""
+        part = body.parts[link]
+        if part.index < 0:
+            com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
+            linear, angular = pybullet.getBaseVelocity(part.body, self._client)
+        else:
+            state = self._link_state(part)
+            com, linear, angular = Pose(*state[:2]), state[6], state[7]
+        pose = compose(com, part.origin_in_com)
+        arm = subtract(pose.position, com.position)
+        return pose, Twist(add(linear, cross(angular, arm)), angular)
+
+    def set_root_poses(self, body: Body, poses: dict[str, Pose]) -> None:
+        """Put the frames of root links at these poses; the links they carry come along.
+
+        PyBullet keeps the velocities.
+        """
+        for link, pose in poses.items():
+            part = body.parts[link]
+            com = compose(pose, part.com_in_origin)
+            velocity = pybullet.getBaseVelocity(part.body, self._client)
+            pybullet.resetBasePositionAndOrientation(part.body, *com, self._client)
+            pybullet.resetBaseVelocity(part.body, *velocity, physicsClientId=self._client)
+
+    def set_twist(self, body: Body, twist: Twist) -> None:
+        """Let all links move with this velocity of their root's origin, in world axes."""
+        for link in body.roots:
+            part = body.parts[link]
+            com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
+            linear = add(twist.linear, cross(twist.angular, com))
+            pybullet.resetBaseVelocity(
+                part.body, linear, twist.angular, physicsClientId=self._client
+            )
+        for number, index in body.joints.values():
+            position = pybullet.getJointState(number, index, self._client)[0]
+            pybullet.resetJointState(number, index, position, 0.0, self._client)
+
+    def joint_state(self, body: Body, joint: str) -> tuple[float, float]:
+        """Return position [rad or m] and velocity [rad/s or m/s] of a joint."""
+        number, index = body.joints[joint]
+        return pybullet.getJointState(number, index, self._client)[:2]
+
+    def joint_effort(self, body: Body, joint: str) -> float:
+        """Return what the joint's motor gave in the last step [N m or N]."""
+        number, index = body.joints[joint]
+        return pybullet.getJointState(number, index, self._client)[3]
+
+    def load(self, body: Body, link: str) -> float:
+        """Return the sum of the normal forces on a link in the last step [N]."""
+        part = body.parts[link]
+        contacts = pybullet.getContactPoints(
+            bodyA=part.body, linkIndexA=part.index, physicsClientId=self._client
+        )
+        return sum(contact[9] for contact in contacts)
+
+    def set_joint_position(self, body: Body, joint: str, position: float) -> None:
+        """Put a joint at `position` [rad or m], at rest."""
+        number, index = body.joints[joint]
+        pybullet.resetJointState(number, index, position, 0.0, self._client)
+
+    def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
+        """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
+        number, index = body.joints[joint]
+        pybullet.setJointMotorControl2(
+            number,
+            index,
+            pybullet.VELOCITY_CONTROL,
+            targetVelocity=velocity,
+            force=effort,
+            physicsClientId=self._client,
+        )
+
+    def _link_state(self, part: _Part) -> tuple:
+        return pybullet.getLinkState(
+            part.body,
+            part.index,
+            computeLinkVelocity=1,
+            computeForwardKinematics=1,
+            physicsClientId=self._client,
+        )
+
+    def _lift_weightless(self) -> None:
+        """Hold up the links that feel no gravity; PyBullet knows only one gravity for all."""
+        gx, gy, gz = self._gravity
+        for number, links in self._weightless.items():
+            for index, mass in links:
+                force = (-mass * gx, -mass * gy, -mass * gz)
+                state = (
+                    pybullet.getBasePositionAndOrientation(number, self._client)
+                    if index < 0
+                    else pybullet.getLinkState(number, index, 0, 1, self._client)
+                )
+                pybullet.applyExternalForce(
+                    number, index, force, state[0], pybullet.WORLD_FRAME, self._client
+                )
+
+    def _add_tree(self, body: Body, tree: Tree, model_pose: Pose) -> None:
+        inertials = [link.inertial or _MASSLESS for link in tree.links]
+        moments, axes = zip(*(principal_axes(inertial) for inertial in inertials), strict=True)
+        coms = [
+            Pose(inertial.pose.position, orientation)
+            for inertial, orientation in zip(inertials, axes, strict=True)
+        ]
+        stands = tree.fixed_base and len(tree.links) == 1
+        text = describe_tree(tree, coms, self._surface_file if stands else self._mesh_file)
+        number = self._load(text, tree, compose(model_pose, tree.links[0].pose))
+        body.bodies.append(number)
+        body.roots.append(tree.links[0].name)
+        index_of = self._indices(number)
+        # In a call of its own: together with an inertia PyBullet gives that inertia to the base.
+        pybullet.changeDynamics(
+            number,
+            -1,
+            linearDamping=tree.links[0].linear_damping,
+            angularDamping=tree.links[0].angular_damping,
+            maxJointVelocity=_ANY_SPEED,
+            physicsClientId=self._client,
+        )
+        for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
+            part = _Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
+            body.parts[link.name] = part
+            self._set_dynamics(part, index_of, i, link, moments[i], joint)
+            if joint is not None and joint.type != FIXED:
+                body.joints[joint.name] = (number, part.index)
+                self.set_joint_motor(body, joint.name, 0.0, joint.friction)
+            if not link.gravity and not (tree.fixed_base and i == 0):
+                self._weightless.setdefault(number, []).append((part.index, inertials[i].mass))
+
+    def _load(self, text: str, tree: Tree, pose: Pose) -> int:
+        flags = pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE
+        if sum(link.self_collide for link in tree.links) > 1:
+            # Quadruples the cost of a step, so only where asked for.
+            flags |= pybullet.URDF_USE_SELF_COLLISION
+        # A file that lives in memory only: no disk to fill, nothing left behind.
+        descriptor = os.memfd_create('model')
+        try:
+            os.write(descriptor, text.encode())
+            return pybullet.loadURDF(
+                f'/proc/self/fd/{descriptor}',
+                *pose,
+                useFixedBase=tree.fixed_base,
+                flags=flags,
+                physicsClientId=self._client,
+            )
+        finally:
+            os.close(descriptor)
+
+    def _indices(self, number: int) -> dict[str, int]:
+        """Return PyBullet's index of every link of a body; the root `l0` is the base, -1."""
+        indices = {'l0': -1}
+        for index in range(pybullet.getNumJoints(number, self._client)):
+            indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
+        return indices
+
+    def _set_dynamics(
+        self,
+        part: _Part,
+        index_of: dict[str, int],
+        i: int,
+        link: LinkSpec,
+        inertia: Vector,
+        joint: JointSpec | None,
+    ) -> None:
+        pybullet.changeDynamics(
+            part.body,
+            part.index,
+            localInertiaDiagonal=inertia,
+            jointDamping=joint.damping if joint else 0.0,
+            physicsClientId=self._client,
+        )
+        for k, collision in enumerate(rider_surfaces(link)):
+            index = part.index
+            if k > 0:
+                index = index_of[f'l{i}r{k}']
+                pybullet.changeDynamics(
+                    part.body,
+                    index,
+                    localInertiaDiagonal=(RIDER_MASS,) * 3,
+                    physicsClientId=self._client,
+                )
+            self._set_surface(part.body, index, collision)
+
+    def _exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
+        """Let two links of a model touch only if both ask for it and no joint connects them."""
+        if len(body.bodies) == 1 and not any(link.self_collide for link in spec.links):
+            return  # one body without the self-collision flag never touches itself
+        joined = {frozenset((joint.parent, joint.child)) for joint in spec.joints}
+        for i, a in enumerate(spec.links):
+            for b in spec.links[i + 1 :]:
+                if a.self_collide and b.self_collide and {a.name, b.name} not in joined:
+                    continue
+                part_a, part_b = body.parts[a.name], body.parts[b.name]
+                pybullet.setCollisionFilterPair(
+                    part_a.body, part_b.body, part_a.index, part_b.index, 0, self._client
+                )
+
+    def _set_surface(self, number: int, index: int, collision: Collision) -> None:
+        surface, shape = collision.surface, collision.geometry
+        pybullet.changeDynamics(
+            number,
+            index,
+            lateralFriction=friction(surface),
+            spinningFriction=shape.length * _SCRUB if isinstance(shape, Cylinder) else 0.0,
+            rollingFriction=0.0,
+            restitution=0.0,
+            physicsClientId=self._client,
+        )
+        if surface.kp < _STIFFEST:
+            pybullet.changeDynamics(
+                number,
+                index,
+                contactStiffness=surface.kp,
+                contactDamping=surface.kd,
+                physicsClientId=self._client,
+            )

@@ -1,0 +1,160 @@
+"""Models, links, joints and collisions as they are in a world, to ask and to move by name."""
+
+from typing import TYPE_CHECKING
+
+from .engine import Body, Engine
+from .errors import NotFoundError
+from .pose import Pose, Twist, compose, inverse
+from .spec import Collision as CollisionSpec
+from .spec import JointSpec, LinkSpec, ModelSpec
+
+if TYPE_CHECKING:
+    from .plugins.base import ModelPlugin
+
+
+class Link:
+    """A rigid body of a model."""
+
+    def __init__(self, model: 'Model', spec: LinkSpec) -> None:
+        self.model = model
+        self.spec = spec
+        self.name = spec.name
+        self.scoped_name = f'{model.name}::{spec.name}'
+        self.collisions = {c.name: Collision(self, c) for c in spec.collisions}
+
+    @property
+    def pose(self) -> Pose:
+        """Return where the link's frame stands in the world."""
+        return self.model.engine.link_pose(self.model.body, self.name)
+
+    @property
+    def twist(self) -> Twist:
+        """Return the velocity of the link's origin, in world axes."""
+        return self.state()[1]
+
+    def state(self) -> tuple[Pose, Twist]:
+        """Return pose and twist at once, which costs one look instead of two."""
+        return self.model.engine.link_state(self.model.body, self.name)
+
+
+class Collision:
+    """A touching shape of a link; it can serve as a reference frame."""
+
+    def __init__(self, link: Link, spec: CollisionSpec) -> None:
+        self.link = link
+        self.spec = spec
+        self.name = spec.name
+        self.scoped_name = f'{link.scoped_name}::{spec.name}'
+
+    @property
+    def pose(self) -> Pose:
+        """Return where the shape stands in the world."""
+        return compose(self.link.pose, self.spec.pose)
+
+    def state(self) -> tuple[Pose, Twist]:
+        """Return the pose, and the twist of the link that carries the shape."""
+        pose, twist = self.link.state()
+        return compose(pose, self.spec.pose), twist
+
+
+class Joint:
+    """A movable connection of two links of a model."""
+
+    def __init__(self, model: 'Model', spec: JointSpec) -> None:
+        self.model = model
+        self.spec = spec
+        self.name = spec.name
+        self.scoped_name = f'{model.name}::{spec.name}'
+
+    @property
+    def position(self) -> float:
+        """Return the position [rad or m]."""
+        return self.state()[0]
+
+    @property
+    def velocity(self) -> float:
+        """Return the velocity [rad/s or m/s]."""
+        return self.state()[1]
+
+    def state(self) -> tuple[float, float]:
+        """Return position and velocity at once."""
+        return self.model.engine.joint_state(self.model.body, self.name)
+
+    @property
+    def effort(self) -> float:
+        """Return what the motor gave in the last step [N m or N]."""
+        return self.model.engine.joint_effort(self.model.body, self.name)
+
+    def load(self) -> float:
+        """Return the sum of the normal forces on the child link in the last step [N]."""
+        return self.model.engine.load(self.model.body, self.spec.child)
+
+    def set_motor(self, velocity: float, effort: float) -> None:
+        """Drive towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
+        self.model.engine.set_joint_motor(self.model.body, self.name, velocity, effort)
+
+    def set_position(self, position: float) -> None:
+        """Put the joint at `position` [rad or m], at rest."""
+        self.model.engine.set_joint_position(self.model.body, self.name, position)
+
+
+class Model:
+    """A model in the world. Its frame moves with its first link, the canonical one."""
+
+    def __init__(self, name: str, spec: ModelSpec, engine: Engine, pose: Pose) -> None:
+        self.name = self.scoped_name = name
+        self.spec = spec
+        self.static = spec.static
+        self.engine = engine
+        self.initial_pose = pose
+        self.body: Body = engine.add(spec, pose)
+        self.links = {link.name: Link(self, link) for link in spec.links}
+        self.joints = {
+            joint.name: Joint(self, joint)
+            for joint in spec.joints
+            if joint.name in self.body.joints
+        }
+        self.plugins: list[ModelPlugin] = []
+        self._canonical = spec.links[0].name
+        self._model_in_canonical = inverse(spec.links[0].pose)
+
+    @property
+    def pose(self) -> Pose:
+        """Return where the model's frame stands in the world."""
+        pose = self.engine.link_pose(self.body, self._canonical)
+        return compose(pose, self._model_in_canonical)
+
+    @property
+    def twist(self) -> Twist:
+        """Return the velocity of the canonical link's origin, in world axes."""
+        return self.state()[1]
+
+    def state(self) -> tuple[Pose, Twist]:
+        """Return the pose of the model's frame and the twist of its canonical link."""
+        pose, twist = self.engine.link_state(self.body, self._canonical)
+        return compose(pose, self._model_in_canonical), twist
+
+    def set_pose(self, pose: Pose) -> None:
+        """Move the model as a whole, joints and velocities as they are."""
+        shift = compose(pose, inverse(self.pose))
+        roots = self.body.roots
+        self.engine.set_root_poses(
+            self.body,
+            {name: compose(shift, self.engine.link_pose(self.body, name)) for name in roots},
+        )
+
+    def set_twist(self, twist: Twist) -> None:
+        """Let every link move with this velocity, in world axes; joints come to rest."""
+        self.engine.set_twist(self.body, twist)
+
+    def joint(self, name: str) -> Joint:
+        """Return the joint of that plain or scoped name.
+
+        Raises:
+            NotFoundError: the model has no such movable joint.
+        """
+        joint = self.joints.get(name.removeprefix(f'{self.name}::'))
+        if joint is None:
+            known = ', '.join(self.joints) or 'none'
+            raise NotFoundError(f"model '{self.name}' has no joint '{name}'; its joints: {known}")
+        return joint

@@ -1,0 +1,90 @@
+"""Typed reading of a plugin's tags, with upstream's defaults and upstream's warnings."""
+
+import logging
+import math
+from typing import TypeVar
+
+from ..errors import PluginError
+from ..spec import Element
+
+logger = logging.getLogger(__name__)
+
+Value = TypeVar('Value', str, float, bool)
+_BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
+
+
+class Params:
+    """The tags of one plugin element.
+
+    `prefix` begins every message, e.g. 'DiffDrive(ns = //): '.
+    """
+
+    def __init__(self, element: Element, prefix: str = '') -> None:
+        self.prefix = prefix
+        self._element = element
+        self._read: set[str] = set()
+
+    def has(self, tag: str) -> bool:
+        """Tell whether the tag is there."""
+        return self._element.child(tag) is not None
+
+    def text(self, tag: str) -> str | None:
+        """Return the tag's text without surrounding blanks, or None; says nothing."""
+        self._read.add(tag)
+        child = self._element.child(tag)
+        return None if child is None else child.text.strip()
+
+    def read(self, tag: str, default: Value, shown: str | None = None) -> Value:
+        """Return the tag's value in the type of `default`; a missing tag is a warning.
+
+        Args:
+            shown: what the warning names as default where it is not the plain value.
+        Raises:
+            PluginError: a number was expected and the text is none, or is not finite.
+        """
+        text = self.text(tag)
+        if text is None:
+            shown = shown or _show(default)
+            logger.warning('%smissing <%s> default is %s', self.prefix, tag, shown)
+            return default
+        if isinstance(default, bool):
+            return self._boolean(tag, text, default)
+        if isinstance(default, float):
+            return self._number(tag, text)
+        return text
+
+    def ignore(self, *tags: str) -> None:
+        """Count `tags` as read: they are known to mean nothing here."""
+        self._read.update(tags)
+
+    def unread(self) -> list[str]:
+        """Return the tags nobody asked for, in order, each once."""
+        return list(dict.fromkeys(c.tag for c in self._element.children if c.tag not in self._read))
+
+    def _boolean(self, tag: str, text: str, default: bool) -> bool:
+        value = _BOOLEANS.get(text.lower())
+        if value is None:
+            logger.warning(
+                "%s<%s> is '%s', which is neither true nor false; default is %s",
+                self.prefix,
+                tag,
+                text,
+                _show(default),
+            )
+            return default
+        return value
+
+    def _number(self, tag: str, text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise PluginError(f"{self.prefix}<{tag}> is '{text}'; it takes a finite number")
+        return value
+
+
+def _show(value: str | float | bool) -> str:
+    if isinstance(value, bool):
+        return 'true' if value else 'false'
+    return f'{value:g}' if isinstance(value, float) else value

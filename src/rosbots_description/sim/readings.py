@@ -1,0 +1,56 @@
+"""What plugins and sensors hand out, as plain values, and the ports they hand it out through."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from .pose import Pose, Twist
+
+
+class Odometry(NamedTuple):
+    """Pose in the odometry frame; twist in the axes of the moving frame."""
+
+    pose: Pose
+    twist: Twist
+
+
+class FrameTransform(NamedTuple):
+    """Where the frame `child` stands in the frame `parent`."""
+
+    parent: str
+    child: str
+    pose: Pose
+
+
+class JointStates(NamedTuple):
+    """Joint names with their positions [rad or m]."""
+
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+
+
+class Port:
+    """An output of a plugin. Nothing is computed for it while nobody wants it."""
+
+    def __init__(self) -> None:
+        self._send: Callable | None = None
+        self._wanted: Callable[[], bool] = _nobody
+
+    def connect(self, send: Callable, wanted: Callable[[], bool]) -> None:
+        """Give every reading to `send(reading)` while `wanted()` is true."""
+        self._send, self._wanted = send, wanted
+
+    def disconnect(self) -> None:
+        """Give readings to nobody."""
+        self._send, self._wanted = None, _nobody
+
+    def wanted(self) -> bool:
+        """Tell whether a reading would be used."""
+        return self._wanted()
+
+    def send(self, reading: object) -> None:
+        """Hand out a reading; the caller has asked `wanted` first."""
+        self._send(reading)
+
+
+def _nobody() -> bool:
+    return False

@@ -1,0 +1,128 @@
+"""A camera of the simulator's own: pictures of the world on machines without a screen."""
+
+import math
+
+import numpy as np
+import trimesh
+
+from .canvas import Canvas, Triangles
+from .meshes import visual_parts
+from .model import Link, Model
+from .pose import Vector, compose
+from .spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from .world import World
+
+EYE: Vector = (1.9, -1.9, 1.3)  # [m] a good look at a robot that stands at the origin
+TARGET: Vector = (0.0, 0.1, 0.25)  # [m]
+SIZE = (640, 480)  # pixels
+FIELD_OF_VIEW = math.radians(45.0)
+GROUND_SHOWN = 20.0  # [m] edge of the piece of an endless plane that is drawn
+_TILE = 0.5  # [m] edge of the squares it is drawn in
+
+
+class View:
+    """Pictures of a world, as it is at the moment of asking.
+
+    Costs nothing until the first picture; a picture of the article's robot takes about 0.1 s.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._canvas: Canvas | None = None
+        self._shown: dict[str, tuple[Model, list[tuple[Link, Visual, list[int]]]]] = {}
+
+    def close(self) -> None:
+        """Free what the pictures needed."""
+        if self._canvas is not None:
+            self._canvas.close()
+        self._canvas = None
+        self._shown.clear()
+
+    def picture(
+        self,
+        eye: Vector = EYE,
+        target: Vector = TARGET,
+        size: tuple[int, int] = SIZE,
+        field_of_view: float = FIELD_OF_VIEW,
+    ) -> np.ndarray:
+        """Return the view from `eye` towards `target` [m, world], (height, width, 3) RGB bytes.
+
+        Args:
+            size: width and height in pixels.
+            field_of_view: from the lower to the upper edge [rad].
+        """
+        if self._canvas is None:
+            self._canvas = Canvas()
+        self._follow_world(self._canvas)
+        for _, parts in self._shown.values():
+            for link, visual, numbers in parts:
+                pose = compose(link.pose, visual.pose)
+                for number in numbers:
+                    self._canvas.place(number, pose)
+        return self._canvas.picture(size, eye, target, field_of_view)
+
+    def _follow_world(self, canvas: Canvas) -> None:
+        """Take out what has left the world and put in what is new."""
+        for name, (model, parts) in list(self._shown.items()):
+            if self._world.models.get(name) is not model:
+                for _, _, numbers in parts:
+                    for number in numbers:
+                        canvas.remove(number)
+                del self._shown[name]
+        for name, model in self._world.models.items():
+            if name not in self._shown:
+                self._shown[name] = (
+                    model,
+                    [
+                        (link, visual, [canvas.add(part) for part in _parts(visual)])
+                        for link in model.links.values()
+                        for visual in link.spec.visuals
+                    ],
+                )
+
+
+def _parts(visual: Visual) -> list[Triangles]:
+    """Return the surfaces of a visual; a mesh without a material has one for each own colour."""
+    if isinstance(visual.geometry, Mesh):
+        return [
+            Triangles(
+                vertices * np.asarray(visual.geometry.scale),
+                faces,
+                visual.material.rgba if visual.material else rgba,
+            )
+            for vertices, faces, _, rgba in visual_parts(visual.geometry.path)
+        ]
+    rgba = (visual.material or Material()).rgba
+    if isinstance(visual.geometry, Plane):
+        return _tiles(rgba)
+    mesh = _primitive(visual.geometry)
+    return [Triangles(np.asarray(mesh.vertices), np.asarray(mesh.faces), rgba)]
+
+
+def _primitive(geometry: Geometry) -> trimesh.Trimesh:
+    match geometry:
+        case Box(size):
+            return trimesh.creation.box(size)
+        case Sphere(radius):
+            return trimesh.creation.icosphere(subdivisions=3, radius=radius)
+        case Cylinder(radius, length):
+            return trimesh.creation.cylinder(radius, length)
+    raise TypeError(f'{geometry!r} has no picture')
+
+
+def _tiles(rgba: tuple[float, float, float, float]) -> list[Triangles]:
+    """Return a square of ground in two shades, so that a picture shows distances."""
+    count = round(GROUND_SHOWN / _TILE)
+    corners = (np.arange(count) - count / 2) * _TILE
+    x, y = (axis.ravel() for axis in np.meshgrid(corners, corners))
+    dark = (np.add.outer(np.arange(count), np.arange(count)) % 2 == 0).ravel()
+    shades = []
+    for chosen, brightness in ((dark, 1.25), (~dark, 1.45)):
+        corner = np.stack([x[chosen], y[chosen], np.zeros(chosen.sum())], axis=1)
+        square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]) * _TILE
+        vertices = (corner[:, None, :] + square).reshape(-1, 3)
+        first = np.arange(len(corner))[:, None, None] * 4
+        faces = (first + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3)
+        shade = tuple(min(1.0, value * brightness) for value in rgba[:3])
+        shades.append(Triangles(vertices, faces, (*shade, rgba[3])))
+    return shades

@@ -1,0 +1,209 @@
+"""The world: a clock, a physics engine, models in the order they came, and what runs when."""
+
+import contextlib
+import logging
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Protocol
+
+from .clock import SimClock
+from .engine import Engine
+from .errors import ModelError, NotFoundError, SimError
+from .meshes import MeshStore
+from .model import Collision, Joint, Link, Model
+from .physics import PhysicsSettings
+from .plugins.base import ModelPlugin
+from .plugins.registry import known_filenames, plugin_class
+from .pose import IDENTITY, Pose, Twist
+from .schedule import Schedule
+from .spec import ModelSpec, PluginSpec
+
+logger = logging.getLogger(__name__)
+
+WORLD_FRAMES = ('', 'world', 'map', '/map')
+Entity = Model | Link | Collision
+
+
+class Listener(Protocol):
+    """Who wants to know what enters and leaves the world; called on the world's own thread."""
+
+    def model_spawned(self, model: Model) -> None:
+        """A model and its plugins are there."""
+
+    def model_deleted(self, model: Model) -> None:
+        """A model is about to go; its plugins still live."""
+
+    def world_reset(self) -> None:
+        """Poses, and perhaps time, have jumped back."""
+
+
+class World:
+    """Everything that is simulated. One thread owns it: no method may be called from another.
+
+    `paused` is for who runs the world to honour; `run` itself always runs.
+    """
+
+    def __init__(
+        self, physics: PhysicsSettings | None = None, mesh_cache: Path | None = None
+    ) -> None:
+        """Open an empty world.
+
+        Args:
+            mesh_cache: a directory to keep converted meshes in; None: a private temporary one.
+        """
+        self.physics = physics or PhysicsSettings()
+        self.clock = SimClock(self.physics.step_size)
+        self.schedule = Schedule()
+        self.models: dict[str, Model] = {}
+        self.listeners: list[Listener] = []
+        self.paused = False
+        self.meshes = MeshStore(mesh_cache)
+        self.engine = Engine(
+            self.physics,
+            lambda mesh: str(self.meshes.collision_hull(mesh.path, mesh.scale)),
+            lambda mesh: str(self.meshes.collision_surface(mesh.path, mesh.scale)),
+        )
+
+    def close(self) -> None:
+        """Free what the world holds outside Python."""
+        self.engine.close()
+        self.meshes.close()
+
+    def run(self, steps: int) -> None:
+        """Advance by exactly `steps`: in each, time first, then hooks, then physics."""
+        clock, schedule, engine = self.clock, self.schedule, self.engine
+        end = clock.steps + steps
+        while clock.steps < end:
+            quiet = min(schedule.next_due() - 1, end) - clock.steps
+            if quiet > 0:
+                clock.steps += quiet
+                engine.step(quiet)
+            else:
+                clock.steps += 1
+                schedule.run(clock.steps)
+                engine.step(1)
+
+    def set_physics(self, physics: PhysicsSettings) -> None:
+        """Use these settings from the next step on."""
+        self.physics = physics
+        self.clock.set_step_size(physics.step_size)
+        self.engine.apply(physics)
+
+    def spawn(self, spec: ModelSpec, name: str, pose: Pose) -> Model:
+        """Put a model into the world and load its plugins.
+
+        A plugin that fails is logged and left out; the model lives.
+
+        Raises:
+            ModelError: the name is taken or empty.
+        """
+        if not name:
+            raise ModelError('a model needs a name; the one given is empty')
+        if name in self.models:
+            raise ModelError(f"a model named '{name}' is in the world already")
+        model = Model(name, spec, self.engine, pose)
+        self.models[name] = model
+        for plugin in spec.plugins:
+            self._load_plugin(model, plugin)
+        for listener in self.listeners:
+            listener.model_spawned(model)
+        return model
+
+    def delete(self, name: str) -> None:
+        """Take a model and its plugins out of the world.
+
+        Raises:
+            NotFoundError: there is no such model.
+        """
+        model = self.models.get(name)
+        if model is None:
+            raise NotFoundError(f"there is no model named '{name}'")
+        for listener in self.listeners:
+            listener.model_deleted(model)
+        for plugin in reversed(model.plugins):
+            self.schedule.remove(plugin)
+            plugin.unload()
+        self.engine.remove(model.body)
+        del self.models[name]
+
+    def reset_world(self) -> None:
+        """Bring every model back to its spawn pose, at rest; joints stay, time goes on."""
+        for model in self.models.values():
+            if not model.static:
+                model.set_pose(model.initial_pose)
+                model.set_twist(Twist())
+        for plugin in self._plugins():
+            plugin.reset()
+        self._tell_reset()
+
+    def reset_simulation(self) -> None:
+        """Begin again: time zero, every model as it was spawned, and the same motion as then."""
+        self.clock.reset()
+        self.engine.reset()
+        for model in self.models.values():
+            model.body = self.engine.add(model.spec, model.initial_pose)
+        for plugin in self._plugins():
+            plugin.restart()
+        self._tell_reset()
+
+    def find_entity(self, name: str) -> Entity | None:
+        """Return the first entity with that scoped or plain name, depth first in world order."""
+        for model in self.models.values():
+            if name == model.name:
+                return model
+            for link in model.links.values():
+                if name in (link.name, link.scoped_name):
+                    return link
+                for collision in link.collisions.values():
+                    if name in (collision.name, collision.scoped_name):
+                        return collision
+        return None
+
+    def find_model(self, name: str) -> Model | None:
+        """Return the model that the name finds first; None if it finds something else first."""
+        entity = self.find_entity(name)
+        return entity if isinstance(entity, Model) else None
+
+    def find_joint(self, name: str) -> Joint | None:
+        """Return the joint with that plain or scoped name in the first model that has it."""
+        for model in self.models.values():
+            with contextlib.suppress(NotFoundError):
+                return model.joint(name)
+        return None
+
+    def frame(self, name: str) -> tuple[Pose, Twist]:
+        """Return pose and twist of a reference frame: an entity, or the world by its names.
+
+        Raises:
+            NotFoundError: nothing in the world has that name.
+        """
+        entity = self.find_entity(name)
+        if entity is not None:
+            return entity.state()
+        if name in WORLD_FRAMES:
+            return IDENTITY, Twist()
+        raise NotFoundError(f"there is no model, link or collision named '{name}'")
+
+    def _load_plugin(self, model: Model, spec: PluginSpec) -> None:
+        where = f"model '{model.name}', plugin '{spec.name}'"
+        cls = plugin_class(spec.filename)
+        if cls is None:
+            known = ', '.join(known_filenames())
+            logger.error("%s: no plugin '%s' here; known: %s", where, spec.filename, known)
+            return
+        plugin = cls(self, model, spec)
+        try:
+            plugin.load()
+        except SimError as error:
+            logger.error('%s: %s; the model lives on without it', where, error)
+            return
+        model.plugins.append(plugin)
+        self.schedule.add(plugin)
+
+    def _plugins(self) -> Iterator[ModelPlugin]:
+        for model in self.models.values():
+            yield from model.plugins
+
+    def _tell_reset(self) -> None:
+        for listener in self.listeners:
+            listener.world_reset()

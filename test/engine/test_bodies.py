@@ -1,0 +1,191 @@
+"""Bodies move as rigid-body mechanics has it, and as their description says."""
+
+import math
+
+import pytest
+from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+
+from rosbots_description.sim.pose import Pose, Twist, from_rpy, to_rpy
+from rosbots_description.sim.spec import Inertial, LinkSpec, ModelSpec
+
+SECOND = 1000  # steps
+
+ARM = """
+<link name="post"><inertial><mass value="5"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="arm"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
+  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="world_joint" type="fixed"><parent link="world"/><child link="post"/>
+  <origin xyz="0 0 2"/></joint>
+<link name="world"/>
+<joint name="hinge" type="{type}"><parent link="post"/><child link="arm"/><axis xyz="0 1 0"/>
+  {motion}</joint>
+"""
+
+
+def free_ball(inertial):
+    return ModelSpec('ball', (LinkSpec('link', inertial=inertial),))
+
+
+def test_a_free_fall_has_no_drag():
+    spec = free_ball(Inertial(1.0, ixx=0.1, iyy=0.1, izz=0.1))
+    with empty_world() as world:
+        model = world.spawn(spec, 'ball', Pose((0.0, 0.0, 100.0)))
+        world.run(2 * SECOND)
+        assert model.twist.linear[2] == pytest.approx(-19.6, rel=1e-6)
+
+
+def test_the_pose_is_that_of_the_link_frame_not_of_the_centre_of_mass():
+    spec = free_ball(Inertial(1.0, Pose((0.3, 0.2, 0.1)), 0.1, 0.2, 0.25, ixy=0.03))
+    pose = Pose((1.0, 2.0, 3.0), from_rpy(0.1, 0.2, 0.3))
+    with empty_world() as world:
+        model = world.spawn(spec, 'ball', pose)
+        assert model.pose.position == pytest.approx(pose.position)
+        assert to_rpy(model.pose.orientation) == pytest.approx((0.1, 0.2, 0.3))
+
+
+def test_the_velocity_is_that_of_the_link_origin():
+    spec = free_ball(Inertial(1.0, Pose((1.0, 0.0, 0.0)), 0.1, 0.1, 0.1))
+    with empty_world() as world:
+        model = world.spawn(spec, 'ball', Pose((0.0, 0.0, 5.0)))
+        model.set_twist(Twist((0.1, 0.2, 0.3), (0.0, 0.0, 2.0)))
+        assert model.twist.linear == pytest.approx((0.1, 0.2, 0.3))
+        assert model.twist.angular == pytest.approx((0.0, 0.0, 2.0))
+
+
+@pytest.mark.parametrize('moments', [(0.01, 0.01, 0.03), (1.0, 100.0, 1.0)])
+def test_a_tensor_no_solid_can_have_still_turns(moments):
+    with empty_world() as world:
+        model = world.spawn(free_ball(Inertial(1.0, Pose(), *moments)), 'b', Pose((0, 0, 50.0)))
+        model.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
+        world.run(SECOND)
+        assert to_rpy(model.pose.orientation)[2] == pytest.approx(1.0, abs=0.01)
+
+
+def test_setting_the_pose_keeps_velocities_and_joints():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        model.joint('wheel_left_joint').set_position(0.7)
+        world.run(100)
+        falling = model.twist.linear[2]
+        model.set_pose(Pose((3.0, 4.0, 2.0), from_rpy(0.0, 0.0, 1.0)))
+        assert model.pose.position == pytest.approx((3.0, 4.0, 2.0))
+        assert model.twist.linear[2] == pytest.approx(falling)
+        assert model.joint('wheel_left_joint').position == pytest.approx(0.7, abs=1e-3)
+
+
+def test_a_passive_joint_swings_freely():
+    motion = ''
+    spec = urdf_spec(ARM.format(type='continuous', motion=motion))
+    with empty_world() as world:
+        model = world.spawn(spec, 'arm', Pose())
+        highest = 0.0
+        for _ in range(40):
+            world.run(50)
+            highest = max(highest, model.joint('hinge').position)
+        # From level it swings through and comes up on the other side: half a turn.
+        assert highest == pytest.approx(math.pi, abs=0.05)
+
+
+def test_joint_limits_hold():
+    motion = '<limit lower="-0.5" upper="0.5" effort="10" velocity="10"/>'
+    spec = urdf_spec(ARM.format(type='revolute', motion=motion))
+    with empty_world() as world:
+        model = world.spawn(spec, 'arm', Pose())
+        world.run(3 * SECOND)
+        assert model.joint('hinge').position == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_model_whose_root_is_the_world_is_bolted():
+    spec = urdf_spec(ARM.format(type='continuous', motion=''))
+    with empty_world() as world:
+        model = world.spawn(spec, 'arm', Pose())
+        world.run(SECOND)
+        assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 2.0))
+
+
+def test_a_joint_between_the_world_and_the_root_moves():
+    gate = """<link name="world"/><link name="gate"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
+      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <joint name="hinge" type="continuous"><parent link="world"/><child link="gate"/>
+      <origin xyz="0 0 2"/><axis xyz="0 1 0"/></joint>"""
+    with empty_world() as world:
+        model = world.spawn(urdf_spec(gate), 'gate', Pose((1.0, 0.0, 0.0)))
+        world.run(300)
+        assert model.links['gate'].pose.position == pytest.approx((1.0, 0.0, 2.0), abs=1e-6)
+        assert model.joint('hinge').position > 0.3
+        assert list(model.links) == ['gate']
+
+
+def test_a_static_model_hangs_in_the_air():
+    spec = urdf_spec(box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>'))
+    with empty_world() as world:
+        model = world.spawn(spec, 'box', Pose((0.0, 0.0, 3.0)))
+        world.run(SECOND)
+        assert model.pose.position == (0.0, 0.0, 3.0)
+
+
+def test_a_link_without_gravity_floats():
+    off = '<gazebo reference="box"><turnGravityOff>true</turnGravityOff></gazebo>'
+    with empty_world() as world:
+        model = world.spawn(urdf_spec(box_urdf('1 1 1', 2.0, off)), 'box', Pose((0, 0, 3.0)))
+        world.run(SECOND)
+        assert model.pose.position[2] == pytest.approx(3.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(('mu', 'slides'), [(0.1, True), (0.3, False)])
+def test_a_box_slides_on_a_slope_when_it_is_steeper_than_its_friction(mu, slides):
+    slope = math.radians(10.0)  # the tangent is 0.176
+    ramp = urdf_spec(box_urdf('20 20 0.2', 1.0, '<gazebo><static>true</static></gazebo>'))
+    friction = f'<gazebo reference="box"><mu1>{mu}</mu1><mu2>{mu}</mu2></gazebo>'
+    with empty_world() as world:
+        world.spawn(ramp, 'ramp', Pose((0.0, 0.0, 5.0), from_rpy(0.0, slope, 0.0)))
+        box = world.spawn(
+            urdf_spec(box_urdf('0.5 0.5 0.5', 1.0, friction)),
+            'box',
+            Pose((0.0, 0.0, 5.36), from_rpy(0.0, slope, 0.0)),
+        )
+        world.run(SECOND)
+        start = box.pose.position[0]
+        world.run(SECOND)
+        way = box.pose.position[0] - start
+        assert way > 0.5 if slides else abs(way) < 0.005
+
+
+def test_collisions_of_one_link_can_have_different_friction():
+    # A sledge on a slippery skid; the load on top, which never touches, is rough.
+    sledge = (
+        box_urdf('0.5 0.5 0.5', 1.0)
+        + """
+      <link name="skid"><collision><geometry><box size="0.5 0.5 0.1"/></geometry></collision></link>
+      <joint name="j" type="fixed"><parent link="box"/><child link="skid"/>
+        <origin xyz="0 0 -0.3"/></joint>
+      <gazebo reference="skid"><mu1>0</mu1><mu2>0</mu2></gazebo>"""
+    )
+    with empty_world() as world:
+        model = world.spawn(urdf_spec(sledge), 'sledge', Pose((0.0, 0.0, 0.36)))
+        world.run(200)
+        model.set_twist(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        world.run(SECOND)
+        assert model.twist.linear[0] == pytest.approx(1.0, abs=0.02)
+
+
+def test_five_boxes_stand_on_each_other():
+    spec = urdf_spec(box_urdf('0.5 0.5 0.5', 1.0))
+    with empty_world() as world:
+        boxes = [world.spawn(spec, f'box{i}', Pose((0.0, 0.0, 0.25 + i / 2))) for i in range(5)]
+        world.run(3 * SECOND)
+        for i, box in enumerate(boxes):
+            assert box.pose.position == pytest.approx((0.0, 0.0, 0.25 + i / 2), abs=0.01)
+
+
+def test_the_courses_obstacle_stands_and_does_not_explode():
+    shape = '<origin xyz="2 0 1"/><geometry><box size="1 1 2"/></geometry>'
+    obstacle = urdf_spec(f"""<link name="my_box"><inertial><origin xyz="2 0 0"/><mass value="1"/>
+      <inertia ixx="1" iyy="100" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+      <collision>{shape}</collision><visual>{shape}</visual></link>""")
+    with empty_world() as world:
+        model = world.spawn(obstacle, 'my_object', Pose((1.0, 0.0, 1.0)))
+        world.run(5 * SECOND)
+        assert model.pose.position == pytest.approx((1.0, 0.0, 0.0), abs=0.01)
+        assert max(map(abs, model.twist.linear)) < 1e-3

@@ -1,0 +1,240 @@
+"""The world: entering and leaving, resetting, names, and the same bits every time."""
+
+import hashlib
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support import SETTLED, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+
+from rosbots_description.sim.errors import ModelError, NotFoundError
+from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.schedule import Hook
+from rosbots_description.sim.spec import Element, PluginSpec
+
+MEGABYTE = 2**20
+LEAK_ALLOWED = 20 * MEGABYTE
+CYCLES = 200
+
+
+def resident_bytes():
+    pages = int(Path('/proc/self/statm').read_text(encoding='ascii').split()[1])
+    return pages * 4096
+
+
+def drive_and_hash(world, model):
+    """Return a fingerprint of a drive, every bit of every pose."""
+    digest = hashlib.sha256()
+    world.run(1000)
+    model.plugins[0].command(0.5, 0.5)
+    for _ in range(50):
+        world.run(20)
+        digest.update(repr(model.state()).encode())
+    return digest.hexdigest()
+
+
+def fresh_drive():
+    with empty_world() as world:
+        return drive_and_hash(world, world.spawn(robot_spec(), 'rosbots', SPAWN_POSE))
+
+
+def test_the_robot_has_gazebos_links_and_mass():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        assert [link.scoped_name for link in model.links.values()] == [
+            'rosbots::base_footprint',
+            'rosbots::wheel_left_link',
+            'rosbots::wheel_right_link',
+        ]
+        assert sum(link.inertial.mass for link in model.spec.links) == pytest.approx(1.4)
+
+
+def test_time_comes_before_hooks_and_hooks_before_physics():
+    class Watch(Hook):
+        due = 1
+
+        def update(self):
+            seen.append((world.clock.steps, model.pose.position[2]))
+
+    seen = []
+    with empty_world() as world:
+        model = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0, 0, 5.0)))
+        world.schedule.add(Watch())
+        world.run(1)
+        assert seen == [(1, 5.0)]
+        assert model.pose.position[2] < 5.0
+
+
+def test_running_in_pieces_is_running_at_once():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        model.plugins[0].command(0.3, 0.2)
+        world.run(1500)
+        at_once = model.state()
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        model.plugins[0].command(0.3, 0.2)
+        for _ in range(500):
+            world.run(3)
+        assert model.state() == at_once
+
+
+def test_two_worlds_give_the_same_bits():
+    assert fresh_drive() == fresh_drive()
+
+
+def test_a_reset_simulation_gives_the_same_bits():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        first = drive_and_hash(world, model)
+        world.reset_simulation()
+        assert world.clock.now_ns == 0
+        assert drive_and_hash(world, model) == first
+
+
+def test_another_process_on_another_kind_of_machine_gives_the_same_bits():
+    code = 'from test_world import fresh_drive; print(fresh_drive())'
+    here = Path(__file__).parent
+    paths = [str(here), str(here.parent), str(here.parents[1] / 'src'), *sys.path]
+    result = subprocess.run(
+        [sys.executable, '-c', code],
+        # Another linear algebra kernel, as another machine would use.
+        env={'PYTHONPATH': ':'.join(paths), 'OPENBLAS_CORETYPE': 'Nehalem'},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert result.stdout.strip() == fresh_drive()
+
+
+def test_two_worlds_at_once_do_not_disturb_each_other():
+    alone = fresh_drive()
+    with empty_world() as other:
+        other.spawn(robot_spec(), 'rosbots', Pose((1.0, 1.0, 1.0)))
+        other.run(100)
+        assert fresh_drive() == alone
+
+
+def test_reset_world_brings_models_home_and_keeps_time_and_joint_angles():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(SETTLED)
+        model.plugins[0].command(0.5, 0.0)
+        world.run(2000)
+        angle = model.joint('wheel_left_joint').position
+        world.reset_world()
+        assert world.clock.steps == SETTLED + 2000
+        assert model.pose.position == pytest.approx(SPAWN_POSE.position)
+        assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0))
+        assert angle > 1.0
+        assert model.joint('wheel_left_joint').position == pytest.approx(angle)
+        world.run(SETTLED)
+        standing = model.pose.position
+        world.run(1000)
+        assert math.dist(standing, model.pose.position) < 1e-3  # the command is forgotten
+
+
+def test_spawning_and_deleting_without_end_leaks_nothing():
+    with empty_world() as world:
+        neighbour = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5, 5, 0.5)))
+        before = None
+        for cycle in range(CYCLES):
+            model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+            if cycle % 2:
+                model.plugins[0].command(0.5, 0.5)
+            world.run(30)
+            world.delete('rosbots')
+            if cycle == 20:
+                before = resident_bytes()
+        assert resident_bytes() - before < LEAK_ALLOWED
+        assert list(world.models) == ['ground_plane', 'box']
+        assert neighbour.pose.position == pytest.approx((5.0, 5.0, 0.5), abs=1e-3)
+
+
+def test_names_are_unique_and_not_empty():
+    spec = urdf_spec(box_urdf('1 1 1', 1.0))
+    with empty_world() as world:
+        world.spawn(spec, 'box', Pose((0, 0, 2.0)))
+        with pytest.raises(ModelError, match="'box' is in the world already"):
+            world.spawn(spec, 'box', Pose((0, 0, 4.0)))
+        with pytest.raises(ModelError, match='needs a name'):
+            world.spawn(spec, '', Pose((0, 0, 4.0)))
+        with pytest.raises(NotFoundError, match="no model named 'ball'"):
+            world.delete('ball')
+
+
+def test_entities_are_found_by_plain_and_scoped_names_in_world_order():
+    with empty_world() as world:
+        world.spawn(robot_spec(), 'one', SPAWN_POSE)
+        world.spawn(robot_spec(), 'two', Pose((3.0, 0.0, 0.5)))
+        assert world.find_entity('wheel_left_link').scoped_name == 'one::wheel_left_link'
+        assert world.find_entity('two::wheel_left_link').scoped_name == 'two::wheel_left_link'
+        assert world.find_model('two').name == 'two'
+        assert world.find_model('wheel_left_link') is None
+        assert world.find_joint('two::wheel_left_joint').model.name == 'two'
+        assert world.find_entity('base_link') is None  # lumped
+        collision = world.find_entity('wheel_left_link_collision')
+        assert collision.state()[0].position[1] == pytest.approx(0.5125, abs=1e-3)
+
+
+@pytest.mark.parametrize('name', ['', 'world', 'map', '/map'])
+def test_the_world_has_four_names(name):
+    with empty_world() as world:
+        assert world.frame(name)[0] == Pose()
+
+
+def test_an_unknown_frame_is_an_error():
+    with empty_world() as world, pytest.raises(NotFoundError, match="'base_link'"):
+        world.frame('base_link')
+
+
+def test_a_model_lives_on_without_a_plugin_nobody_knows(caplog):
+    plugin = PluginSpec('p', 'libnope.so', Element('plugin'))
+    spec = urdf_spec(box_urdf('1 1 1', 1.0))
+    with empty_world() as world:
+        model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (plugin,)}), 'b', Pose())
+        assert model.plugins == []
+    assert "no plugin 'libnope.so' here; known: libgazebo_ros_diff_drive.so" in caplog.text
+
+
+def test_a_model_lives_on_without_a_plugin_that_fails(caplog):
+    drive = PluginSpec('d', 'libgazebo_ros_diff_drive.so', Element('plugin'))
+    spec = urdf_spec(box_urdf('1 1 1', 1.0))
+    with empty_world() as world:
+        model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (drive,)}), 'b', Pose())
+        assert model.plugins == []
+        world.run(10)
+    assert "couldn't get wheel hinge joint named left_joint" in caplog.text
+
+
+def test_listeners_hear_of_models_coming_and_going():
+    class Listener:
+        def model_spawned(self, model):
+            heard.append(('spawned', model.name, len(model.plugins)))
+
+        def model_deleted(self, model):
+            heard.append(('deleted', model.name, len(model.plugins)))
+
+        def world_reset(self):
+            heard.append('reset')
+
+    heard = []
+    with empty_world() as world:
+        world.listeners.append(Listener())
+        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.reset_world()
+        world.delete('rosbots')
+    assert heard == [('spawned', 'rosbots', 1), 'reset', ('deleted', 'rosbots', 1)]
+
+
+def test_nothing_of_the_engine_reaches_the_terminal(capfd):
+    with empty_world() as world:
+        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(100)
+        world.reset_simulation()
+        world.run(100)
+    result = capfd.readouterr()
+    assert 'b3' not in result.out + result.err
+    assert 'pybullet' not in result.out + result.err

@@ -1,0 +1,73 @@
+"""Time is a count of steps, and hooks run at the steps they ask for."""
+
+import pytest
+
+from rosbots_description.sim.clock import SimClock
+from rosbots_description.sim.schedule import NEVER, Hook, Schedule
+
+
+def test_time_is_exact_after_a_million_steps():
+    clock = SimClock(0.001)
+    clock.steps += 1_000_000
+    assert clock.now_ns == 1000 * 10**9
+
+
+def test_a_new_step_size_counts_from_now_on():
+    clock = SimClock(0.001)
+    clock.steps += 500
+    clock.set_step_size(0.002)
+    clock.steps += 10
+    assert clock.now == pytest.approx(0.52, abs=1e-12)
+
+
+def test_the_first_step_after_a_time_is_strictly_later():
+    clock = SimClock(0.001)
+    assert clock.first_step_after(10_000_000) == 11
+    assert clock.first_step_after(10_000_001) == 11
+    assert clock.first_step_after(9_999_999) == 10
+
+
+def test_first_step_after_still_holds_when_the_step_size_has_changed():
+    clock = SimClock(0.001)
+    clock.steps += 10
+    clock.set_step_size(0.005)
+    step = clock.first_step_after(20_000_000)
+    clock.steps = step
+    assert clock.now_ns == 25_000_000
+
+
+def test_reset_begins_at_zero():
+    clock = SimClock(0.001)
+    clock.steps += 7
+    clock.set_step_size(0.01)
+    clock.reset()
+    assert (clock.now_ns, clock.steps) == (0, 0)
+
+
+class Every(Hook):
+    def __init__(self, period, log, name):
+        self.period, self.log, self.name = period, log, name
+        self.due = period
+
+    def update(self):
+        self.log.append((self.due, self.name))
+        self.due += self.period
+
+
+def test_hooks_run_in_the_order_they_were_added():
+    schedule, log = Schedule(), []
+    schedule.add(Every(2, log, 'a'))
+    schedule.add(Every(1, log, 'b'))
+    for step in range(1, 5):
+        schedule.run(step)
+    assert log == [(1, 'b'), (2, 'a'), (2, 'b'), (3, 'b'), (4, 'a'), (4, 'b')]
+
+
+def test_an_empty_schedule_is_never_due():
+    schedule = Schedule()
+    assert schedule.next_due() == NEVER
+    hook = Every(3, [], 'a')
+    schedule.add(hook)
+    assert schedule.next_due() == 3
+    schedule.remove(hook)
+    assert schedule.next_due() == NEVER

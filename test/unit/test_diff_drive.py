@@ -1,0 +1,337 @@
+"""The diff drive's timing, ramps, odometry and parameters, with joints that obey at once."""
+
+import logging
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from rosbots_description.sim.clock import SimClock
+from rosbots_description.sim.errors import NotFoundError, PluginError
+from rosbots_description.sim.plugins.diff_drive import DiffDrive
+from rosbots_description.sim.pose import Pose, Twist, from_rpy
+from rosbots_description.sim.spec import (
+    Collision,
+    Cylinder,
+    Element,
+    JointSpec,
+    LinkSpec,
+    PluginSpec,
+)
+
+TAGS = {
+    'robotNamespace': '/',
+    'leftJoint': 'left',
+    'rightJoint': 'right',
+    'wheelSeparation': '1.1',
+    'wheelDiameter': '0.52',
+    'wheelAcceleration': '1.0',
+    'updateRate': '100',
+}
+STEP = 0.001  # [s]
+PERIOD_STEPS = 10
+
+
+class Wheel:
+    """A joint that turns at its motor's target from the moment it is told."""
+
+    def __init__(self, name, model):
+        self.name, self.model = name, model
+        self.spec = JointSpec(name, 'revolute', 'base', f'{name}_link')
+        self.position, self.velocity, self.effort = 0.0, 0.0, 0.0
+        self.weight = 0.0  # [N]; nothing rests on a wheel of these tests unless they say so
+
+    def set_motor(self, velocity, effort):
+        self.velocity, self.effort = velocity, effort
+
+    def load(self):
+        return self.weight
+
+
+class FakeModel:
+    """A model with two wheels and a pose that a test can set."""
+
+    def __init__(self, wheel_collisions=()):
+        self.name = 'robot'
+        self.wheels = {'left': Wheel('left', self), 'right': Wheel('right', self)}
+        self.now = (Pose(), Twist())
+        self.wheel_collisions = wheel_collisions
+        y = {'left': 0.4, 'right': -0.4}
+        self.links = {f'{name}_link': SimpleNamespace(pose=Pose((0.1, y[name], 0.2))) for name in y}
+        side = from_rpy(-math.pi / 2, 0.0, 0.0)
+        self.spec = SimpleNamespace(
+            link=lambda name: LinkSpec(
+                name, Pose((0.0, y[name[:-5]], 0.2), side), collisions=self.wheel_collisions
+            )
+        )
+
+    @property
+    def pose(self):
+        return self.now[0]
+
+    def state(self):
+        return self.now
+
+    def joint(self, name):
+        if name not in self.wheels:
+            raise NotFoundError(f"model 'robot' has no joint '{name}'; its joints: left, right")
+        return self.wheels[name]
+
+
+def make(wheel_collisions=(), **tags):
+    children = tuple(Element(tag, text) for tag, text in (TAGS | tags).items() if text is not None)
+    spec = PluginSpec('drive', 'libgazebo_ros_diff_drive.so', Element('plugin', children=children))
+    world = SimpleNamespace(clock=SimClock(STEP))
+    plugin = DiffDrive(world, FakeModel(wheel_collisions), spec)
+    plugin.load()
+    return plugin
+
+
+def run(plugin, steps):
+    """Advance like the world does: time first, then the hook if it is due."""
+    clock = plugin.world.clock
+    for _ in range(steps):
+        clock.steps += 1
+        if plugin.due <= clock.steps:
+            plugin.update()
+
+
+def rim_speeds(plugin):
+    wheels = plugin.model.wheels
+    return tuple(wheels[side].velocity * plugin.config.wheel_diameter / 2 for side in wheels)
+
+
+def collect(port):
+    readings = []
+    port.connect(readings.append, lambda: True)
+    return readings
+
+
+def test_the_first_update_comes_one_step_late_and_the_mean_rate_is_exact():
+    plugin = make()
+    clock, times = plugin.world.clock, []
+    plugin.odometry.connect(lambda _: times.append(clock.steps), lambda: True)
+    run(plugin, 100)
+    assert times == [11, 21, 31, 41, 51, 61, 71, 81, 91]
+
+
+def test_an_update_rate_of_zero_means_every_step():
+    plugin = make(updateRate='0')
+    odometry = collect(plugin.odometry)
+    run(plugin, 5)
+    assert len(odometry) == 5
+
+
+def test_forward_turns_both_wheels_forward_and_left_turns_the_right_wheel_more():
+    plugin = make(wheelAcceleration='0')
+    plugin.command(0.5, 0.5)
+    run(plugin, PERIOD_STEPS + 1)
+    assert rim_speeds(plugin) == pytest.approx((0.5 - 0.275, 0.5 + 0.275))
+
+
+def test_the_ramp_gains_eleven_milliseconds_of_acceleration_every_ten():
+    plugin = make()
+    plugin.command(0.5, 0.0)
+    run(plugin, PERIOD_STEPS * 10 + 1)
+    assert rim_speeds(plugin) == pytest.approx((10 * 0.011,) * 2)
+
+
+def test_a_ramp_ends_at_the_target_when_one_wheel_is_near_it():
+    plugin = make()
+    plugin.command(0.5, 0.0)
+    run(plugin, 600)
+    assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
+
+
+def test_a_wheel_within_a_centimetre_per_second_ends_the_ramp_of_both():
+    plugin = make()
+    plugin.command(0.55, 1.0)  # the left wheel stands still and is to stand still
+    run(plugin, PERIOD_STEPS + 1)
+    assert rim_speeds(plugin) == pytest.approx((0.0, 1.1))
+
+
+def test_the_setpoint_is_not_synchronised_with_the_wheels():
+    plugin = make()
+    plugin.command(0.5, 0.0)
+    run(plugin, PERIOD_STEPS * 5 + 1)
+    for wheel in plugin.model.wheels.values():
+        wheel.velocity = 0.0  # something blocks the wheels
+    run(plugin, PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((6 * 0.011,) * 2)
+
+
+def test_the_torque_limit_is_wheel_torque():
+    plugin = make(wheelTorque='2.5')
+    assert plugin.model.wheels['left'].effort == 2.5
+    assert make(torque='20').model.wheels['left'].effort == 5.0
+
+
+def test_the_last_command_holds_without_end():
+    plugin = make()
+    plugin.command(0.5, 0.0)
+    run(plugin, 20_000)
+    assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
+
+
+def test_reset_forgets_the_command_and_keeps_the_ramp():
+    plugin = make()
+    plugin.command(0.5, 0.0)
+    run(plugin, 1000)
+    plugin.reset()
+    run(plugin, PERIOD_STEPS + 1)
+    assert 0.0 < rim_speeds(plugin)[0] < 0.5
+    run(plugin, 600)
+    assert rim_speeds(plugin) == pytest.approx((0.0, 0.0))
+
+
+def test_world_odometry_is_the_pose_of_the_model_and_its_twist_turned_into_the_body():
+    plugin = make()
+    odometry = collect(plugin.odometry)
+    pose = Pose((1.0, 2.0, -0.12), from_rpy(0.0, 0.0, math.pi / 2))
+    plugin.model.now = (pose, Twist((0.0, 0.3, 0.1), (0.5, 0.6, 0.7)))
+    run(plugin, PERIOD_STEPS + 1)
+    assert odometry[0].pose == pose
+    assert odometry[0].twist.linear == pytest.approx((0.3, 0.0, 0.0))
+    assert odometry[0].twist.angular == (0.0, 0.0, 0.7)
+
+
+def test_encoder_odometry_starts_at_zero_and_follows_the_wheels():
+    plugin = make(odometrySource='encoder', wheelAcceleration='0')
+    odometry = collect(plugin.odometry)
+    plugin.command(0.5, 0.5)
+    run(plugin, PERIOD_STEPS + 1)  # the wheels turn from here on
+    run(plugin, 2000)
+    pose, twist = odometry[-1]
+    driven = (plugin.world.clock.steps - PERIOD_STEPS - 1) * STEP
+    assert twist.linear[0] == pytest.approx(0.5)
+    assert twist.angular[2] == pytest.approx(0.5)
+    assert pose.position[0] == pytest.approx(math.sin(0.5 * driven), abs=2e-3)
+    assert pose.position[1] == pytest.approx(1.0 - math.cos(0.5 * driven), abs=2e-3)
+    assert pose.position[2] == 0.0
+
+
+def test_encoder_speed_is_positive_also_when_driving_backwards():
+    plugin = make(odometrySource='encoder', wheelAcceleration='0')
+    odometry = collect(plugin.odometry)
+    plugin.command(-0.5, 0.0)
+    run(plugin, 100)
+    assert odometry[-1].twist.linear[0] == pytest.approx(0.5)
+    assert odometry[-1].pose.position[0] < 0.0
+
+
+def test_joint_states_are_right_then_left():
+    plugin = make(publishWheelJointState='true')
+    states = collect(plugin.joint_states)
+    plugin.model.wheels['left'].position = 1.5
+    run(plugin, PERIOD_STEPS + 1)
+    assert states == [(('right', 'left'), (0.0, 1.5))]
+
+
+def test_wheel_transforms_are_relative_to_the_model_whatever_the_parent():
+    plugin = make(publishWheelTF='true')
+    transforms = collect(plugin.wheel_transform)
+    plugin.model.now = (Pose((1.0, 0.0, 0.0)), Twist())
+    run(plugin, PERIOD_STEPS + 1)
+    assert [(t.parent, t.child) for t in transforms] == [
+        ('base', 'left_link'),
+        ('base', 'right_link'),
+    ]
+    assert transforms[0].pose.position == pytest.approx((-0.9, 0.4, 0.2))
+
+
+@pytest.mark.parametrize(
+    ('tag', 'port'),
+    [
+        ('publishTf', 'odometry'),
+        ('publishWheelTF', 'wheel_transform'),
+        ('publishWheelJointState', 'joint_states'),
+    ],
+)
+def test_what_is_switched_off_is_not_sent(tag, port):
+    plugin = make(**{tag: 'false'})
+    readings = collect(getattr(plugin, port))
+    run(plugin, 50)
+    assert readings == []
+
+
+def test_nothing_is_computed_while_nobody_listens():
+    plugin = make(publishWheelTF='true', publishWheelJointState='true')
+    plugin.model.state = plugin.model.links = None  # any look would fail
+    run(plugin, 50)
+    assert plugin.world.clock.steps == 50
+
+
+def test_missing_tags_are_named_with_upstreams_defaults(caplog):
+    make(wheelSeparation=None, updateRate=None)
+    messages = [record.getMessage() for record in caplog.records]
+    for text in (
+        'missing <rosDebugLevel> default is na',
+        'missing <wheelSeparation> default is 0.34',
+        'missing <updateRate> default is 100',
+        'missing <wheelTorque> default is 5',
+        'missing <publishOdomTF> default is true',
+        'missing <odometrySource> default is 1',
+    ):
+        assert f'DiffDrive(ns = //): {text}' in messages
+
+
+@pytest.mark.parametrize(('tag', 'namespace'), [(None, 'robot'), ('', 'robot'), ('/r1', '/r1')])
+def test_the_namespace_is_the_models_name_unless_given(tag, namespace):
+    assert make(robotNamespace=tag).namespace == namespace
+
+
+def test_a_missing_joint_is_named_together_with_those_there_are():
+    with pytest.raises(PluginError, match=r'hinge joint named wheel.*its joints: left, right'):
+        make(leftJoint='wheel')
+
+
+@pytest.mark.parametrize('text', ['wide', 'nan', '0', '-1'])
+def test_a_separation_that_makes_no_sense_is_refused(text):
+    with pytest.raises(PluginError, match='wheelSeparation'):
+        make(wheelSeparation=text)
+
+
+def test_a_boolean_that_is_none_keeps_the_default_and_says_so(caplog):
+    assert make(publishOdomTF='maybe').config.publish_odom_tf is True
+    assert "<publishOdomTF> is 'maybe'" in caplog.text
+
+
+def test_tags_that_nobody_reads_are_reported_once(caplog):
+    make(torque='20', legacyMode='false', alwaysOn='true')
+    lines = [r.getMessage() for r in caplog.records if 'not read' in r.getMessage()]
+    assert len(lines) == 1
+    assert '<torque>, <legacyMode>' in lines[0]
+
+
+def test_a_loaded_wheel_that_pulls_creeps_and_reports_its_hub():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='1.3')
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    for wheel in plugin.model.wheels.values():
+        wheel.weight, wheel.effort = 20.0, 1.3  # F / N = 0.25, so 2 % creep
+    run(plugin, PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((0.98 * 0.52,) * 2)
+    plugin.config = replace(plugin.config, publish_wheel_joint_state=True)
+    states = collect(plugin.joint_states)
+    run(plugin, PERIOD_STEPS)
+    # The hub is ahead of the joint by the creep of one period.
+    run(plugin, PERIOD_STEPS)
+    assert states[1].positions[0] == pytest.approx(0.02 * 2.0 * 0.011)
+
+
+def wheel_of(radius):
+    return (Collision('c', Cylinder(radius, 0.2)),)
+
+
+def test_numbers_that_contradict_the_wheels_are_one_warning(caplog):
+    make(wheel_collisions=wheel_of(0.23))
+    lines = [r for r in caplog.records if 'contradict' in r.getMessage()]
+    assert len(lines) == 1
+    assert '0.885 of the commanded speed' in lines[0].getMessage()
+    assert lines[0].levelno == logging.WARNING
+
+
+def test_numbers_that_fit_the_wheels_are_no_warning(caplog):
+    make(wheel_collisions=wheel_of(0.23), wheelDiameter='0.46', wheelSeparation='0.8')
+    assert 'contradict' not in caplog.text
