@@ -105,7 +105,8 @@ def test_a_model_whose_root_is_the_world_is_bolted():
 
 
 def test_a_joint_between_the_world_and_the_root_moves():
-    gate = """<link name="world"/><link name="gate"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
+    gate = """<link name="world"/>
+      <link name="gate"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
       <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
       <joint name="hinge" type="continuous"><parent link="world"/><child link="gate"/>
       <origin xyz="0 0 2"/><axis xyz="0 1 0"/></joint>"""

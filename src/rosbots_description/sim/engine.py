@@ -22,7 +22,7 @@ from .bullet_description import (
 )
 from .inertia import principal_axes
 from .physics import PhysicsSettings
-from .pose import Pose, Twist, Vector, add, compose, cross, inverse, rotate, subtract
+from .pose import IDENTITY, Pose, Twist, Vector, add, compose, cross, inverse, rotate, subtract
 from .spec import FIXED, Collision, Cylinder, Inertial, JointSpec, LinkSpec, ModelSpec
 
 # A wheel touches along a line and scrubs when it turns on the spot. Its torque per normal force is
@@ -76,6 +76,7 @@ class Body:
         self.joints: dict[str, tuple[int, int]] = {}
         self.roots: list[str] = []  # links that the engine moves as bases
         self.bodies: list[int] = []
+        self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
 
 
 class Engine:
@@ -142,6 +143,23 @@ class Engine:
             self._weightless.pop(number, None)
             pybullet.removeBody(number, self._client)
 
+    def replace(self, body: Body, spec: ModelSpec) -> Body:
+        """Let a model go on as another description of the same links and joints.
+
+        Poses, velocities, joint states and motors stay. The old `body` is gone.
+        """
+        roots = {link: self.link_state(body, link) for link in body.roots}
+        joints = {name: self.joint_state(body, name) for name in body.joints}
+        self.remove(body)
+        new = self.add(spec, IDENTITY)
+        self.set_root_poses(new, {link: pose for link, (pose, _) in roots.items()})
+        for link, (_, twist) in roots.items():
+            self.set_root_twist(new, link, twist)
+        for name, (position, velocity) in joints.items():
+            pybullet.resetJointState(*new.joints[name], position, velocity, self._client)
+            self.set_joint_motor(new, name, *body.motors[name])
+        return new
+
     def link_pose(self, body: Body, link: str) -> Pose:
         """Return where the link's frame stands in the world."""
         part = body.parts[link]
@@ -179,15 +197,34 @@ class Engine:
     def set_twist(self, body: Body, twist: Twist) -> None:
         """Let all links move with this velocity of their root's origin, in world axes."""
         for link in body.roots:
-            part = body.parts[link]
-            com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
-            linear = add(twist.linear, cross(twist.angular, com))
-            pybullet.resetBaseVelocity(
-                part.body, linear, twist.angular, physicsClientId=self._client
-            )
+            self.set_root_twist(body, link, twist)
         for number, index in body.joints.values():
             position = pybullet.getJointState(number, index, self._client)[0]
             pybullet.resetJointState(number, index, position, 0.0, self._client)
+
+    def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
+        """Let a root link move with this velocity of its origin, in world axes; joints go on."""
+        part = body.parts[link]
+        com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
+        linear = add(twist.linear, cross(twist.angular, com))
+        pybullet.resetBaseVelocity(part.body, linear, twist.angular, physicsClientId=self._client)
+
+    def push(self, body: Body, link: str, force: Vector, torque: Vector) -> None:
+        """Push a link during the next step: force [N] at its centre of mass and torque [N m].
+
+        Both are given in world axes and add to other pushes.
+        """
+        part = body.parts[link]
+        com = compose(self.link_pose(body, link), part.com_in_origin).position
+        world, client = pybullet.WORLD_FRAME, self._client
+        pybullet.applyExternalForce(part.body, part.index, force, com, world, client)
+        pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
+
+    def push_joint(self, body: Body, joint: str, effort: float) -> None:
+        """Push a joint during the next step by `effort` [N m or N], beside its motor."""
+        pybullet.setJointMotorControl2(
+            *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
+        )
 
     def joint_state(self, body: Body, joint: str) -> tuple[float, float]:
         """Return position [rad or m] and velocity [rad/s or m/s] of a joint."""
@@ -214,10 +251,9 @@ class Engine:
 
     def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
-        number, index = body.joints[joint]
+        body.motors[joint] = (velocity, effort)
         pybullet.setJointMotorControl2(
-            number,
-            index,
+            *body.joints[joint],
             pybullet.VELOCITY_CONTROL,
             targetVelocity=velocity,
             force=effort,

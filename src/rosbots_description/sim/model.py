@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from .engine import Body, Engine
 from .errors import NotFoundError
-from .pose import Pose, Twist, compose, inverse
+from .pose import Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from .spec import Collision as CollisionSpec
 from .spec import JointSpec, LinkSpec, ModelSpec
 
@@ -35,6 +35,10 @@ class Link:
     def state(self) -> tuple[Pose, Twist]:
         """Return pose and twist at once, which costs one look instead of two."""
         return self.model.engine.link_state(self.model.body, self.name)
+
+    def push(self, force: Vector, torque: Vector) -> None:
+        """Push during the next step: force [N] at the centre of mass, torque [N m], world axes."""
+        self.model.engine.push(self.model.body, self.name, force, torque)
 
 
 class Collision:
@@ -84,6 +88,10 @@ class Joint:
     def effort(self) -> float:
         """Return what the motor gave in the last step [N m or N]."""
         return self.model.engine.joint_effort(self.model.body, self.name)
+
+    def push(self, effort: float) -> None:
+        """Push during the next step by `effort` [N m or N], beside the motor."""
+        self.model.engine.push_joint(self.model.body, self.name, effort)
 
     def load(self) -> float:
         """Return the sum of the normal forces on the child link in the last step [N]."""
@@ -146,6 +154,32 @@ class Model:
     def set_twist(self, twist: Twist) -> None:
         """Let every link move with this velocity, in world axes; joints come to rest."""
         self.engine.set_twist(self.body, twist)
+
+    def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
+        """Bring a link to a pose with a velocity, in the world.
+
+        Links hang together by their joints: a root takes along what hangs on it and its joints go
+        on moving; for another link the whole model is moved, joints as they are, at rest.
+        """
+        if link.name in self.body.roots:
+            self.engine.set_root_poses(self.body, {link.name: pose})
+            self.engine.set_root_twist(self.body, link.name, twist)
+            return
+        shift = compose(pose, inverse(link.pose))
+        self.set_pose(compose(shift, self.pose))
+        arm = subtract(self.links[self._canonical].pose.position, pose.position)
+        linear = add(twist.linear, cross(twist.angular, arm))
+        self.set_twist(Twist(linear, twist.angular))
+
+    def respecify(self, spec: ModelSpec) -> None:
+        """Go on as another description of the same links and joints; the motion stays."""
+        self.body = self.engine.replace(self.body, spec)
+        self.spec = spec
+        for link in spec.links:
+            self.links[link.name].spec = link
+        for joint in spec.joints:
+            if joint.name in self.joints:
+                self.joints[joint.name].spec = joint
 
     def joint(self, name: str) -> Joint:
         """Return the joint of that plain or scoped name.

@@ -9,6 +9,7 @@ from typing import Protocol
 from .clock import SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
+from .jobs import Jobs
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
@@ -17,6 +18,7 @@ from .plugins.registry import known_filenames, plugin_class
 from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
 from .spec import ModelSpec, PluginSpec
+from .world_spec import LightSpec
 
 logger = logging.getLogger(__name__)
 
@@ -54,7 +56,10 @@ class World:
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
         self.schedule = Schedule()
+        self.jobs = Jobs(self.clock)
+        self.schedule.add(self.jobs)
         self.models: dict[str, Model] = {}
+        self.lights: dict[str, LightSpec] = {}
         self.listeners: list[Listener] = []
         self.paused = False
         self.meshes = MeshStore(mesh_cache)
@@ -120,6 +125,7 @@ class World:
             raise NotFoundError(f"there is no model named '{name}'")
         for listener in self.listeners:
             listener.model_deleted(model)
+        self.jobs.cancel(lambda target: target.model is model)
         for plugin in reversed(model.plugins):
             self.schedule.remove(plugin)
             plugin.unload()
@@ -139,6 +145,7 @@ class World:
     def reset_simulation(self) -> None:
         """Begin again: time zero, every model as it was spawned, and the same motion as then."""
         self.clock.reset()
+        self.jobs.cancel(lambda target: True)
         self.engine.reset()
         for model in self.models.values():
             model.body = self.engine.add(model.spec, model.initial_pose)

@@ -1,0 +1,155 @@
+"""Forces and torques give the accelerations of rigid-body mechanics, for as long as asked."""
+
+import math
+
+import pytest
+from support import SPAWN_POSE, empty_world, robot_spec
+
+from rosbots_description.sim.pose import IDENTITY, Pose, Twist, from_rpy
+from rosbots_description.sim.spec import Inertial, JointSpec, LinkSpec, ModelSpec
+
+SECOND_NS = 10**9
+MOMENTS = (0.1, 0.2, 0.25)  # [kg m^2]
+HIGH = Pose((0.0, 0.0, 500.0))
+
+
+def free_body(com=IDENTITY):
+    link = LinkSpec('link', inertial=Inertial(1.0, com, *MOMENTS), gravity=False)
+    return ModelSpec('body', (link,))
+
+
+def push(world, link, force, torque, start=0.0, duration=1.0):
+    world.jobs.add(
+        link,
+        lambda: link.push(force, torque),
+        round(start * SECOND_NS),
+        round(duration * SECOND_NS),
+    )
+
+
+def test_one_newton_for_a_second_moves_a_kilogram_at_one_metre_per_second():
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        world.run(1500)
+        assert model.twist.linear == pytest.approx((1.0, 0.0, 0.0), abs=0.005)
+
+
+def test_a_force_acts_at_the_centre_of_mass():
+    with empty_world() as world:
+        model = world.spawn(free_body(com=Pose((0.3, 0.2, 0.1))), 'body', HIGH)
+        push(world, model.links['link'], (0.0, 2.0, 0.0), (0.0, 0.0, 0.0))
+        world.run(1500)
+        assert model.twist.linear == pytest.approx((0.0, 2.0, 0.0), abs=0.01)
+        assert model.twist.angular == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
+
+
+@pytest.mark.parametrize('axis', [0, 1, 2])
+def test_a_torque_about_a_principal_axis_gives_the_analytic_rate(axis):
+    torque = tuple(0.1 if i == axis else 0.0 for i in range(3))
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (0.0, 0.0, 0.0), torque)
+        world.run(1500)
+        assert model.twist.angular[axis] == pytest.approx(0.1 / MOMENTS[axis], rel=0.01)
+
+
+def test_torque_and_force_are_in_world_axes_whatever_the_bodys_attitude():
+    pose = Pose(HIGH.position, from_rpy(0.0, math.pi / 2, 0.0))  # its x points down
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', pose)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.1))
+        world.run(1100)
+        assert model.twist.linear[0] == pytest.approx(1.0, abs=0.005)
+        assert model.twist.angular[2] == pytest.approx(0.1 / MOMENTS[0], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ('start', 'duration', 'speed'),
+    [(0.0, 0.0, 0.0), (0.5, 0.2, 0.2), (0.9, 5.0, 0.1), (0.0, -1.0, 1.0), (5.0, 1.0, 0.0)],
+)
+def test_a_push_lasts_from_its_start_for_its_duration(start, duration, speed):
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), start, duration)
+        world.run(1000)
+        assert model.twist.linear[0] == pytest.approx(speed, abs=0.0021)
+
+
+def test_a_cancelled_push_ends():
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), duration=-1.0)
+        world.run(100)
+        world.jobs.cancel(lambda target: target.scoped_name == 'body::link')
+        world.run(100)
+        assert model.twist.linear[0] == pytest.approx(0.1, abs=0.0015)
+
+
+def test_a_deleted_model_takes_its_pushes_along():
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), duration=-1.0)
+        world.delete('body')
+        world.run(10)
+        assert list(world.models) == ['ground_plane']
+
+
+def pendulum():
+    base = LinkSpec('base', inertial=Inertial(1.0, Pose(), 1.0, 1.0, 1.0))
+    arm = LinkSpec('arm', inertial=Inertial(1.0, Pose(), *MOMENTS))
+    return ModelSpec(
+        'pendulum',
+        (base, arm),
+        (
+            JointSpec('bolt', 'fixed', 'world', 'base'),
+            JointSpec('hinge', 'revolute', 'base', 'arm', axis=(0.0, 0.0, 1.0)),
+        ),
+    )
+
+
+def test_an_effort_turns_a_joint_by_its_inertia():
+    with empty_world() as world:
+        model = world.spawn(pendulum(), 'pendulum', HIGH)
+        joint = model.joint('hinge')
+        world.jobs.add(joint, lambda: joint.push(0.1), 0, SECOND_NS)
+        world.run(1500)
+        assert joint.velocity == pytest.approx(0.1 / MOMENTS[2], rel=0.01)
+
+
+def test_a_model_goes_on_moving_when_its_description_changes():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(2500)
+        model.plugins[0].command(0.5, 0.0)
+        world.run(2000)
+        before, joint = model.state(), model.joint('wheel_left_joint').state()
+        model.respecify(model.spec)
+        assert model.pose.position == pytest.approx(before[0].position, abs=1e-9)
+        assert model.twist.linear == pytest.approx(before[1].linear, abs=1e-9)
+        assert model.joint('wheel_left_joint').state() == pytest.approx(joint, abs=1e-9)
+        world.run(1000)
+        assert model.twist.linear[0] == pytest.approx(before[1].linear[0], abs=0.01)
+
+
+def test_a_root_link_takes_along_what_hangs_on_it():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        wheel = model.links['wheel_left_link']
+        apart = wheel.pose.position[1] - model.pose.position[1]
+        target = Pose((3.0, 4.0, 1.0))
+        model.move_link(model.links['base_footprint'], target, Twist((0.1, 0.0, 0.0)))
+        assert model.pose.position == pytest.approx(target.position)
+        assert wheel.pose.position[1] == pytest.approx(4.0 + apart)
+        assert model.twist.linear == pytest.approx((0.1, 0.0, 0.0))
+
+
+def test_another_link_takes_the_whole_model_along():
+    with empty_world() as world:
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        wheel = model.links['wheel_left_link']
+        target = Pose((3.0, 4.0, 1.0), from_rpy(0.0, 0.0, 1.0))
+        model.move_link(wheel, target, Twist((0.1, 0.2, 0.0), (0.0, 0.0, 1.0)))
+        assert wheel.pose.position == pytest.approx(target.position, abs=1e-6)
+        assert wheel.twist.linear == pytest.approx((0.1, 0.2, 0.0), abs=1e-6)
+        assert wheel.twist.angular == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
