@@ -12,6 +12,8 @@ from collections.abc import Sequence
 import rosgraph
 import rospy
 
+from .shutdown import end_at_once
+
 logger = logging.getLogger(__name__)
 
 _RETRY = 0.5  # [s] wall time between two tries to reach the master
@@ -38,6 +40,7 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
     # Whoever reads the lines through a pipe wants them as they are written.
     sys.stdout.reconfigure(line_buffering=True)
     rospy.init_node(name, [name, *arguments], anonymous, disable_signals=True)
+    end_at_once()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _shut_down)
 

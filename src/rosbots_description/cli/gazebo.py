@@ -1,0 +1,52 @@
+"""Front end of the executable gazebo: the server and, as long as it is open, a window onto it."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from rosbots_description.cli.gzclient import display_works
+
+_POLL = 0.1  # [s] between two looks at the children
+_GRACE = 5.0  # [s] for a child to end after being asked
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run gzserver and gzclient, which lie beside this executable, until either ends.
+
+    The server gets the whole command line, the client only --verbose. Without a display the server
+    runs alone.
+
+    :return: the server's exit code.
+    """
+    arguments = sys.argv[1:] if arguments is None else arguments
+    folder = Path(sys.argv[0]).absolute().parent
+    server = subprocess.Popen([sys.executable, folder / 'gzserver', *arguments])
+    client = subprocess.Popen([sys.executable, folder / 'gzclient',
+                               *(word for word in arguments if word == '--verbose')])
+    headless = not display_works()  # the client says so and ends at once; the server stays
+    # roslaunch and kill send to us alone; a terminal's Ctrl-C goes to the children as well.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        while server.poll() is None and (headless or client.poll() is None):
+            time.sleep(_POLL)
+    except KeyboardInterrupt:
+        pass  # both are asked to end below
+    for child in (client, server):
+        _end(child)
+    return server.returncode
+
+
+def _end(child: subprocess.Popen) -> None:
+    """Ask a child to end as Ctrl-C would; insist after a while."""
+    if child.poll() is None:
+        child.send_signal(signal.SIGINT)
+    try:
+        child.wait(_GRACE)
+    except (subprocess.TimeoutExpired, KeyboardInterrupt):
+        child.kill()
+        child.wait()

@@ -1,0 +1,70 @@
+"""The window onto the world: RViz, with a config that shows what the simulator shows."""
+
+import argparse
+import ctypes
+import ctypes.util
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..ros_api.packages import find_package
+from .gzserver import split_remappings
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of gzclient's options."""
+    made = argparse.ArgumentParser(
+        prog='gzclient', description='Look at the simulated world, through RViz.')
+    made.add_argument('--verbose', action='store_true', help='accepted; RViz logs as it does')
+    made.add_argument('-g', '--gui-plugin', action='append', metavar='FILE', default=[],
+                      help='accepted; there is nothing to plug into')
+    return made
+
+
+def display_works() -> bool:
+    """Tell whether an X server can be reached; RViz would abort where there is none."""
+    if not os.environ.get('DISPLAY'):
+        return False
+    library = ctypes.util.find_library('X11')
+    if library is None:
+        return False
+    x11 = ctypes.CDLL(library)
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = x11.XOpenDisplay(None)
+    if not display:
+        return False
+    x11.XCloseDisplay(ctypes.c_void_p(display))
+    return True
+
+
+def config_file() -> Path | None:
+    """Return RViz's config in the package rosbots_description, or None if it cannot be found."""
+    package = find_package('rosbots_description')
+    return Path(package, 'config', 'gzclient.rviz') if package else None
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Become RViz; return an exit code only where that cannot be."""
+    own, remappings = split_remappings(sys.argv[1:] if arguments is None else arguments)
+    _, unknown = parser().parse_known_args(own)
+    if unknown:
+        _say(f'unknown options are ignored: {" ".join(unknown)}')
+    if not display_works():
+        display = os.environ.get('DISPLAY') or 'not set'
+        _say(f'no window: there is no display to open it on (DISPLAY is {display}); '
+             'the simulator runs without one')
+        return 0
+    rviz, config = shutil.which('rviz'), config_file()
+    if rviz is None:
+        _say('no window: rviz is not installed; on Debian: apt install rviz')
+        return 1
+    if config is None:
+        _say('no window: the package rosbots_description is not on ROS_PACKAGE_PATH')
+        return 1
+    return os.execv(rviz, [rviz, '-d', str(config), *remappings])  # never returns
+
+
+def _say(sentence: str) -> None:
+    sys.stderr.write(f'gzclient: {sentence}\n')

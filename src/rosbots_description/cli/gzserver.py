@@ -1,0 +1,93 @@
+"""The simulator's command line, as Gazebo's gzserver has it."""
+
+import argparse
+import logging
+import signal
+import sys
+from collections.abc import Sequence
+
+EMPTY_WORLD = 'empty.world'
+ENGINE = 'ode'
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of gzserver's options."""
+    made = argparse.ArgumentParser(
+        prog='gzserver',
+        description='Simulate a world, physics by PyBullet, behind the ROS interface of Gazebo.',
+    )
+    add = made.add_argument
+    add('world', nargs='?', default=EMPTY_WORLD, help=f'world file; so far {EMPTY_WORLD}')
+    add('-u', '--pause', action='store_true', help='start paused')
+    add('-e', '--physics', metavar='ENGINE', default=ENGINE,
+        help='accepted for compatibility; the engine is always PyBullet')
+    add('--seed', type=int, metavar='NUMBER', help='accepted; nothing here is random yet')
+    add('--iters', type=_count, metavar='NUMBER', help='end after so many steps')
+    add('--verbose', action='store_true', help='accepted; what matters is logged anyway')
+    add('-r', '--record', action='store_true', help='not supported')
+    add('--lockstep', action='store_true', help='accepted; steps and sensors always go together')
+    add('-s', '--server-plugin', action='append', metavar='FILE', default=[],
+        help='accepted; the plugins of gazebo_ros are built in')
+    add('-p', '--port', metavar='PORT', help='accepted; no port is used')
+    return made
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 0:
+        raise argparse.ArgumentTypeError(f'{text} steps cannot be made; give 0 or more')
+    return number
+
+
+def split_remappings(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the program's own arguments and ROS's remappings, which contain `:=`."""
+    own = [argument for argument in arguments if ':=' not in argument]
+    return own, [argument for argument in arguments if ':=' in argument]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the simulator; return its exit code."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return _main(sys.argv[1:] if arguments is None else arguments)
+    except KeyboardInterrupt:
+        return 0
+
+
+def _main(arguments: Sequence[str]) -> int:
+    own, remappings = split_remappings(arguments)
+    given, unknown = parser().parse_known_args(own)
+    if given.world.rsplit('/', 1)[-1] != EMPTY_WORLD:
+        sys.stderr.write(
+            f"gzserver: world file '{given.world}' cannot be loaded: this version simulates "
+            f'{EMPTY_WORLD} only; spawn what else there is to be\n'
+        )
+        return 1
+    try:
+        from ..ros_api import node  # noqa: PLC0415  needs what may be missing
+    except ModuleNotFoundError as error:
+        if error.name != 'pybullet':
+            raise
+        sys.stderr.write(
+            f'gzserver: the physics engine is missing; install it for {sys.executable} with: '
+            'pip install pybullet==3.2.7\n'
+        )
+        return 1
+    options = node.Options(paused=given.pause, steps=given.iters, remarks=remarks(given, unknown))
+    return node.run(options, remappings)
+
+
+def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[int, str], ...]:
+    """Return what is to be said about options that do nothing here, each with its log level."""
+    found = []
+    if unknown:
+        found.append((logging.WARNING, f'unknown options are ignored: {" ".join(unknown)}'))
+    if given.physics != ENGINE:
+        found.append((
+            logging.INFO,
+            f"physics engine '{given.physics}' is simulated by PyBullet, as every engine is here; "
+            'parameters are those of ode',
+        ))
+    if given.record:
+        found.append((logging.WARNING, 'recording (-r) is not supported; use rosbag'))
+    return tuple(found)

@@ -1,0 +1,19 @@
+"""Front end of the executable debug: the server, set up for finding faults."""
+
+from __future__ import annotations
+
+import faulthandler
+import signal
+from collections.abc import Sequence
+
+from rosbots_description.cli import gzserver
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run gzserver; show the stacks of all threads on a crash and on SIGUSR1.
+
+    :return: the server's exit code.
+    """
+    faulthandler.enable()
+    faulthandler.register(signal.SIGUSR1)
+    return gzserver.main(arguments)

@@ -1,0 +1,146 @@
+"""The topics of the differential drive.
+
+Subscribes:
+    <ns>/<commandTopic> (geometry_msgs/Twist): linear.x [m/s], angular.z [rad/s]; the last counts.
+Publishes:
+    <ns>/<odometryTopic> (nav_msgs/Odometry), unless publishTf is false.
+    /tf (tf2_msgs/TFMessage): odometry frame to base frame, and the wheels if wanted.
+    <ns>/joint_states (sensor_msgs/JointState): right, left, if publishWheelJointState.
+
+Parameters
+----------
+    tf_prefix, searched from the plugin's namespace upward.
+
+"""
+
+import logging
+import math
+import time
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry as OdometryMessage
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
+
+from ...sim.plugins.diff_drive import DiffDrive
+from ...sim.readings import FrameTransform, JointStates, Odometry
+from ..conversions import fill_odometry, joint_state_message, transform_message
+from ..log_bridge import set_level
+from ..names import find_tf_prefix, frame_name, topic_name
+from ..server import Server
+from .registry import Adapter, adapter
+
+logger = logging.getLogger(__name__)
+
+# Row-major 6x6: x, y [m^2], the three that a plane has not, yaw [rad^2]; as upstream.
+POSE_COVARIANCE_DIAGONAL = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
+COMPLAINT_PERIOD = 5.0  # least time between two complaints about bad commands [s, wall]
+
+
+@adapter(DiffDrive)
+class DiffDriveAdapter(Adapter):
+    """Joins a `DiffDrive` to its topics."""
+
+    def __init__(self, server: Server, plugin: DiffDrive) -> None:
+        super().__init__(server, plugin)
+        self._prefix = ''
+        self._message = OdometryMessage()
+        self._publishers: list[rospy.Publisher] = []
+        self._odometry = self._tf = self._joint_states = None
+        self._commands: rospy.Subscriber | None = None
+        self._complained = -math.inf
+
+    def open(self) -> None:
+        """Advertise and subscribe, with upstream's log lines."""
+        config, prefix = self.plugin.config, self.plugin.log_prefix
+        set_level(config.ros_debug_level)
+        logger.info('Starting plugin %s', prefix.removesuffix(': '))
+        self._prefix = find_tf_prefix(self.plugin.namespace)
+        logger.info('%s<tf_prefix> = %s', prefix, self._prefix)
+        if config.publish_wheel_joint_state:
+            self._joint_states = self._publisher('joint_states', JointState, 1000)
+            logger.info('%sAdvertise joint_states', prefix)
+        self._tf = self._publisher('/tf', TFMessage, 100)
+        logger.info('%sTry to subscribe to %s', prefix, config.command_topic)
+        topic = topic_name(self.plugin.namespace, config.command_topic)
+        self._commands = rospy.Subscriber(topic, Twist, self._on_command, queue_size=1)
+        logger.info('%sSubscribe to %s', prefix, config.command_topic)
+        if config.publish_tf:
+            self._prepare_message()
+            self._odometry = self._publisher(config.odometry_topic, OdometryMessage, 1)
+            logger.info('%sAdvertise odom on %s ', prefix, config.odometry_topic)
+
+    def connect(self) -> None:
+        """Join the plugin's outputs to the publishers that were opened."""
+        plugin, config = self.plugin, self.plugin.config
+        if self._odometry is not None:
+            shown = (self._odometry, self._tf) if config.publish_odom_tf else (self._odometry,)
+            plugin.odometry.connect(self._send_odometry, lambda: any(map(_has_readers, shown)))
+        if self._tf is not None:
+            plugin.wheel_transform.connect(self._send_transform, lambda: _has_readers(self._tf))
+        if self._joint_states is not None:
+            plugin.joint_states.connect(
+                self._send_joint_states, lambda: _has_readers(self._joint_states)
+            )
+
+    def disconnect(self) -> None:
+        """Let the plugin's outputs go nowhere."""
+        for port in (self.plugin.odometry, self.plugin.wheel_transform, self.plugin.joint_states):
+            port.disconnect()
+
+    def close(self) -> None:
+        """Unregister the command topic and the publishers."""
+        if self._commands is not None:
+            self._commands.unregister()
+        for publisher in self._publishers:
+            publisher.unregister()
+
+    def _publisher(self, topic: str, message_class: type, queue_size: int) -> rospy.Publisher:
+        name = topic_name(self.plugin.namespace, topic)
+        publisher = rospy.Publisher(name, message_class, queue_size=queue_size)
+        self._publishers.append(publisher)
+        return publisher
+
+    def _prepare_message(self) -> None:
+        config, message = self.plugin.config, self._message
+        message.header.frame_id = frame_name(self._prefix, config.odometry_frame)
+        message.child_frame_id = frame_name(self._prefix, config.robot_base_frame)
+        for i, variance in enumerate(POSE_COVARIANCE_DIAGONAL):
+            message.pose.covariance[7 * i] = variance
+
+    def _send_odometry(self, reading: Odometry) -> None:
+        config = self.plugin.config
+        if config.publish_odom_tf:
+            edge = FrameTransform(config.odometry_frame, config.robot_base_frame, reading.pose)
+            self._send_transform(edge)
+        fill_odometry(self._message, self._now_ns(), reading)
+        self._odometry.publish(self._message)
+
+    def _send_transform(self, reading: FrameTransform) -> None:
+        parent, child = (frame_name(self._prefix, name) for name in reading[:2])
+        edge = FrameTransform(parent, child, reading.pose)
+        self._tf.publish(TFMessage([transform_message(self._now_ns(), edge)]))
+
+    def _send_joint_states(self, reading: JointStates) -> None:
+        self._joint_states.publish(joint_state_message(self._now_ns(), reading))
+
+    def _now_ns(self) -> int:
+        return self.server.world.clock.now_ns
+
+    def _on_command(self, message: Twist) -> None:
+        """Hand a command over; one that is not finite is dropped and the last good one stays."""
+        x, yaw_rate = message.linear.x, message.angular.z
+        if math.isfinite(x) and math.isfinite(yaw_rate):
+            self.server.loop.post(lambda: self.plugin.command(x, yaw_rate))
+        elif time.monotonic() > self._complained + COMPLAINT_PERIOD:
+            self._complained = time.monotonic()
+            logger.error(
+                '%sdropped a command on %s with linear.x %s and angular.z %s; both must be '
+                'finite numbers', self.plugin.log_prefix, self.plugin.config.command_topic,
+                x, yaw_rate,
+            )
+
+
+def _has_readers(publisher: rospy.Publisher) -> bool:
+    return publisher.get_num_connections() > 0

@@ -1,0 +1,67 @@
+"""Lets the simulator's log messages appear as a ROS node's: console, log file and /rosout."""
+
+import logging
+from collections.abc import Callable
+
+import rospy
+from rospy.rostime import _set_rostime
+
+_ROOT = 'rosbots_description'
+_LEVELS = {
+    'debug': logging.DEBUG,
+    'info': logging.INFO,
+    'warn': logging.WARNING,
+    'error': logging.ERROR,
+    'fatal': logging.CRITICAL,
+}
+
+
+def connect_logging(now_ns: Callable[[], int]) -> None:
+    """Give this package's loggers the handlers that rospy made; call after `init_node`.
+
+    rospy routes only its own logger `rosout` to the terminal, the log file and /rosout.
+
+    Args:
+        now_ns: the simulated time [ns] that messages are stamped with, besides wall time.
+
+    """
+    ours, rosout = logging.getLogger(_ROOT), logging.getLogger('rosout')
+    for handler in (_SimulatedTime(now_ns), *_console_and_file(rosout)):
+        ours.addHandler(handler)
+    ours.setLevel(rosout.level)
+    ours.propagate = False
+
+
+def set_level(name: str) -> None:
+    """Show messages from this level on: debug, info, warn, error or fatal, in any case.
+
+    Another word changes nothing.
+    """
+    level = _LEVELS.get(name.lower())
+    if level is not None:
+        logging.getLogger(_ROOT).setLevel(level)
+
+
+def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
+    """Return the handlers that a message to `logger` would reach, its parents' included."""
+    handlers: list[logging.Handler] = []
+    while logger is not None:
+        handlers += logger.handlers
+        logger = logger.parent if logger.propagate else None
+    return handlers
+
+
+class _SimulatedTime(logging.Handler):
+    """Sets rospy's idea of the time before the other handlers stamp the message.
+
+    The simulator does not listen to its own /clock: at 1000 messages per second that would cost
+    more than the physics. rospy offers no public way to set the time.
+    """
+
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        super().__init__()
+        self._now_ns = now_ns
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Take over the simulated time."""
+        _set_rostime(rospy.Time(nsecs=self._now_ns()))

@@ -1,0 +1,175 @@
+"""The one thread that owns the World: it paces the steps and serves commands between them."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Future
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING, Any
+
+from ..sim.errors import SimError
+
+if TYPE_CHECKING:
+    from ..sim.world import World
+
+logger = logging.getLogger(__name__)
+
+DEADLINE = 60.0  # how long a caller waits for its command [s, wall]
+BATCH = 0.002  # longest time without a look at the queue [s, wall]
+MAX_LAG = 0.2  # steps that are later than this are not made up for [s, wall]
+
+
+class LoopError(SimError):
+    """A command that the loop did not carry out."""
+
+
+class Loop:
+    """Runs a World on the thread that calls `run`; other threads hand it commands.
+
+    While the world is paused no step is made, and commands are still served.
+    """
+
+    def __init__(self, world: 'World') -> None:
+        self._world = world
+        self._commands: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._tasks: list[_Task] = []
+        self._stopping = False
+        self._owner: int | None = None
+        self._next_step = 0.0  # when the next step is due [s, monotonic]
+        self._step_cost = 0.0  # smoothed wall time of one step [s]
+
+    def call(self, command: Callable[[], Any], deadline: float = DEADLINE) -> Any:
+        """Carry out `command()` between two steps and return its result, or raise its exception.
+
+        Callable from any thread; on the loop's own it runs at once. A command whose `deadline`
+        [s, wall] passed before its turn is never carried out.
+
+        Raises:
+            LoopError: the deadline passed or the simulator is shutting down.
+
+        """
+        if threading.get_ident() == self._owner:
+            return command()
+        future: Future = Future()
+        self._commands.put(lambda: _carry_out(future, command))
+        if self._stopping:
+            future.cancel()
+        try:
+            return future.result(deadline)
+        except CancelledError:
+            raise LoopError('the simulator is shutting down') from None
+        except TimeoutError:
+            state = 'was not begun' if future.cancel() else 'is still not finished'
+            raise LoopError(
+                f'the simulator was busy for {deadline:g} s and the request {state}; '
+                'try again, or see whether a model is too heavy to simulate'
+            ) from None
+
+    def post(self, command: Callable[[], None]) -> None:
+        """Carry out `command()` between two steps, without waiting; any thread may post."""
+        self._commands.put(command)
+
+    def every(self, period: float, task: Callable[[], None]) -> None:
+        """Run `task()` every `period` [s, wall] from now on, also while paused."""
+        self._tasks.append(_Task(period, task))
+
+    def stop(self) -> None:
+        """Let `run` return after the step in hand; safe in signal handlers."""
+        self._stopping = True
+        self._commands.put(_nothing)
+
+    def run(self, steps: int | None = None) -> None:
+        """Own the world until `stop`, or until `steps` steps were made."""
+        self._owner = threading.get_ident()
+        self._next_step = time.monotonic()
+        left = steps
+        while not self._stopping and left != 0:
+            self._serve()
+            self._run_tasks()
+            made = 0 if self._world.paused else self._advance(left)
+            if left is not None:
+                left -= made
+            if made == 0:
+                self._wait()
+        self._stopping = True
+        self._serve()
+
+    def _serve(self) -> None:
+        """Carry out everything in the queue."""
+        while not self._commands.empty():
+            _guard(self._commands.get())
+
+    def _run_tasks(self) -> None:
+        for task in self._tasks:
+            if time.monotonic() >= task.next_run:
+                _guard(task.run)
+                task.next_run = time.monotonic() + task.period
+
+    def _advance(self, left: int | None) -> int:
+        """Make the steps that are due, at most for `BATCH`; return how many."""
+        rate = self._world.physics.max_update_rate
+        now = time.monotonic()
+        batch = max(1, int(BATCH / self._step_cost)) if self._step_cost else 1
+        if rate > 0.0:
+            if now - self._next_step > MAX_LAG:
+                self._next_step = now
+            batch = min(batch, int((now - self._next_step) * rate + 1.0))
+            if now < self._next_step:
+                return 0
+            self._next_step += batch / rate
+        if left is not None:
+            batch = min(batch, left)
+        self._world.run(batch)
+        cost = (time.monotonic() - now) / batch
+        self._step_cost += 0.1 * (cost - self._step_cost)
+        return batch
+
+    def _wait(self) -> None:
+        """Sleep until a step or task is due or a command arrives; serve that command."""
+        wakes = [task.next_run for task in self._tasks]
+        if not self._world.paused:
+            wakes.append(self._next_step)
+        try:
+            if wakes:
+                command = self._commands.get(timeout=max(0.0, min(wakes) - time.monotonic()))
+            else:
+                command = self._commands.get()
+        except Empty:
+            return
+        _guard(command)
+
+
+class _Task:
+    """Something that is done every `period` [s, wall]."""
+
+    def __init__(self, period: float, run: Callable[[], None]) -> None:
+        self.period = period
+        self.run = run
+        self.next_run = 0.0
+
+
+def _carry_out(future: Future, command: Callable[[], Any]) -> None:
+    """Run `command` unless its caller has given up, and hand the outcome over."""
+    if not future.set_running_or_notify_cancel():
+        return
+    try:
+        result = command()
+    except Exception as error:  # every fault of a command belongs to its caller
+        future.set_exception(error)
+    else:
+        future.set_result(result)
+
+
+def _guard(run: Callable[[], None]) -> None:
+    """Run something nobody waits for; a fault in it is logged and must not end the simulation."""
+    try:
+        run()
+    except SimError as error:
+        logger.error('%s', error)
+    except Exception:
+        logger.exception('internal fault; the simulation goes on')
+
+
+def _nothing() -> None:
+    """Wake the loop."""

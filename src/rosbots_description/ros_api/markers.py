@@ -1,0 +1,68 @@
+"""Visuals as markers that RViz shows: one marker per visual, posed in the frame `world`."""
+
+from pathlib import Path
+
+from geometry_msgs.msg import Point, Vector3
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker
+
+from ..sim.pose import Pose, compose
+from ..sim.spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from .conversions import fill_pose
+
+FRAME = 'world'
+# Two triangles, counter-clockwise seen from above.
+_UNIT_SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+PLANE_DEPTH = 0.001  # [m] how deep a plane is drawn, so that a grid at its height stays visible
+
+
+def visual_marker(namespace: str, number: int, visual: Visual) -> Marker:
+    """Return the marker of a visual; its pose is set by `place`."""
+    marker = Marker(ns=namespace, id=number, action=Marker.ADD)
+    marker.header.frame_id = FRAME
+    _shape(marker, visual.geometry)
+    if isinstance(visual.geometry, Mesh) and visual.material is None:
+        marker.mesh_use_embedded_materials = True  # a colour of zeros leaves them untinted
+    else:
+        marker.color = ColorRGBA(*(visual.material or Material()).rgba)
+    # RViz lights from the camera, which leaves wide ground dark; points with colours of their own
+    # are drawn as they are.
+    marker.colors = [marker.color] * len(marker.points)
+    return marker
+
+
+def place(marker: Marker, link_pose: Pose, visual: Visual) -> None:
+    """Move a marker to where its visual is while its link stands at `link_pose` in the world."""
+    pose = compose(link_pose, visual.pose)
+    if isinstance(visual.geometry, Plane):
+        pose = compose(pose, Pose((0.0, 0.0, -PLANE_DEPTH)))
+    fill_pose(marker.pose, pose)
+
+
+def removal(marker: Marker) -> Marker:
+    """Return the marker that takes `marker` away."""
+    return Marker(header=marker.header, ns=marker.ns, id=marker.id, action=Marker.DELETE)
+
+
+def clearance() -> Marker:
+    """Return the marker that takes all markers away."""
+    marker = Marker(action=Marker.DELETEALL)
+    marker.header.frame_id = FRAME
+    return marker
+
+
+def _shape(marker: Marker, geometry: Geometry) -> None:
+    match geometry:
+        case Box(size):
+            marker.type, marker.scale = Marker.CUBE, Vector3(*size)
+        case Sphere(radius):
+            marker.type, marker.scale = Marker.SPHERE, Vector3(*[2.0 * radius] * 3)
+        case Cylinder(radius, length):
+            marker.type = Marker.CYLINDER
+            marker.scale = Vector3(2.0 * radius, 2.0 * radius, length)
+        case Plane(_, (width, depth)):
+            marker.type, marker.scale = Marker.TRIANGLE_LIST, Vector3(width, depth, 1.0)
+            marker.points = [Point(x, y, 0.0) for x, y in _UNIT_SQUARE]
+        case Mesh(path, scale):
+            marker.type, marker.scale = Marker.MESH_RESOURCE, Vector3(*scale)
+            marker.mesh_resource = Path(path).as_uri()

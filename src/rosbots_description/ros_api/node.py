@@ -1,0 +1,132 @@
+"""The node /gazebo: a world, the loop that owns it, and everything that connects it to ROS.
+
+Parameters
+----------
+    ~enable_ros_network (bool, true): false leaves only /clock, the time parameter and plugins.
+    ~pub_clock_frequency (int, 0) [Hz]: how often /clock is published; 0: at every step.
+    /use_sim_time is set to true if nobody has set it.
+
+"""
+
+import logging
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import rosgraph
+import rospy
+
+from ..sim.world import World
+from ..sim.worlds import add_empty_world
+from . import adapters, services  # noqa: F401  both register what they hold
+from .adapters.registry import Adapters
+from .handshake import guard_handshakes
+from .log_bridge import connect_logging
+from .loop import Loop
+from .packages import find_package
+from .registrar import Registrar
+from .server import Server
+from .services.registry import advertise
+from .shutdown import end_at_once
+from .topics import advertise_clock, advertise_states
+from .view import advertise_view
+from .visuals import advertise_visuals
+
+logger = logging.getLogger(__name__)
+
+NAME = 'gazebo'
+MASTER_PERIOD = 0.5  # time between two looks for a master [s, wall]
+# A callback thread that computes may keep the loop waiting for this long [s]; Python's own 5 ms
+# would be five steps.
+SWITCH_INTERVAL = 0.0005
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command line says about a run."""
+
+    paused: bool = False
+    steps: int | None = None  # make so many, then end; None: until told to stop
+    remarks: tuple[tuple[int, str], ...] = ()  # what to log at start: level and text
+
+
+def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
+    """Be the node until it is told to stop; return the exit code.
+
+    Args:
+        options: what to simulate and how.
+        ros_arguments: name remappings and parameters as ROS writes them, e.g. `__name:=gazebo`.
+
+    """
+    _on_signals(signal.default_int_handler)
+    try:
+        _wait_for_master()
+        rospy.init_node(
+            NAME,
+            argv=[sys.argv[0], *ros_arguments],
+            disable_signals=True,  # the loop is stopped between two steps
+            disable_rostime=True,  # see log_bridge
+        )
+        guard_handshakes()
+        end_at_once()
+        _simulate(options)
+    except (KeyboardInterrupt, rospy.ROSInterruptException):
+        return 0
+    finally:
+        rospy.signal_shutdown('the simulator ends')
+    return 0
+
+
+def _simulate(options: Options) -> None:
+    world = World()
+    try:
+        loop = Loop(world)
+        _on_signals(lambda _signal, _frame: loop.stop())
+        rospy.on_shutdown(loop.stop)  # another node took the name over
+        connect_logging(lambda: world.clock.now_ns)
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        for level, text in options.remarks:
+            logger.log(level, '%s', text)
+        world.paused = options.paused
+        _connect(Server(world, loop, Registrar(), find_package))
+        loop.run(options.steps)
+    finally:
+        world.close()
+
+
+def _connect(server: Server) -> None:
+    """Offer everything, in the order in which Gazebo does."""
+    networked = rospy.get_param('~enable_ros_network', True)
+    logger.info('Finished loading Gazebo ROS API Plugin.')
+    advertise_clock(server)
+    if networked:
+        advertise_states(server)
+        advertise_visuals(server)
+        advertise_view(server)
+    server.world.listeners.append(Adapters(server))
+    add_empty_world(server.world)
+    if not rospy.has_param('/use_sim_time'):
+        rospy.set_param('/use_sim_time', True)
+    if networked:
+        advertise(server)
+
+
+def _wait_for_master() -> None:
+    """Wait for a ROS master, complaining as Gazebo does; nothing of ROS's logging works yet."""
+    while True:
+        try:
+            rosgraph.Master(f'/{NAME}').getPid()
+        except (OSError, rosgraph.MasterException):
+            sys.stderr.write(
+                f'[WARN] [{time.time():f}]: No ROS master - start roscore to continue...\n'
+            )
+            time.sleep(MASTER_PERIOD)
+        else:
+            return
+
+
+def _on_signals(react: signal.Handlers) -> None:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, react)

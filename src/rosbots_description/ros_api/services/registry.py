@@ -1,0 +1,103 @@
+"""The table of services: adding one is one decorated function."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import rospy
+
+from ...sim.errors import SimError
+from ..server import Server
+
+logger = logging.getLogger(__name__)
+
+Answer = Callable[[Server, Any], Any]
+
+
+class CallError(SimError):
+    """A request that Gazebo answers with an error of the call itself, not with success=False."""
+
+
+@dataclass(frozen=True)
+class Service:
+    """How a service is answered: `prepare` on the caller's thread, then `answer` on the loop's."""
+
+    name: str  # without the node's name
+    type: type
+    answer: Answer
+    prepare: Answer | None
+    registers: bool  # changes which topics there are; the reply waits for that
+
+
+SERVICES: dict[str, Service] = {}
+
+
+def service(
+    name: str, service_type: type, prepare: Answer | None = None, registers: bool = False
+) -> Callable[[Answer], Answer]:
+    """Return a decorator that offers `answer(server, request) -> response` as service ~`name`.
+
+    The function runs on the thread that owns the world. Slow work that does not need the world
+    goes into `prepare(server, request)`, whose result is what `answer` gets as its request; a
+    response it returns is sent at once. Either may raise `SimError`, which becomes success=False
+    with its sentence, or `CallError`, which becomes an error of the call.
+    """
+
+    def add(answer: Answer) -> Answer:
+        if name in SERVICES:
+            raise ValueError(f'service {name} is already answered by {SERVICES[name].answer}')
+        SERVICES[name] = Service(name, service_type, answer, prepare, registers)
+        return answer
+
+    return add
+
+
+def advertise(server: Server) -> list[rospy.Service]:
+    """Offer all registered services in the node's private namespace."""
+    return [
+        rospy.Service(f'~{entry.name}', entry.type, _handler(server, entry))
+        for entry in SERVICES.values()
+    ]
+
+
+def _handler(server: Server, entry: Service) -> Callable[[Any], Any]:
+    def handle(request: Any) -> Any:
+        try:
+            return respond(server, entry, request)
+        except CallError as error:
+            raise rospy.ServiceException(str(error)) from None
+
+    return handle
+
+
+def respond(server: Server, entry: Service, request: Any) -> Any:
+    """Return the response to `request`; called on a thread that does not own the world.
+
+    Raises:
+        CallError: the call itself is to fail.
+
+    """
+    response_class = entry.type._response_class
+    try:
+        prepared = entry.prepare(server, request) if entry.prepare else request
+        if isinstance(prepared, response_class):
+            return prepared
+        response = server.loop.call(lambda: entry.answer(server, prepared))
+    except CallError:
+        raise
+    except SimError as error:
+        return _failure(entry, response_class(), str(error))
+    if entry.registers:
+        server.registrar.wait(deadline=5.0)
+    return response
+
+
+def _failure(entry: Service, response: Any, sentence: str) -> Any:
+    """Return `response` with success=False and the sentence in the words of the service."""
+    text = f'{entry.type.__name__}: Failure - {sentence}'
+    logger.error('%s', text)
+    if not hasattr(response, 'success'):
+        raise CallError(text)
+    response.success, response.status_message = False, text
+    return response

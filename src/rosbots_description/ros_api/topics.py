@@ -1,0 +1,163 @@
+"""The topics of the server itself: time and states, published from the step they belong to.
+
+Publishes:
+    /clock (rosgraph_msgs/Clock): simulated time, every step or at ~pub_clock_frequency [Hz].
+    ~link_states (gazebo_msgs/LinkStates): every step while subscribed.
+    ~model_states (gazebo_msgs/ModelStates): every step while subscribed.
+"""
+
+from collections.abc import Iterable
+
+import rospy
+from gazebo_msgs.msg import LinkStates, ModelStates
+from genpy import Message
+from geometry_msgs.msg import Pose, Twist
+from rosgraph_msgs.msg import Clock
+
+from ..sim.clock import NANOSECONDS
+from ..sim.model import Link, Model
+from ..sim.schedule import NEVER, Hook
+from .conversions import fill_pose, fill_twist, stamp
+from .server import Server
+
+QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
+
+
+class _Subscribers(rospy.SubscribeListener):
+    """Tells a topic, on the world's thread, when subscribers come and go."""
+
+    def __init__(self, server: Server, topic: 'Topic') -> None:
+        self._server = server
+        self._topic = topic
+
+    def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
+        """Take note of a new subscriber."""
+        self._server.loop.post(self._topic.schedule)
+
+    def peer_unsubscribe(self, _topic: str, _count: int) -> None:
+        """Take note of one less."""
+        self._server.loop.post(self._topic.schedule)
+
+
+class Topic(Hook):
+    """A topic with a place in the step; it costs nothing while nobody subscribes."""
+
+    def __init__(self, server: Server, name: str, message: Message) -> None:
+        self._world = server.world
+        self._message = message
+        self._publisher = rospy.Publisher(
+            name, type(message), _Subscribers(server, self), queue_size=QUEUE
+        )
+
+    def schedule(self) -> None:
+        """Publish from the next step on, if there is anyone to read it."""
+        wanted = self._publisher.get_num_connections() > 0
+        self.due = self._world.clock.steps + 1 if wanted else NEVER
+
+    def update(self) -> None:
+        """Publish, and come again at the next step."""
+        self.fill()
+        self._publisher.publish(self._message)
+        self.schedule()
+
+    def fill(self) -> None:
+        """Write what is to be published into the message."""
+        raise NotImplementedError
+
+    # What the world tells its listeners.
+
+    def world_reset(self) -> None:
+        """Publish again at once, also when time jumped back."""
+        self.schedule()
+
+    def model_spawned(self, model: Model) -> None:
+        """Nothing changes for a topic as such."""
+
+    def model_deleted(self, model: Model) -> None:
+        """Nothing changes for a topic as such."""
+
+
+class ClockTopic(Topic):
+    """/clock, at every step or, with a frequency, at the first step a period after the last one."""
+
+    def __init__(self, server: Server, frequency: int) -> None:
+        super().__init__(server, '/clock', Clock())
+        self._period_ns = NANOSECONDS // frequency if frequency > 0 else 0
+        self._last_ns = 0
+
+    def fill(self) -> None:
+        """Write the time."""
+        self._last_ns = self._world.clock.now_ns
+        self._message.clock = stamp(self._last_ns)
+
+    def schedule(self) -> None:
+        """Publish when the period has passed, if there is anyone to read it."""
+        super().schedule()
+        if self.due != NEVER and self._period_ns:
+            clock = self._world.clock
+            # Time that jumped back counts as never published: upstream would stay silent for long.
+            last_ns = self._last_ns if self._last_ns <= clock.now_ns else 0
+            self.due = max(self.due, clock.first_step_after(last_ns + self._period_ns - 1))
+
+
+class StatesTopic(Topic):
+    """Names, world poses and world velocities of models or links."""
+
+    def entities(self) -> Iterable[Model | Link]:
+        """Return what is to be listed, in order."""
+        raise NotImplementedError
+
+    def fill(self) -> None:
+        """Write the present states; message parts are made once and used again."""
+        message = self._message
+        entities = list(self.entities())
+        message.name = [entity.scoped_name for entity in entities]
+        while len(message.pose) < len(entities):
+            message.pose.append(Pose())
+            message.twist.append(Twist())
+        del message.pose[len(entities):], message.twist[len(entities):]
+        for entity, pose_message, twist_message in zip(
+            entities, message.pose, message.twist, strict=True
+        ):
+            pose, twist = entity.state()
+            fill_pose(pose_message, pose)
+            fill_twist(twist_message, twist)
+
+
+class LinkStatesTopic(StatesTopic):
+    """Every link of every model, by scoped name."""
+
+    def __init__(self, server: Server) -> None:
+        super().__init__(server, '~link_states', LinkStates())
+
+    def entities(self) -> Iterable[Link]:
+        """Return all links, model by model in world order."""
+        return (link for model in self._world.models.values() for link in model.links.values())
+
+
+class ModelStatesTopic(StatesTopic):
+    """Every model, by its name."""
+
+    def __init__(self, server: Server) -> None:
+        super().__init__(server, '~model_states', ModelStates())
+
+    def entities(self) -> Iterable[Model]:
+        """Return all models in world order."""
+        return self._world.models.values()
+
+
+def advertise_clock(server: Server) -> None:
+    """Publish /clock, the first thing in every step."""
+    _add(server, ClockTopic(server, int(rospy.get_param('~pub_clock_frequency', 0))))
+
+
+def advertise_states(server: Server) -> None:
+    """Publish link and model states, after the clock and before any plugin."""
+    _add(server, LinkStatesTopic(server))
+    _add(server, ModelStatesTopic(server))
+
+
+def _add(server: Server, topic: Topic) -> None:
+    server.world.schedule.add(topic)
+    server.world.listeners.append(topic)
+    topic.schedule()

@@ -1,0 +1,108 @@
+"""What the world looks like, for RViz: free of cost while nobody looks.
+
+Publishes:
+    ~visual_markers (visualization_msgs/MarkerArray, latched): all visuals to who begins to look,
+        then those that moved, came or went.
+"""
+
+import rospy
+from visualization_msgs.msg import Marker, MarkerArray
+
+from ..sim.model import Link, Model
+from ..sim.pose import Pose
+from ..sim.world import World
+from .markers import clearance, place, removal, visual_marker
+from .server import Server
+
+PERIOD = 0.04  # time between two looks at the world [s, wall]
+# Every so many looks all is shown again: RViz forgets its markers when time jumps back.
+REFRESH = 25
+
+
+class LinkView:
+    """The markers of one link, and where they were last shown."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._shown: Pose | None = None
+        self.markers = [
+            visual_marker(link.scoped_name, number, visual)
+            for number, visual in enumerate(link.spec.visuals)
+        ]
+
+    def forget(self) -> None:
+        """Count as moved at the next look."""
+        self._shown = None
+
+    def moved(self) -> list[Marker]:
+        """Return the markers at their new place; none if the link stands where it was."""
+        pose = self._link.pose
+        if pose == self._shown:
+            return []
+        self._shown = pose
+        for marker, visual in zip(self.markers, self._link.spec.visuals, strict=True):
+            place(marker, pose, visual)
+        return self.markers
+
+
+class View:
+    """What has been shown of a world; each look tells what is new."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._models: dict[str, tuple[Model, list[LinkView]]] = {}
+        self._looks = 0
+
+    def begin(self) -> None:
+        """Show everything at the next look, to someone who may have seen another world."""
+        self._models.clear()
+        self._looks = 0
+
+    def look(self) -> list[Marker]:
+        """Return the markers that changed since the last look."""
+        markers = [] if self._looks else [clearance()]
+        refresh = self._looks % REFRESH == 0
+        self._looks += 1
+        models = self._world.models
+        for name, (model, links) in list(self._models.items()):
+            if models.get(name) is not model:
+                markers += [removal(marker) for link in links for marker in link.markers]
+                del self._models[name]
+        for name, model in models.items():
+            if name not in self._models:
+                views = [LinkView(link) for link in model.links.values() if link.spec.visuals]
+                self._models[name] = model, views
+            for link in self._models[name][1]:
+                if refresh:
+                    link.forget()
+                markers += link.moved()
+        return markers
+
+
+class _Viewers(rospy.SubscribeListener):
+    """Lets everything be shown again when someone begins to look."""
+
+    def __init__(self, server: Server, view: View) -> None:
+        self._server = server
+        self._view = view
+
+    def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
+        """Begin again."""
+        self._server.loop.post(self._view.begin)
+
+
+def advertise_visuals(server: Server) -> None:
+    """Offer the markers and keep them up to date by wall time, so also while paused."""
+    view = View(server.world)
+    publisher = rospy.Publisher(
+        '~visual_markers', MarkerArray, _Viewers(server, view), latch=True, queue_size=10
+    )
+
+    def show() -> None:
+        if publisher.get_num_connections() == 0:
+            return
+        markers = view.look()
+        if markers:
+            publisher.publish(MarkerArray(markers))
+
+    server.loop.every(PERIOD, show)

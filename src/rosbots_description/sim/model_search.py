@@ -1,0 +1,165 @@
+"""Find models and worlds by name along search paths, and the description in a model's folder."""
+
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from lxml import etree
+
+from .errors import NotFoundError
+from .markup import parse
+from .markup_values import fault
+
+# Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
+FindModel = Callable[[str], str | None]
+# A directory, or something to ask for directories each time (packages may come and go).
+Directories = Iterable[str | os.PathLike | Callable[[], Iterable[str | os.PathLike]]]
+
+_NEWEST = (1, 7)
+_MANIFESTS = ('model.config', 'manifest.xml')
+
+# Written here, not in files, so that they are found wherever the package is installed.
+BUILT_IN_MODELS = {
+    'ground_plane': """<sdf version="1.6">
+  <model name="ground_plane">
+    <static>true</static>
+    <link name="link">
+      <collision name="collision">
+        <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
+        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
+      </collision>
+      <visual name="visual">
+        <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
+        <material>
+          <script><name>Gazebo/Grey</name></script>
+          <diffuse>0.5 0.5 0.5 1</diffuse>
+        </material>
+      </visual>
+    </link>
+  </model>
+</sdf>
+""",
+    'sun': """<sdf version="1.6">
+  <light type="directional" name="sun">
+    <pose>0 0 10 0 0 0</pose>
+    <cast_shadows>true</cast_shadows>
+    <diffuse>0.8 0.8 0.8 1</diffuse>
+    <specular>0.2 0.2 0.2 1</specular>
+    <attenuation>
+      <range>1000</range><constant>0.9</constant><linear>0.01</linear><quadratic>0.001</quadratic>
+    </attenuation>
+    <direction>-0.5 0.1 -0.9</direction>
+  </light>
+</sdf>
+""",
+}
+
+
+class ModelSearch:
+    """Looks for model:// addresses along directories, first come first found.
+
+    An instance is called with the part behind model://.
+    """
+
+    def __init__(self, directories: Directories = ()) -> None:
+        """Search these directories, each of which holds models' folders."""
+        self._directories = tuple(directories)
+
+    def __call__(self, inner: str) -> str | None:
+        """Return the absolute path of a model's folder, or of a file in one; None if unknown."""
+        if climbs(inner):
+            return None
+        for directory in self.directories():
+            path = os.path.join(directory, inner)
+            if os.path.exists(path):
+                return os.path.abspath(path)
+        return None
+
+    def directories(self) -> list[str]:
+        """Return the directories as they are now, in order."""
+        found: list[str] = []
+        for entry in self._directories:
+            found += [os.fspath(path) for path in (entry() if callable(entry) else [entry])]
+        return found
+
+
+def path_directories(value: str) -> list[str]:
+    """Return the directories of a search path such as GAZEBO_MODEL_PATH, empty ones left out."""
+    return [part for part in value.split(os.pathsep) if part]
+
+
+def climbs(inner: str) -> bool:
+    """Tell whether a path below a search directory is none, or would leave that directory."""
+    return not inner.strip('/') or os.path.isabs(inner) or '..' in inner.split('/')
+
+
+def description_file(path: str, asker: etree._Element) -> str:
+    """Return the SDF file of a model's folder: the newest one that model.config offers.
+
+    A folder without model.config serves by its model.sdf, and a file stands for itself.
+
+    Raises:
+        ModelError: there is no such folder, or no description in it; said of `asker`.
+    """
+    if os.path.isfile(path):
+        return path
+    if not os.path.isdir(path):
+        raise fault(asker, f"'{path}' does not exist; check the address")
+    for name in _MANIFESTS:
+        manifest = os.path.join(path, name)
+        if os.path.isfile(manifest):
+            return os.path.join(path, _chosen(manifest, asker))
+    plain = os.path.join(path, 'model.sdf')
+    if os.path.isfile(plain):
+        return plain
+    raise fault(asker, f"'{path}' holds neither model.config nor model.sdf; it is no model")
+
+
+def _chosen(manifest: str, asker: etree._Element) -> str:
+    root = parse(Path(manifest).read_bytes(), manifest)
+    offers = [
+        (_version(entry.get('version', '')), (entry.text or '').strip())
+        for entry in root.iterfind('sdf')
+    ]
+    offers = [offer for offer in offers if offer[1] and not climbs(offer[1])]
+    if not offers:
+        raise fault(asker, f"'{manifest}' names no description; add <sdf>model.sdf</sdf>")
+    # All of them too new: the least new one has the best chance.
+    readable = [offer for offer in offers if offer[0] <= _NEWEST]
+    return max(readable)[1] if readable else min(offers)[1]
+
+
+def _version(text: str) -> tuple[int, ...]:
+    parts = text.strip().split('.')
+    return tuple(int(part) for part in parts) if all(p.isdigit() for p in parts) else (0, 0)
+
+
+def find_world(name: str, directories: Iterable[str | os.PathLike] = ()) -> Path:
+    """Return the file of a world: as given, else along `directories`, e.g. 'worlds/empty.world'.
+
+    In each directory the name may stand as it is, in `worlds/`, and without '.world'; so a
+    directory may be one of GAZEBO_RESOURCE_PATH, or itself hold the world files.
+
+    Raises:
+        NotFoundError: there is none; the sentence says where it was looked for.
+    """
+    searched = [os.fspath(directory) for directory in directories]
+    names = [name] if name.endswith(('.world', '.sdf')) else [name, f'{name}.world']
+    places = [Path(candidate) for candidate in names]
+    for directory in searched:
+        for candidate in names:
+            places += _places(Path(directory), candidate)
+    for path in places:
+        if path.is_file():
+            return path.absolute()
+    shown = ', '.join(searched) or 'nowhere else'
+    raise NotFoundError(
+        f"there is no world file '{name}' as given, nor in: {shown}; "
+        'check the name, or add its folder to GAZEBO_RESOURCE_PATH'
+    )
+
+
+def _places(directory: Path, name: str) -> list[Path]:
+    below = name.removeprefix('worlds/')
+    return [directory / name, directory / 'worlds' / below, directory / below]
+

@@ -1,0 +1,220 @@
+"""From a world file to a `WorldSpec`, and from that into a `World`."""
+
+import logging
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from lxml import etree
+
+from .errors import ModelError
+from .markup_values import fault, required_name
+from .model_search import FindModel
+from .pose import Pose
+from .sdf_document import SdfDocument, SdfLibrary
+from .sdf_frames import Frames
+from .sdf_light import read_light
+from .sdf_model import ModelParts, model_spec, read_include, read_model, read_plugin
+from .sdf_physics import read_physics
+from .sdf_state import apply_state, read_states
+from .sdf_values import colour_of, text_of, truth_of
+from .spec import ModelSpec, PluginSpec
+from .uris import FindPackage
+from .world import World
+from .world_spec import LightSpec, SceneSpec, WorldSpec
+
+logger = logging.getLogger(__name__)
+
+_READ = ('model', 'include', 'light', 'plugin', 'scene', 'physics', 'gravity', 'state', 'frame')
+# What only cameras, sounds and other sensors' models would show.
+_IDLE = ('gui', 'audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
+
+
+@dataclass
+class _Content:
+    """What is found while the elements of a world are walked."""
+
+    models: dict[str, tuple[ModelSpec, Pose]] = field(default_factory=dict)
+    lights: list[LightSpec] = field(default_factory=list)
+    plugins: list[PluginSpec] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+
+
+def load_world(
+    text: str | bytes,
+    source: str,
+    *,
+    find_model: FindModel,
+    find_package: FindPackage | None = None,
+) -> WorldSpec:
+    """Read and check a world file.
+
+    A model that cannot be simulated, or an <include> that finds none, is an error in the log and
+    in `WorldSpec.faults`; the others stand, as in Gazebo.
+
+    Args:
+        source: the file's path; it begins every message, and addresses may be relative to it.
+        find_model: see `load_sdf`.
+        find_package: see `load_sdf`.
+    Raises:
+        ModelError: the text is no SDF with a <world>, or a number of the world itself is wrong.
+    """
+    library = SdfLibrary(find_model, find_package)
+    directory = os.path.dirname(os.path.abspath(source)) if os.path.isfile(source) else ''
+    document = library.add(text, source, directory)
+    world = document.root.find('world')
+    if world is None:
+        raise fault(document.root, 'it has no <world>; a world file holds one')
+    document.notes.check(world, _READ, _IDLE)
+    content = _Content()
+    frames = _frames(world)
+    for element in world:
+        reader = _READERS.get(element.tag)
+        if reader is not None:
+            reader(document, element, frames, content)
+    states, time = (), 0.0
+    if world.find('state') is not None:
+        states, time = read_states(document, world.find('state'))
+    spec = WorldSpec(
+        world.get('name', 'default'),
+        tuple(content.models.values()),
+        read_physics(document, world),
+        tuple(content.lights),
+        _scene(document, world),
+        tuple(content.plugins),
+        states,
+        time,
+        tuple(content.faults),
+    )
+    library.log_notes()
+    return spec
+
+
+def populate(world: World, spec: WorldSpec) -> None:
+    """Put everything that moves or stands into a world that is empty, and set its clock.
+
+    Lights, scene and plugins of the world stay in `spec` for those who serve them.
+
+    Raises:
+        ModelError: the world has a model of the same name already.
+    """
+    world.set_physics(spec.physics)
+    for model, pose in spec.models:
+        world.spawn(model, model.name, pose)
+    for state in spec.states:
+        model = world.models.get(state.name)
+        if model is None:
+            logger.warning("the world's <state> has a model '%s' that is not there", state.name)
+        else:
+            apply_state(model, state)
+    world.clock.steps = round(spec.time / spec.physics.step_size)
+
+
+def _frames(world: etree._Element) -> Frames:
+    """Return the frames that models of a world may be posed in."""
+    frames = Frames('world')
+    for element in world:
+        if element.tag in ('model', 'include'):
+            name = element.get('name') or text_of(element, 'name')
+            if name:
+                frames.add(name, element)
+        elif element.tag == 'frame':
+            frames.add(required_name(element), element, element.get('attached_to', ''))
+    return frames
+
+
+def _read_model(
+    document: SdfDocument, element: etree._Element, frames: Frames, content: _Content
+) -> None:
+    def read() -> ModelParts:
+        required_name(element)
+        return read_model(document, element)
+
+    _add_model(document, element, frames, content, read)
+
+
+def _read_include(
+    document: SdfDocument, element: etree._Element, frames: Frames, content: _Content
+) -> None:
+    try:
+        other = document.included(element)
+    except ModelError as error:
+        _leave_out(content, error)
+        return
+    light = other.root.find('light')
+    if other.root.find('model') is None and light is not None:
+        posed = light if element.find('pose') is None else element
+        lamp = read_light(other, light, frames.place(posed))
+        content.lights.append(replace(lamp, name=text_of(element, 'name', lamp.name)))
+        return
+    _add_model(document, element, frames, content, lambda: read_include(document, element))
+
+
+def _add_model(
+    document: SdfDocument,
+    element: etree._Element,
+    frames: Frames,
+    content: _Content,
+    read: Callable[[], ModelParts],
+) -> None:
+    try:
+        parts = read()
+        name = _free_name(document, element, parts.name, content)
+        own = element.find('pose') is not None or parts.pose_element is None
+        pose = frames.place(element if own else parts.pose_element.getparent())
+        content.models[name] = (model_spec(parts, name), pose)
+    except ModelError as error:
+        _leave_out(content, error)
+
+
+def _leave_out(content: _Content, error: ModelError) -> None:
+    content.faults.append(str(error))
+    logger.error('%s; the world stands without this model', error)
+
+
+def _free_name(
+    document: SdfDocument, element: etree._Element, name: str, content: _Content
+) -> str:
+    """Return the name, or where it is taken one with a number, as Gazebo's factory does."""
+    free, count = name, 0
+    while free in content.models:
+        free, count = f'{name}_{count}', count + 1
+    if free != name:
+        document.notes.warn(
+            element, f"there is a model '{name}' in the world already; this one is called '{free}'"
+        )
+    return free
+
+
+def _read_light(
+    document: SdfDocument, element: etree._Element, frames: Frames, content: _Content
+) -> None:
+    content.lights.append(read_light(document, element, frames.place(element)))
+
+
+def _read_plugin(
+    document: SdfDocument, element: etree._Element, frames: Frames, content: _Content
+) -> None:
+    plugin = read_plugin(document, element)
+    if plugin is not None:
+        content.plugins.append(plugin)
+
+
+_READERS = {
+    'model': _read_model, 'include': _read_include, 'light': _read_light, 'plugin': _read_plugin
+}
+
+
+def _scene(document: SdfDocument, world: etree._Element) -> SceneSpec:
+    element = world.find('scene')
+    if element is None:
+        return SceneSpec()
+    document.notes.check(
+        element, ('ambient', 'background', 'shadows'), ('grid', 'sky', 'fog', 'origin_visual')
+    )
+    plain = SceneSpec()
+    return SceneSpec(
+        colour_of(element, 'ambient') or plain.ambient,
+        colour_of(element, 'background') or plain.background,
+        truth_of(element, 'shadows', plain.shadows),
+    )

@@ -1,0 +1,69 @@
+"""A world as plain values: what a world file says, complete and checked, in SI units."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .physics import PhysicsSettings
+from .pose import IDENTITY, Pose, Vector
+from .spec import ModelSpec, PluginSpec
+
+Colour = tuple[float, float, float, float]
+
+POINT, DIRECTIONAL, SPOT = 'point', 'directional', 'spot'
+
+
+@dataclass(frozen=True)
+class LightSpec:
+    """A lamp; defaults are those of SDF. Colours are red, green, blue, alpha in 0..1."""
+
+    name: str
+    type: str = POINT
+    pose: Pose = IDENTITY
+    diffuse: Colour = (1.0, 1.0, 1.0, 1.0)
+    specular: Colour = (0.1, 0.1, 0.1, 1.0)
+    range: float = 10.0  # [m]
+    attenuation_constant: float = 1.0
+    attenuation_linear: float = 1.0  # [1/m]
+    attenuation_quadratic: float = 0.0  # [1/m^2]
+    direction: Vector = (0.0, 0.0, -1.0)
+    cast_shadows: bool = False
+    spot_inner_angle: float = 0.0  # [rad]
+    spot_outer_angle: float = 0.0  # [rad]
+    spot_falloff: float = 0.0
+
+
+@dataclass(frozen=True)
+class SceneSpec:
+    """How the world is lit and seen beside its lamps."""
+
+    ambient: Colour = (0.4, 0.4, 0.4, 1.0)
+    background: Colour = (0.7, 0.7, 0.7, 1.0)
+    shadows: bool = True
+
+
+@dataclass(frozen=True)
+class ModelState:
+    """Where a saved world had a model and its links; all poses are given in the world."""
+
+    name: str
+    pose: Pose | None = None
+    links: Mapping[str, Pose] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class WorldSpec:
+    """A whole world. Models stand in the order of the file, each with the pose it resets to.
+
+    `states` and `time` [s] are those of a saved world's <state>. `faults` says which models were
+    left out, and why.
+    """
+
+    name: str = 'default'
+    models: tuple[tuple[ModelSpec, Pose], ...] = ()
+    physics: PhysicsSettings = PhysicsSettings()
+    lights: tuple[LightSpec, ...] = ()
+    scene: SceneSpec = SceneSpec()
+    plugins: tuple[PluginSpec, ...] = ()
+    states: tuple[ModelState, ...] = ()
+    time: float = 0.0
+    faults: tuple[str, ...] = ()

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Bad input is answered with the contract's text or a sentence, and nobody else notices."""
+
+import math
+import sys
+
+import rospy
+import rostest
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from simulator import BOX, COMMANDS, SimulatorTest, pose, wait_until
+
+LINK = '<link name="{}"><inertial><mass value="1"/>' \
+       '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{}</link>'
+MESH = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
+
+
+def robot(*parts):
+    return f'<robot name="bad">{"".join(parts)}</robot>'
+
+
+# What is sent, and words that the sentence must hold: place, fault or cure.
+REFUSED = {
+    'missing mesh': (robot(LINK.format('a', MESH.format(
+        'package://rosbots_description/meshes/nope.dae'))), ['nope.dae']),
+    'unclosed tags': ('<robot name="bad"><link name="a">', ['line']),
+    'no links': (robot(), ['link']),
+    'unexpanded xacro': (
+        '<robot name="bad" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:wheel/></robot>',
+        ['xacro']),
+    'two roots': (robot(LINK.format('a', ''), LINK.format('b', '')), ['a', 'b']),
+    'duplicate names': (robot(LINK.format('a', ''), LINK.format('a', '')), ["'a'"]),
+    'joint to nowhere': (robot(
+        LINK.format('a', ''),
+        '<joint name="j" type="fixed"><parent link="a"/><child link="gone"/></joint>'), ['gone']),
+    'mass of nan': (robot(LINK.format('a', '').replace('value="1"', 'value="nan"')), ['nan']),
+    'negative mass': (robot(LINK.format('a', '').replace('value="1"', 'value="-1"')), ['-1']),
+}
+CALL_ERRORS = {
+    'text': ('hello world', 'entity format is invalid'),
+    'nothing': ('', 'entity format is invalid'),
+    'sdf': ('<sdf version="1.6"><model name="m"/></sdf>', 'entity format is invalid'),
+    'unknown package': (
+        robot(LINK.format('a', MESH.format('package://no_such_pkg/m.dae'))), 'no_such_pkg'),
+}
+UNKNOWN_JOINT = ('<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
+                 '<leftJoint>nojoint</leftJoint></plugin></gazebo>')
+
+
+class BadInputTest(SimulatorTest):
+    """Beside every bad request a robot drives, and goes on driving."""
+
+    def setUp(self):
+        super().setUp()
+        self.spawn('neighbour', at=pose(y=5.0))
+        self._drive = self.driver()
+        self._drive(0.3)
+        wait_until(lambda: self.x_of('neighbour') > 0.05, 'the neighbour driving')
+
+    def _assert_neighbour_drives(self):
+        here = self.x_of('neighbour')
+        wait_until(lambda: self.x_of('neighbour') > here + 0.02, 'the neighbour driving on')
+
+    def _assert_refused(self, response, *words):
+        self.assertFalse(response.success)
+        self.assertTrue(response.status_message.startswith('SpawnModel: Failure - '))
+        for word in words:
+            self.assertIn(word, response.status_message)
+        self.assertNotIn('\n', response.status_message)
+        self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
+
+    def test_descriptions_that_cannot_be_simulated(self):
+        for case, (xml, words) in REFUSED.items():
+            with self.subTest(case):
+                self._assert_refused(self.spawn('bad', xml), *words)
+        self._assert_neighbour_drives()
+
+    def test_descriptions_that_are_none(self):
+        for case, (xml, words) in CALL_ERRORS.items():
+            with self.subTest(case):
+                with self.assertRaises(rospy.ServiceException) as raised:
+                    self.spawn('bad', xml)
+                self.assertIn(words, str(raised.exception))
+        self._assert_neighbour_drives()
+
+    def test_an_empty_name_and_a_pose_that_is_none(self):
+        self._assert_refused(self.spawn('', BOX), 'name')
+        self._assert_refused(self.spawn('bad', BOX, pose(x=math.nan)), 'bad', 'not finite')
+        self._assert_refused(self.spawn('bad', BOX, pose(z=math.inf)), 'bad', 'not finite')
+        self._assert_neighbour_drives()
+
+    def test_a_plugin_that_cannot_work_leaves_its_model_alone(self):
+        xml = BOX.replace('</robot>', UNKNOWN_JOINT + '</robot>')
+        self.assertTrue(self.spawn('bad', xml).success)
+        unknown = BOX.replace('</robot>', '<gazebo><plugin name="n" filename="libnope.so"/>'
+                                          '</gazebo></robot>')
+        self.assertTrue(self.spawn('worse', unknown, pose(x=5.0)).success)
+        self._assert_neighbour_drives()
+
+    def test_a_command_that_is_not_finite_is_dropped_and_the_last_one_stays(self):
+        odometry = self.collect('/odom', Odometry)
+        wait_until(lambda: odometry and odometry[-1].twist.twist.linear.x > 0.25, 'full speed')
+        for bad in (math.nan, math.inf, -math.inf):
+            self._drive(bad)
+            self._drive(0.3, bad)
+        odometry.clear()
+        wait_until(lambda: len(odometry) > 50, 'half a second of driving')
+        self.assertTrue(all(m.twist.twist.linear.x > 0.2 for m in odometry))
+        publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
+        wait_until(publisher.get_num_connections, 'a subscriber')
+        self._drive(0.0)
+        wait_until(lambda: abs(odometry[-1].twist.twist.linear.x) < 0.01, 'a stop')
+        publisher.unregister()
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_bad_input', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'bad_input', BadInputTest, sys.argv)

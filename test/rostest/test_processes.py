@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""The programs as processes: how they begin, wait, end, and what they print."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from gazebo_msgs.srv import GetWorldProperties, SpawnModel
+from rosgraph_msgs.msg import Clock
+from simulator import BOX, DEADLINE, pose, proxy, wait_until
+from std_srvs.srv import Empty
+
+CTRL_C_LIMIT = 2.0  # [s] promised
+NO_MASTER = 'No ROS master - start roscore to continue...'
+ROS_LINE = re.compile(r'(\x1b\[\d+m)?\[(INFO|WARN)\] \[')
+UNUSED_MASTER = 'http://localhost:1'  # nobody listens on port 1
+
+
+class ProcessTest(unittest.TestCase):
+
+    def setUp(self):
+        self._started = []
+
+    def tearDown(self):
+        for process in self._started:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+            process.stdout.close()
+        wait_until(lambda: not self._registered(), 'the master forgetting the simulator')
+
+    def _start(self, program, *arguments, **environment):
+        process = subprocess.Popen(
+            ['rosrun', 'gazebo_ros', program, *arguments], env={**os.environ, **environment},
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            start_new_session=True)
+        self._started.append(process)
+        return process
+
+    def _server(self, *arguments):
+        process = self._start('gzserver', *arguments)
+        rospy.wait_for_service('/gazebo/spawn_urdf_model', DEADLINE)
+        return process
+
+    def _end(self, process, number=signal.SIGINT, code=0):
+        """Send the signal and return what the process has printed."""
+        process.send_signal(number)
+        begin = time.monotonic()
+        printed, _ = process.communicate(timeout=DEADLINE)
+        self.assertLess(time.monotonic() - begin, CTRL_C_LIMIT)
+        self.assertEqual(process.returncode, code)
+        return printed
+
+    @staticmethod
+    def _registered():
+        """Tell whether a service of the simulator is registered; a killed one is forgotten here."""
+        try:
+            proxy_uri = rosgraph.Master('/test').lookupService('/gazebo/pause_physics')
+        except rosgraph.MasterError:
+            return False
+        return bool(proxy_uri)
+
+    def test_the_first_tick_is_one_step_and_comes_only_when_time_runs(self):
+        server = self._server('-u')
+        ticks = []
+        subscriber = rospy.Subscriber('/clock', Clock, lambda m: ticks.append(m.clock.to_nsec()))
+        wait_until(subscriber.get_num_connections, '/clock')
+        for _ in range(10):
+            self.assertEqual(proxy('get_world_properties', GetWorldProperties)().sim_time, 0.0)
+        self.assertEqual(ticks, [])
+        proxy('unpause_physics', Empty)()
+        wait_until(lambda: len(ticks) > 3, 'ticks')
+        subscriber.unregister()
+        self.assertEqual(ticks[:3], [1_000_000, 2_000_000, 3_000_000])
+        self._end(server)
+
+    def test_ends_by_ctrl_c_and_by_sigterm_also_while_paused_and_prints_only_ros_lines(self):
+        for arguments, number in (((), signal.SIGINT), (('-u',), signal.SIGINT),
+                                  ((), signal.SIGTERM)):
+            server = self._server(*arguments)
+            xml = rospy.get_param('robot_description')
+            spawn = proxy('spawn_urdf_model', SpawnModel)
+            self.assertTrue(spawn('rosbots', xml, '/', pose(), '').success)
+            printed = self._end(server, number)
+            lines = printed.splitlines()
+            self.assertIn('Finished loading Gazebo ROS API Plugin.', lines[0])
+            foreign = [line for line in lines if not ROS_LINE.match(line)]
+            self.assertEqual(foreign, [])
+
+    def test_ends_while_it_waits_for_a_master(self):
+        server = self._start('gzserver', ROS_MASTER_URI=UNUSED_MASTER)
+        self.assertIn(NO_MASTER, server.stdout.readline())
+        self.assertIn(NO_MASTER, server.stdout.readline())
+        self._end(server)
+
+    def test_ends_after_the_steps_asked_for(self):
+        server = self._start('gzserver', '--iters', '50')
+        server.communicate(timeout=DEADLINE)
+        self.assertEqual(server.returncode, 0)
+
+    def test_a_second_server_takes_over(self):
+        first = self._server()
+        proxy('spawn_urdf_model', SpawnModel)('box', BOX, '/', pose(), '')
+        second = self._start('gzserver')
+        first.communicate(timeout=DEADLINE)
+        self.assertEqual(first.returncode, 0)
+        wait_until(self._has_only_the_ground, 'the second server answering')
+        self._end(second)
+
+    @staticmethod
+    def _has_only_the_ground():
+        try:
+            world = proxy('get_world_properties', GetWorldProperties)()
+        except rospy.ServiceException:
+            return False
+        return world.model_names == ['ground_plane']
+
+    def test_without_its_network_there_is_the_clock_only(self):
+        rospy.set_param('/gazebo/enable_ros_network', False)
+        try:
+            server = self._start('gzserver')
+            ticks = []
+            subscriber = rospy.Subscriber('/clock', Clock, ticks.append)
+            wait_until(lambda: len(ticks) > 10, 'ticks')
+            subscriber.unregister()
+            self.assertFalse(self._registered())
+            self._end(server)
+        finally:
+            rospy.delete_param('/gazebo/enable_ros_network')
+
+    def test_a_throttled_clock_ticks_at_its_frequency(self):
+        rospy.set_param('/gazebo/pub_clock_frequency', 100)
+        try:
+            server = self._server('-u')
+            ticks = []
+            subscriber = rospy.Subscriber('/clock', Clock,
+                                          lambda m: ticks.append(m.clock.to_nsec()))
+            wait_until(subscriber.get_num_connections, '/clock')
+            proxy('unpause_physics', Empty)()
+            wait_until(lambda: len(ticks) > 3, 'ticks')
+            self.assertEqual(ticks[:3], [10_000_000, 20_000_000, 30_000_000])
+            ticks.clear()
+            proxy('reset_simulation', Empty)()
+            wait_until(lambda: 10_000_000 in ticks, 'ticks after time jumped back')
+            subscriber.unregister()
+            self._end(server)
+        finally:
+            rospy.delete_param('/gazebo/pub_clock_frequency')
+
+    def test_a_window_without_a_display_is_one_line_and_no_failure(self):
+        for display in ('', ':97'):
+            window = self._start('gzclient', '--verbose', DISPLAY=display)
+            printed, _ = window.communicate(timeout=DEADLINE)
+            self.assertEqual(window.returncode, 0)
+            (line,) = printed.splitlines()
+            self.assertIn('no display', line)
+
+    def test_the_simulator_begins_while_spawn_model_waits(self):
+        spawn = self._start('spawn_model', '-urdf', '-param', 'robot_description',
+                            '-model', 'rosbots', '-z', '0.5')
+        while 'Waiting for service /gazebo/spawn_urdf_model' not in spawn.stdout.readline():
+            self.assertIsNone(spawn.poll())
+        server = self._server()
+        printed, _ = spawn.communicate(timeout=DEADLINE)
+        self.assertEqual(spawn.returncode, 0)
+        self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)
+        self._end(server)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_processes', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'processes', ProcessTest, sys.argv)

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Outcomes and texts of the services, as gazebo_ros has them (contract 2.3, measured 5)."""
+
+import math
+import sys
+
+import rospy
+import rostest
+from geometry_msgs.msg import Point, Pose, Quaternion
+from simulator import BOX, GROUND, SimulatorTest, pose, proxy, topics_of, wait_until
+from std_srvs.srv import Empty
+
+SPAWNED = 'SpawnModel: Successfully spawned entity'
+NO_FRAME = ('SpawnModel: reference reference_frame not found, '
+            'did you forget to scope the link by model name?')
+OF_GAZEBO = {'/clock', '/gazebo/link_states', '/gazebo/model_states', '/rosout'}
+OURS = {'/gazebo/visual_markers', '/gazebo/view/image_raw'}
+SERVICES = {
+    'spawn_urdf_model', 'delete_model', 'get_model_state', 'get_world_properties',
+    'pause_physics', 'unpause_physics', 'reset_world', 'reset_simulation',
+}
+
+
+class ServicesTest(SimulatorTest):
+
+    def _assert_outcome(self, response, success, text):
+        self.assertEqual((response.success, response.status_message), (success, text))
+
+    def test_an_empty_world_offers_gazebos_topics_and_one_of_ours(self):
+        self.assertEqual(topics_of(), OF_GAZEBO | OURS)
+        for name in SERVICES - {'spawn_urdf_model', 'delete_model', 'get_model_state'}:
+            rospy.wait_for_service(f'/gazebo/{name}', 1.0)
+        self.assertIs(rospy.get_param('/use_sim_time'), True)
+
+    def test_world_properties(self):
+        response = self.world()
+        self._assert_outcome(response, True, 'GetWorldProperties: got properties')
+        self.assertEqual(response.model_names, [GROUND])
+        self.assertTrue(response.rendering_enabled)
+        self.assertGreater(response.sim_time, 0.0)
+
+    def test_spawn_and_what_is_there_already(self):
+        self._assert_outcome(self.spawn(), True, SPAWNED)
+        self._assert_outcome(
+            self.spawn(), False, 'SpawnModel: Failure - entity already exists.')
+        self.assertEqual(self.world().model_names, [GROUND, 'rosbots'])
+
+    def test_spawn_in_frames(self):
+        self.pause()
+        turned = Pose(Point(1.0, 0.0, 5.0), Quaternion(0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)))
+        self._assert_outcome(self.spawn('a', BOX, turned), True, SPAWNED)
+        for frame in ('a', 'a::body', 'body'):
+            self._assert_outcome(self.spawn('b', BOX, pose(2.0, 0.0, 0.0), frame), True, SPAWNED)
+            position = self.model_state('b', '').pose.position
+            self.assertAlmostEqual(position.x, 1.0, places=6)
+            self.assertAlmostEqual(position.y, 2.0, places=6)
+            self.assertAlmostEqual(position.z, 5.0, places=6)
+            self.delete('b')
+        for frame in ('', 'world', 'map', '/map'):
+            self._assert_outcome(self.spawn('b', BOX, pose(2.0, 0.0, 0.0), frame), True, SPAWNED)
+            self.delete('b')
+        self._assert_outcome(self.spawn('b', BOX, pose(), 'odom'), False, NO_FRAME)
+
+    def test_spawn_and_delete_while_paused(self):
+        self.pause()
+        self._assert_outcome(self.spawn(), True, SPAWNED)
+        self.assertAlmostEqual(self.model_state('rosbots', '').pose.position.z, 0.5)
+        self.assertIn('/odom', topics_of())
+        self._assert_outcome(
+            self.delete('rosbots'), True, 'DeleteModel: successfully deleted model')
+        self.assertNotIn('/odom', topics_of())
+
+    def test_delete_what_is_not_there(self):
+        for name in ('not_there', ''):
+            self._assert_outcome(self.delete(name), False, 'DeleteModel: model does not exist')
+
+    def test_model_state(self):
+        self.pause()
+        self.spawn('box', BOX, pose(1.0, 2.0, 3.0))
+        response = self.model_state('box', '')
+        self._assert_outcome(response, True, 'GetModelState: got properties')
+        self.assertEqual(response.pose.position.y, 2.0)
+        self.assertEqual(response.header.stamp.to_sec(), self.world().sim_time)
+        self.assertEqual(response.header.frame_id, '')
+        relative = self.model_state('box', 'ground_plane::link')
+        self.assertEqual(relative.header.seq, response.header.seq + 1)
+        self.assertEqual(relative.header.frame_id, 'ground_plane::link')
+
+    def test_model_state_of_what_is_not_there(self):
+        response = self.model_state('nope', '')
+        self._assert_outcome(response, False, 'GetModelState: model does not exist')
+        self.assertEqual(response.pose, Pose())
+        response = self.model_state(GROUND, 'nope')
+        self._assert_outcome(
+            response, False, 'GetModelState: reference relative_entity_name not found, '
+            'did you forget to scope the body by model name?')
+        self.assertEqual(response.pose, Pose())
+        self.assertEqual(response.header.frame_id, 'nope')
+
+    def test_a_falling_body_falls_with_gazebos_gravity(self):
+        self.spawn('box', BOX, pose(z=100.0))
+        self.pause()
+        first = self.model_state('box', '')
+        self.unpause()
+        wait_until(lambda: self.world().sim_time > first.header.stamp.to_sec() + 0.5, 'a fall')
+        second = self.model_state('box', '')
+        fallen = (second.header.stamp - first.header.stamp).to_sec()
+        gained = second.twist.linear.z - first.twist.linear.z
+        self.assertAlmostEqual(gained / fallen, -9.8, places=3)
+
+    def test_pause_and_unpause_answer_twice(self):
+        for name in ('pause_physics', 'pause_physics', 'unpause_physics', 'unpause_physics'):
+            proxy(name, Empty)()
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_services', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'services', ServicesTest, sys.argv)

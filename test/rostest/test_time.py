@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Simulated time: /clock, pause and the two resets."""
+
+import sys
+import time
+
+import rospy
+import rostest
+from gazebo_msgs.msg import LinkStates, ModelStates
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from simulator import GROUND, SimulatorTest, wait_until
+
+STEP = 1_000_000  # [ns]
+SPAWN_HEIGHT, REST_HEIGHT = 0.5, -0.12  # [m]
+REST_TOLERANCE = 0.002  # [m] promised
+RATE_TOLERANCE = 0.02  # share; the promise is 0.01 over long times, a test machine is not alone
+
+
+class TimeTest(SimulatorTest):
+
+    def test_the_clock_ticks_every_step_at_the_pace_of_the_wall(self):
+        clock = self.collect('/clock', Clock)
+        wait_until(clock.__len__, 'a first message')
+        begin, first = time.monotonic(), clock[-1].clock
+        wait_until(lambda: len(clock) > 3000, 'three seconds of /clock')
+        passed, ticks = time.monotonic() - begin, [m.clock.to_nsec() for m in clock]
+        simulated = (clock[-1].clock - first).to_sec()
+        self.assertAlmostEqual(simulated / passed, 1.0, delta=RATE_TOLERANCE)
+        steps = {b - a for a, b in zip(ticks, ticks[1:], strict=False)}
+        self.assertEqual(min(steps), STEP)
+
+    def test_states_come_with_every_step_and_name_everything(self):
+        self.spawn()
+        models = self.collect('/gazebo/model_states', ModelStates)
+        links = self.collect('/gazebo/link_states', LinkStates)
+        wait_until(lambda: len(models) > 500 and len(links) > 500, 'half a second of states')
+        self.assertEqual(models[-1].name, [GROUND, 'rosbots'])
+        self.assertEqual(links[-1].name, [
+            'ground_plane::link', 'rosbots::base_footprint',
+            'rosbots::wheel_left_link', 'rosbots::wheel_right_link'])
+        self.assertEqual(len(models[-1].pose), 2)
+        self.assertEqual(len(links[-1].twist), 4)
+
+    def test_nothing_is_published_while_paused_and_all_goes_on_afterwards(self):
+        self.spawn()
+        heard = [self.collect('/clock', Clock), self.collect('/odom', Odometry),
+                 self.collect('/gazebo/model_states', ModelStates)]
+        wait_until(lambda: all(heard), 'messages while time runs')
+        self.pause()
+        self.pause()
+        stood = self.world().sim_time
+        wait_until(lambda: abs(heard[0][-1].clock.to_sec() - stood) < 1e-9, 'the last tick')
+        counts = [len(messages) for messages in heard]
+        for _ in range(20):  # services are answered, and nothing else moves
+            self.assertEqual(self.world().sim_time, stood)
+        self.assertEqual([len(messages) for messages in heard], counts)
+        self.unpause()
+        wait_until(lambda: all(len(m) > n for m, n in zip(heard, counts, strict=True)), 'more')
+        self.assertEqual(heard[0][counts[0]].clock.to_nsec(), round(stood * 1e9) + STEP)
+
+    def test_reset_world_brings_the_model_back_and_time_goes_on(self):
+        drive = self._at_rest_then_drive()
+        before = self.world().sim_time
+        self.reset_world()
+        self.assertGreater(self.world().sim_time, before)
+        self._assert_back_at_spawn_and_at_rest()
+        drive(0.5)
+        wait_until(lambda: self.x_of() > 0.2, 'the plugin taking commands again')
+
+    def test_reset_simulation_brings_time_back_too(self):
+        drive = self._at_rest_then_drive()
+        clock, odometry = self.collect('/clock', Clock), self.collect('/odom', Odometry)
+        wait_until(lambda: self.world().sim_time > 1.0, 'one second')
+        before = self.world().sim_time
+        self.reset_simulation()
+        self.assertLess(self.world().sim_time, before)
+        self._assert_back_at_spawn_and_at_rest()
+        self.assertIn(STEP, [message.clock.to_nsec() for message in clock])
+        odometry.clear()
+        wait_until(odometry.__len__, 'odometry after the reset')
+        self.assertEqual(self.world().model_names, [GROUND, 'rosbots'])
+        drive(0.5)
+        wait_until(lambda: self.x_of() > 0.2, 'the plugin taking commands again')
+
+    def _at_rest_then_drive(self):
+        self.spawn()
+        drive = self.driver()
+        drive(0.5)
+        wait_until(lambda: self.x_of() > 0.3, 'the robot driving')
+        return drive
+
+    def _assert_back_at_spawn_and_at_rest(self):
+        self.assertLess(self.x_of(), 0.1)
+        wait_until(lambda: abs(self._height() - REST_HEIGHT) < REST_TOLERANCE, 'standing')
+        self.assertLess(self.x_of(), 0.1, 'it still drives: the command was not forgotten')
+
+    def _height(self):
+        return self.model_state('rosbots', '').pose.position.z
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_time', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'time', TimeTest, sys.argv)

@@ -1,0 +1,50 @@
+"""The executable gazebo: server and window live and end together."""
+
+import sys
+import time
+
+import pytest
+
+from rosbots_description.cli import gazebo
+
+RUN_UNTIL_CTRL_C = """
+import signal, sys, time
+signal.signal(signal.SIGINT, lambda *_: sys.exit({code}))
+open(__file__ + '.arguments', 'w').write(' '.join(sys.argv[1:]))
+time.sleep(60)
+"""
+WAIT_FOR_SERVER_THEN_END = """
+import pathlib, time
+while not (pathlib.Path(__file__).parent / 'gzserver.arguments').exists():
+    time.sleep(0.01)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder that takes the place of the one with the executables."""
+    monkeypatch.setattr(sys, 'argv', [str(tmp_path / 'gazebo')])
+    monkeypatch.setattr(gazebo, 'display_works', lambda: True)
+    return tmp_path
+
+
+def test_closing_the_window_ends_the_server_with_ctrl_c(folder):
+    (folder / 'gzserver').write_text(RUN_UNTIL_CTRL_C.format(code=7))
+    (folder / 'gzclient').write_text(WAIT_FOR_SERVER_THEN_END)
+    assert gazebo.main(['-u', '--verbose', 'my.world']) == 7
+    assert (folder / 'gzserver.arguments').read_text() == '-u --verbose my.world'
+
+
+def test_the_end_of_the_server_closes_the_window(folder):
+    (folder / 'gzserver').write_text('raise SystemExit(3)')
+    (folder / 'gzclient').write_text(RUN_UNTIL_CTRL_C.format(code=0))
+    start = time.monotonic()
+    assert gazebo.main([]) == 3
+    assert time.monotonic() - start < 10.0
+
+
+def test_without_a_display_the_server_runs_on(folder, monkeypatch):
+    monkeypatch.setattr(gazebo, 'display_works', lambda: False)
+    (folder / 'gzserver').write_text('import time; time.sleep(0.5); raise SystemExit(5)')
+    (folder / 'gzclient').write_text('')
+    assert gazebo.main([]) == 5

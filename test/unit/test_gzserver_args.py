@@ -1,0 +1,63 @@
+"""gzserver's command line: Gazebo's options are taken, and what does nothing here is said."""
+
+import logging
+import os
+import subprocess
+import sys
+
+from rosbots_description.cli.gzserver import main, parser, remarks, split_remappings
+
+
+def _read(line):
+    given, unknown = parser().parse_known_args(line.split())
+    return given, remarks(given, unknown)
+
+
+def test_the_line_of_the_launch_file_leaves_nothing_to_say():
+    given, said = _read('-u --verbose -e ode worlds/empty.world')
+    assert given.pause
+    assert given.world == 'worlds/empty.world'
+    assert said == ()
+
+
+def test_plugins_port_seed_and_lockstep_are_accepted():
+    given, said = _read('-s liba.so -s libb.so -p 11346 --seed 3 --lockstep --iters 100')
+    assert (given.iters, said) == (100, ())
+
+
+def test_another_engine_is_an_information():
+    _, ((level, text),) = _read('-e bullet')
+    assert level == logging.INFO
+    assert "'bullet'" in text
+    assert 'PyBullet' in text
+
+
+def test_recording_and_unknown_options_are_warnings():
+    _, said = _read('-r --hologram')
+    assert [level for level, _ in said] == [logging.WARNING, logging.WARNING]
+    assert '--hologram' in said[0][1]
+    assert 'rosbag' in said[1][1]
+
+
+def test_remappings_are_told_from_options():
+    assert split_remappings(['-u', '__name:=gazebo', 'a.world', 'a:=b']) == (
+        ['-u', 'a.world'], ['__name:=gazebo', 'a:=b'])
+
+
+def test_another_world_is_refused_by_name(capsys):
+    assert main(['worlds/mud.world']) == 1
+    assert "'worlds/mud.world'" in capsys.readouterr().err
+
+
+def test_a_missing_engine_is_one_sentence():
+    program = (
+        "import sys; sys.modules['pybullet'] = None; "
+        'from rosbots_description.cli.gzserver import main; sys.exit(main([]))'
+    )
+    ended = subprocess.run(
+        [sys.executable, '-c', program],
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
+        capture_output=True, text=True, timeout=30, check=False)
+    assert ended.returncode == 1
+    (line,) = ended.stderr.splitlines()
+    assert 'pip install pybullet==3.2.7' in line

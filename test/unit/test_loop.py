@@ -1,0 +1,161 @@
+"""The loop that owns the world: pacing, commands from other threads, pause and end."""
+
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from rosbots_description.ros_api.loop import MAX_LAG, Loop, LoopError
+from rosbots_description.sim.errors import NotFoundError
+
+JOIN = 5.0  # [s] for what takes milliseconds; slow machines are no failure
+
+
+class CountingWorld:
+    """A world that only counts its steps, and can be made slow."""
+
+    def __init__(self, rate, step_time=0.0):
+        self.physics = SimpleNamespace(max_update_rate=rate)
+        self.paused = False
+        self.steps = 0
+        self.longest_batch = 0
+        self._step_time = step_time
+
+    def run(self, steps):
+        self.steps += steps
+        self.longest_batch = max(self.longest_batch, steps)
+        if self._step_time:
+            time.sleep(steps * self._step_time)
+
+
+@pytest.fixture
+def start():
+    """Run loops on threads of their own, and stop them at the end."""
+    running = []
+
+    def begin(world, **limits):
+        loop = Loop(world)
+        thread = threading.Thread(target=loop.run, kwargs=limits)
+        thread.start()
+        running.append((loop, thread))
+        return loop
+
+    yield begin
+    for loop, thread in running:
+        loop.stop()
+        thread.join(JOIN)
+        assert not thread.is_alive()
+
+
+def test_makes_as_many_steps_as_time_has_passed(start):
+    world = CountingWorld(rate=1000.0)
+    loop = start(world)
+    steps, begin = loop.call(lambda: world.steps), time.monotonic()
+    time.sleep(0.3)  # the measured quantity itself
+    made, passed = loop.call(lambda: world.steps) - steps, time.monotonic() - begin
+    assert made == pytest.approx(1000.0 * passed, abs=5)
+
+
+def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(start):
+    world = CountingWorld(rate=0.0, step_time=1e-5)
+    loop = start(world)
+    time.sleep(0.1)  # let it find its batch
+    begin = time.monotonic()
+    assert loop.call(lambda: 'served') == 'served'
+    assert time.monotonic() - begin < 0.1
+    assert world.longest_batch > 1
+
+
+def test_a_slow_world_is_not_asked_for_the_past(start):
+    world = CountingWorld(rate=1000.0, step_time=0.002)
+    loop = start(world)
+    loop.call(lambda: time.sleep(2 * MAX_LAG))
+    begin = time.monotonic()
+    loop.call(lambda: None)
+    assert time.monotonic() - begin < MAX_LAG
+
+
+def test_makes_no_step_while_paused_but_serves(start):
+    world = CountingWorld(rate=1000.0)
+    world.paused = True
+    loop = start(world)
+    assert loop.call(lambda: world.steps) == 0
+    loop.call(lambda: setattr(world, 'paused', False))
+    _wait_for(lambda: world.steps > 0)
+
+
+def test_ends_after_the_steps_asked_for():
+    world = CountingWorld(rate=0.0)
+    Loop(world).run(steps=1234)
+    assert world.steps == 1234
+
+
+def test_a_command_raises_in_the_thread_that_gave_it(start):
+    loop = start(CountingWorld(rate=1000.0))
+
+    def fail():
+        raise NotFoundError('no such thing')
+
+    with pytest.raises(NotFoundError, match='no such thing'):
+        loop.call(fail)
+    assert loop.call(lambda: 1) == 1
+
+
+def test_a_command_from_the_loop_itself_runs_at_once(start):
+    loop = start(CountingWorld(rate=1000.0))
+    assert loop.call(lambda: loop.call(lambda: 7)) == 7
+
+
+def test_a_command_that_waited_too_long_is_never_carried_out(start):
+    loop = start(CountingWorld(rate=1000.0))
+    release, done = threading.Event(), []
+    loop.post(lambda: release.wait(JOIN))
+    with pytest.raises(LoopError, match='busy for 0.05 s and the request was not begun'):
+        loop.call(lambda: done.append(1), deadline=0.05)
+    release.set()
+    loop.call(lambda: None)
+    assert done == []
+
+
+def test_a_fault_in_a_posted_command_is_logged_and_the_loop_lives(start, caplog):
+    loop = start(CountingWorld(rate=1000.0))
+    loop.post(lambda: 1 / 0)
+    assert loop.call(lambda: 'alive') == 'alive'
+    assert 'the simulation goes on' in caplog.text
+
+
+@pytest.mark.parametrize('paused', [False, True])
+def test_periodic_tasks_run_also_while_paused(start, paused):
+    world = CountingWorld(rate=1000.0)
+    world.paused = paused
+    loop = Loop(world)
+    runs = []
+    loop.every(0.01, lambda: runs.append(time.monotonic()))
+    thread = threading.Thread(target=loop.run)
+    thread.start()
+    _wait_for(lambda: len(runs) >= 5)
+    loop.stop()
+    thread.join(JOIN)
+    assert runs[4] - runs[0] >= 0.04
+
+
+@pytest.mark.parametrize('paused', [False, True])
+def test_stops_at_once_and_then_refuses(paused):
+    world = CountingWorld(rate=1.0)
+    world.paused = paused
+    loop = Loop(world)
+    thread = threading.Thread(target=loop.run)
+    thread.start()
+    loop.stop()
+    thread.join(JOIN)
+    assert not thread.is_alive()
+    with pytest.raises(LoopError, match='shutting down'):
+        loop.call(lambda: None)
+
+
+def _wait_for(condition):
+    end = time.monotonic() + JOIN
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.001)

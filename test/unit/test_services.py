@@ -1,0 +1,83 @@
+"""The table of services and what faults become on the wire; every plugin has its adapter."""
+
+from types import SimpleNamespace
+
+import pytest
+from gazebo_msgs.srv import DeleteModel, DeleteModelResponse
+from std_srvs.srv import Empty
+
+from rosbots_description.ros_api import adapters, services  # noqa: F401  both register
+from rosbots_description.ros_api.adapters.registry import Adapter, adapter_class
+from rosbots_description.ros_api.services.models import relative_state
+from rosbots_description.ros_api.services.registry import (
+    SERVICES,
+    CallError,
+    Service,
+    respond,
+    service,
+)
+from rosbots_description.sim import plugins  # noqa: F401  registers
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.plugins.registry import known_filenames, plugin_class
+from rosbots_description.sim.pose import Pose, Twist, from_rpy
+
+SERVER = SimpleNamespace(loop=SimpleNamespace(call=lambda command: command()))
+DONE = DeleteModelResponse(True, 'done')
+
+
+def _fail(_server, _request):
+    raise ModelError('link a is missing')
+
+
+def _refuse(_server, _request):
+    raise CallError('not like this')
+
+
+def test_a_service_answers_with_what_was_prepared():
+    entry = Service('s', DeleteModel, lambda _server, value: DeleteModelResponse(True, value),
+                    lambda _server, request: request.upper(), registers=False)
+    assert respond(SERVER, entry, 'text').status_message == 'TEXT'
+
+
+def test_a_response_from_the_preparation_is_final():
+    entry = Service('s', DeleteModel, _fail, lambda *_: DONE, registers=False)
+    assert respond(SERVER, entry, 'text') is DONE
+
+
+@pytest.mark.parametrize(('answer', 'prepare'), [(_fail, None), (lambda *_: DONE, _fail)])
+def test_a_fault_is_a_failure_with_its_sentence(answer, prepare):
+    response = respond(SERVER, Service('s', DeleteModel, answer, prepare, registers=False), None)
+    assert not response.success
+    assert response.status_message == 'DeleteModel: Failure - link a is missing'
+
+
+def test_a_fault_of_a_service_without_success_is_an_error_of_the_call():
+    with pytest.raises(CallError, match='Empty: Failure - link a is missing'):
+        respond(SERVER, Service('s', Empty, _fail, None, registers=False), None)
+
+
+def test_a_refused_call_is_an_error_of_the_call():
+    with pytest.raises(CallError, match='not like this'):
+        respond(SERVER, Service('s', DeleteModel, _refuse, None, registers=False), None)
+
+
+def test_a_service_is_answered_by_one_function():
+    name = next(iter(SERVICES))
+    with pytest.raises(ValueError, match=name):
+        service(name, Empty)(lambda *_: None)
+
+
+@pytest.mark.parametrize('filename', known_filenames())
+def test_every_plugin_has_an_adapter(filename):
+    assert issubclass(adapter_class(plugin_class(filename)), Adapter)
+
+
+def test_relative_velocity_is_turned_but_has_no_share_of_the_frames_rotation():
+    frame = Pose((1.0, 0.0, 0.0), from_rpy(0.0, 0.0, 1.5707963267948966))
+    pose, twist = relative_state(
+        (Pose((1.0, 2.0, 0.0)), Twist((0.0, 1.0, 0.0), (0.0, 0.0, 2.0))),
+        (frame, Twist((0.0, 0.25, 0.0), (0.0, 0.0, 0.5))),
+    )
+    assert pose.position == pytest.approx((2.0, 0.0, 0.0))
+    assert twist.linear == pytest.approx((0.75, 0.0, 0.0))
+    assert twist.angular == pytest.approx((0.0, 0.0, 1.5))

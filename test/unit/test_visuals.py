@@ -1,0 +1,101 @@
+"""The markers of a world: what is sent, and that it is sent only once."""
+
+from types import SimpleNamespace
+
+import pytest
+from visualization_msgs.msg import Marker
+
+from rosbots_description.ros_api.markers import PLANE_DEPTH, visual_marker
+from rosbots_description.ros_api.visuals import REFRESH, View
+from rosbots_description.sim.pose import IDENTITY, Pose
+from rosbots_description.sim.spec import (
+    Box,
+    Cylinder,
+    LinkSpec,
+    Material,
+    Mesh,
+    Plane,
+    Sphere,
+    Visual,
+)
+
+RED = Material((1.0, 0.0, 0.0, 0.5))
+
+
+def _model(name, visual, pose=IDENTITY):
+    spec = LinkSpec('link', visuals=(visual,))
+    link = SimpleNamespace(scoped_name=f'{name}::link', spec=spec, pose=pose)
+    return SimpleNamespace(name=name, links={'link': link})
+
+
+@pytest.fixture
+def world():
+    return SimpleNamespace(models={'box': _model('box', Visual('v', Box((1.0, 2.0, 3.0))))})
+
+
+@pytest.mark.parametrize(('geometry', 'kind', 'scale'), [
+    (Box((1.0, 2.0, 3.0)), Marker.CUBE, (1.0, 2.0, 3.0)),
+    (Sphere(0.5), Marker.SPHERE, (1.0, 1.0, 1.0)),
+    (Cylinder(0.5, 2.0), Marker.CYLINDER, (1.0, 1.0, 2.0)),
+    (Plane(size=(10.0, 20.0)), Marker.TRIANGLE_LIST, (10.0, 20.0, 1.0)),
+    (Mesh('/a b/c.dae', (2.0, 2.0, 2.0)), Marker.MESH_RESOURCE, (2.0, 2.0, 2.0)),
+])
+def test_each_shape_has_its_marker(geometry, kind, scale):
+    marker = visual_marker('m::l', 3, Visual('v', geometry, material=RED))
+    assert (marker.type, marker.ns, marker.id) == (kind, 'm::l', 3)
+    assert (marker.scale.x, marker.scale.y, marker.scale.z) == scale
+    assert (marker.color.r, marker.color.a) == (1.0, 0.5)
+    assert marker.header.frame_id == 'world'
+
+
+def test_a_mesh_without_material_keeps_its_own_colours():
+    marker = visual_marker('m::l', 0, Visual('v', Mesh('/a b/c.dae')))
+    assert marker.mesh_resource == 'file:///a%20b/c.dae'
+    assert marker.mesh_use_embedded_materials
+    assert marker.color.a == 0.0
+
+
+def test_a_plane_has_a_colour_at_every_corner_and_lies_below_the_grid():
+    world = SimpleNamespace(models={'ground': _model('ground', Visual('v', Plane()))})
+    _, marker = View(world).look()
+    assert len(marker.colors) == len(marker.points) == 6
+    assert marker.pose.position.z == -PLANE_DEPTH
+
+
+def test_the_first_look_shows_all_and_the_next_nothing(world):
+    view = View(world)
+    assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
+    assert view.look() == []
+
+
+def test_what_moved_is_shown_where_it_is(world):
+    view = View(world)
+    view.look()
+    world.models['box'].links['link'].pose = Pose((1.0, 2.0, 3.0))
+    (marker,) = view.look()
+    assert (marker.pose.position.x, marker.pose.position.z) == (1.0, 3.0)
+
+
+def test_what_went_is_removed_and_what_came_is_added(world):
+    view = View(world)
+    view.look()
+    del world.models['box']
+    (gone,) = view.look()
+    assert (gone.action, gone.ns, gone.id) == (Marker.DELETE, 'box::link', 0)
+
+
+def test_a_new_model_of_an_old_name_takes_its_place(world):
+    view = View(world)
+    view.look()
+    world.models['box'] = _model('box', Visual('v', Sphere(1.0)))
+    gone, came = view.look()
+    assert (gone.action, came.action) == (Marker.DELETE, Marker.ADD)
+    assert came.type == Marker.SPHERE
+
+
+def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
+    view = View(world)
+    shown = [len(view.look()) for _ in range(REFRESH + 1)]
+    assert shown == [2] + [0] * (REFRESH - 1) + [1]
+    view.begin()
+    assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
