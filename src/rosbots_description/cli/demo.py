@@ -1,0 +1,163 @@
+"""Show the whole project in half a minute: world, robot, a short drive, deletion, second spawn."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import socket
+import sys
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+
+from rosbots_description.cli.demo_report import (
+    DRIVE,
+    SPEED_RATIO,
+    TURN_RATIO,
+    Row,
+    complaint,
+    real_time_factor,
+    steady_motion,
+    table,
+)
+from rosbots_description.cli.launched import Launched
+
+_MODEL = 'rosbots'
+PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
+_START = 30.0  # [s] wall time for the simulator to come up on a slow machine
+_SPAWN = 30.0  # [s] wall time for one spawn.launch
+_LANDED = -0.10  # [m] the wheels touch the ground when base_footprint is at -0.12
+_INTERRUPTED = 130  # exit code
+
+_DRIVE_IT_YOURSELF = """\
+Drive it yourself, each line in a terminal of its own:
+  ./rosbots launch gazebo_ros empty_world.launch
+  ./rosbots launch rosbots_description spawn.launch
+  ./rosbots exec rosrun teleop_twist_keyboard teleop_twist_keyboard.py /cmd_vel:=/part2_cmr/cmd_vel
+"""
+
+
+class DemoError(RuntimeError):
+    """A step of the demo failed; the text is one sentence for the user."""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the demo; return the exit code: 0 done, 1 a step failed, 130 interrupted."""
+    parser = argparse.ArgumentParser(prog='./rosbots demo', description=__doc__)
+    parser.add_argument('--output', type=Path, default=Path('demo_output'), metavar='FOLDER',
+                        help='where pictures and logs go; default: %(default)s')
+    arguments = parser.parse_args(argv)
+    # a closed terminal and a kill end the demo as Ctrl-C does: with everything it started
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
+    try:
+        _run(arguments.output)
+    except KeyboardInterrupt:
+        print('\ndemo: interrupted; everything it had started has ended', file=sys.stderr)
+        return _INTERRUPTED
+    except (DemoError, OSError) as error:
+        print(f'demo: {error}', file=sys.stderr)
+        return 1
+    print(_DRIVE_IT_YOURSELF, end='')
+    return 0
+
+
+def _run(folder: Path) -> None:
+    """Do all steps in order.
+
+    :raises DemoError, OSError: one of them failed.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    environment = _private_environment(folder)
+    os.environ.update(environment)  # for our own node
+    # Late, so that --help answers at once.
+    from rosbots_description.cli.demo_plot import save_picture
+    from rosbots_description.ros_api.demo_client import DemoClient
+    with ExitStack() as stack:
+        _say('starting the simulator with an empty world')
+        server = stack.enter_context(Launched(
+            ['gazebo_ros', 'empty_world.launch', 'gui:=false', 'server_required:=true'],
+            folder / 'simulator.log', environment))
+        try:
+            client = DemoClient(_MODEL, _START, lambda: server.running)
+        except TimeoutError as error:
+            raise DemoError(f'{error}: {server.complaint()}') from error
+        stack.callback(client.close)
+        _say('spawning the robot')
+        _spawn(client, folder / 'spawn.log', environment)
+        _say(f'driving it for {sum(segment.duration for segment in DRIVE):g} s: '
+             + ', '.join(segment.name for segment in DRIVE))
+        rows = _drive(client, folder)
+        _say("taking its picture with the simulator's own camera")
+        save_picture(folder / ROBOT_PICTURE, client.look_at_robot())
+        _say('deleting it, and spawning it a second time')
+        client.delete()
+        if client.present():
+            raise DemoError('the robot is still there after it was deleted')
+        _spawn(client, folder / 'second_spawn.log', environment)
+    _report(rows, folder)
+
+
+def _private_environment(folder: Path) -> dict[str, str]:
+    """Return an environment with a ROS master of our own, so that no running one is disturbed."""
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        port = probe.getsockname()[1]
+    environment = {name: value for name, value in os.environ.items()
+                   if name not in ('ROS_IP', 'ROS_NAMESPACE')}
+    environment.update(ROS_MASTER_URI=f'http://localhost:{port}', ROS_HOSTNAME='localhost',
+                       ROS_LOG_DIR=str(folder.resolve() / 'ros_log'))
+    return environment
+
+
+def _spawn(client, log: Path, environment: Mapping[str, str]) -> None:
+    """Spawn the robot by its launch file and wait until it stands and listens."""
+    from rosbots_description.ros_api.demo_client import wait_until
+    with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
+        done = spawn.wait(_SPAWN)
+    if not done or not client.present():
+        raise DemoError(f'the robot was not spawned: {spawn.complaint()}')
+    client.wait_for_plugin()
+    wait_until(lambda: client.height() < _LANDED, _SPAWN, 'the robot to reach the ground')
+
+
+def _drive(client, folder: Path) -> list[Row]:
+    """Drive all segments, write the picture and return what was measured."""
+    from rosbots_description.cli.demo_plot import plot_path
+    rows, path, odometry = [], [], []
+    for segment in DRIVE:
+        truth, reported = client.drive(segment.speed, segment.turn_rate, segment.duration)
+        path.append((segment, truth))
+        odometry += reported
+        try:
+            rows.append(Row(segment, steady_motion(reported), steady_motion(truth),
+                            real_time_factor(truth)))
+        except (ValueError, IndexError) as error:
+            raise DemoError(f'too little was measured in the part "{segment.name}": {error}') \
+                from error
+        sentence = complaint(rows[-1])
+        if sentence:
+            raise DemoError(sentence)
+    plot_path(folder / PATH_PICTURE, path, odometry)
+    return rows
+
+
+def _report(rows: list[Row], folder: Path) -> None:
+    print(f'\n{table(rows)}\n\n'
+          f'Mean speeds once steady. The wheels are smaller (0.46 m) and closer (0.88 m) than the\n'
+          f"robot's plugin is told (0.52 m, 1.1 m), so without slip it drives at {SPEED_RATIO:.3f}"
+          f' of the\ncommanded speed and turns at {TURN_RATIO:.3f} of the commanded rate, as in'
+          f' Gazebo.\n\nPictures: {folder / PATH_PICTURE} and {folder / ROBOT_PICTURE}\n')
+
+
+_started = time.monotonic()
+
+
+def _say(text: str) -> None:
+    print(f'[{time.monotonic() - _started:4.1f} s] {text}', flush=True)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

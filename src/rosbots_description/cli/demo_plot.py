@@ -1,0 +1,56 @@
+"""The picture of the path that the robot drove in the demo."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+matplotlib.use('Agg')  # before pyplot: there may be no display
+from matplotlib import pyplot
+
+from rosbots_description.cli.demo_report import Segment
+from rosbots_description.ros_api.planar_sample import PlanarSample
+
+_ARROW = 0.35  # [m] length of the arrow that shows a heading
+
+
+def save_picture(path: Path, pixels: np.ndarray) -> None:
+    """Write RGB bytes (height, width, 3) as PNG.
+
+    :raises OSError: the file cannot be written.
+    """
+    pyplot.imsave(path, pixels)
+
+
+def plot_path(
+    path: Path,
+    drive: Sequence[tuple[Segment, Sequence[PlanarSample]]],
+    odometry: Sequence[PlanarSample],
+) -> None:
+    """Write a top view of the drive as PNG.
+
+    :param drive: each segment with the ground truth of its time, world frame.
+    :param odometry: the whole drive as odometry has it.
+    :raises OSError: the file cannot be written.
+    """
+    figure, axes = pyplot.subplots(figsize=(8, 6), layout='constrained')
+    for segment, samples in drive:
+        label = f'{segment.name}: {segment.speed:g} m/s, {segment.turn_rate:g} rad/s'
+        axes.plot([s.x for s in samples], [s.y for s in samples], linewidth=3, label=label)
+    axes.plot([s.x for s in odometry], [s.y for s in odometry], 'k:', linewidth=1, label='odometry')
+    for sample in (drive[0][1][0], drive[-1][1][-1]):
+        axes.arrow(sample.x, sample.y, _ARROW * math.cos(sample.yaw),
+                   _ARROW * math.sin(sample.yaw), width=0.02, color='0.3', zorder=3)
+    axes.set(title='The drive from above; arrows: heading at start and end',
+             xlabel='x [m]', ylabel='y [m]', aspect='equal')
+    axes.margins(0.15)
+    axes.grid(alpha=0.3)
+    axes.legend(loc='best', fontsize='small')
+    try:
+        figure.savefig(path, dpi=120)
+    finally:
+        pyplot.close(figure)

@@ -1,0 +1,171 @@
+"""The demo's ROS node: it drives the robot and watches where it goes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import rosgraph
+import rospy
+from gazebo_msgs.srv import DeleteModel, GetModelState
+from geometry_msgs.msg import Pose, Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import Image
+
+from rosbots_description.ros_api.planar_sample import PlanarSample
+from rosbots_description.sim.pose import yaw_of
+from rosbots_description.sim.view import EYE, TARGET
+
+_PERIOD = 0.04  # [s] wall time between two looks; every look asks the simulator
+_ANSWER = 5.0  # [s] wall time in which a running simulator answers
+_SLOWEST = 0.1  # real-time factor below which the demo gives up
+
+
+def wait_until(condition: Callable[[], bool], timeout: float, what: str,
+               alive: Callable[[], bool] = lambda: True) -> None:
+    """Wait for a condition.
+
+    :param timeout: longest time to wait [s, wall].
+    :param what: what is waited for, completes the sentence "gave up waiting for …".
+    :param alive: tells whether waiting still makes sense.
+    :raises TimeoutError: it did not come true in time, or waiting makes no sense any more.
+    """
+    deadline = time.monotonic() + timeout
+    while not condition():
+        if not alive():
+            raise TimeoutError(f'waited for {what}, but it has ended')
+        if time.monotonic() > deadline:
+            raise TimeoutError(f'gave up waiting for {what} after {timeout:g} s')
+        time.sleep(_PERIOD)
+
+
+class DemoClient:
+    """Talks to the simulator at /gazebo about one model.
+
+    Publishes:
+        /part2_cmr/cmd_vel (geometry_msgs/Twist)
+    Subscribes:
+        /odom (nav_msgs/Odometry), /gazebo/view/image_raw (sensor_msgs/Image)
+    Calls:
+        /gazebo/get_model_state, /gazebo/delete_model
+    """
+
+    def __init__(self, model: str, timeout: float, alive: Callable[[], bool]) -> None:
+        """Start the node once there are a master and a simulator.
+
+        :param timeout: longest time to wait for both [s, wall].
+        :param alive: tells whether the simulator's process still runs.
+        :raises TimeoutError: they did not come.
+        """
+        self._model = model
+        wait_until(rosgraph.is_master_online, timeout, 'the ROS master', alive)
+        rospy.init_node('demo', anonymous=True, disable_signals=True, log_level=rospy.ERROR)
+        wait_until(lambda: _offered('/gazebo/get_model_state'), timeout, 'the simulator', alive)
+        self._get_state = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
+        self._delete = rospy.ServiceProxy('/gazebo/delete_model', DeleteModel)
+        self._odometry: list[PlanarSample] = []
+        self._command = rospy.Publisher('/part2_cmr/cmd_vel', Twist, queue_size=1)
+        rospy.Subscriber('/odom', Odometry, self._remember)
+
+    def _remember(self, message: Odometry) -> None:
+        self._odometry.append(_sample(message.header.stamp, message.pose.pose))
+
+    def _state(self):
+        try:
+            return self._get_state(self._model, '')
+        except (rospy.ServiceException, rospy.ROSException) as error:
+            raise ConnectionError(f'the simulator does not answer any more: {error}') from error
+
+    def present(self) -> bool:
+        """Tell whether the model is in the world."""
+        return self._state().success
+
+    def height(self) -> float:
+        """Return z of the model's origin in the world [m]; 0 when there is no such model."""
+        return self._state().pose.position.z
+
+    def delete(self) -> str:
+        """Delete the model and return the simulator's words.
+
+        :raises ConnectionError: the simulator refused or did not answer.
+        """
+        try:
+            response = self._delete(self._model)
+        except (rospy.ServiceException, rospy.ROSException) as error:
+            raise ConnectionError(f'the model could not be deleted: {error}') from error
+        if not response.success:
+            raise ConnectionError(f'the model could not be deleted: {response.status_message}')
+        return response.status_message
+
+    def wait_for_plugin(self) -> None:
+        """Wait until the robot listens to commands and reports odometry.
+
+        :raises TimeoutError: it does not.
+        """
+        self._odometry.clear()
+        wait_until(lambda: self._command.get_num_connections() > 0 and bool(self._odometry),
+                   _ANSWER, "the robot's plugin on /part2_cmr/cmd_vel and /odom")
+
+    def drive(self, speed: float, turn_rate: float, duration: float) \
+            -> tuple[list[PlanarSample], list[PlanarSample]]:
+        """Command a velocity and watch.
+
+        :param speed: along the robot's x [m/s].
+        :param turn_rate: counter-clockwise [rad/s].
+        :param duration: how long [s, simulated].
+        :return: the samples of ground truth and of odometry, world frame, oldest first.
+        :raises TimeoutError: simulated time stands still or crawls.
+        :raises ConnectionError: the model or the simulator has gone.
+        """
+        command = Twist()
+        command.linear.x, command.angular.z = speed, turn_rate
+        self._odometry.clear()
+        truth: list[PlanarSample] = []
+
+        def look() -> bool:
+            self._command.publish(command)
+            state = self._state()
+            if not state.success:
+                raise ConnectionError(f'{self._model} has gone: {state.status_message}')
+            truth.append(_sample(state.header.stamp, state.pose))
+            return truth[-1].stamp - truth[0].stamp >= duration
+
+        wait_until(look, duration / _SLOWEST, f'{duration:g} s of simulated time')
+        return truth, list(self._odometry)
+
+    def look_at_robot(self) -> np.ndarray:
+        """Return the robot as the simulator's own camera sees it: (height, width, 3) RGB bytes.
+
+        :raises TimeoutError: no picture came.
+        """
+        robot = self._state().pose.position
+        for name, point in (('eye', EYE), ('target', TARGET)):
+            place = [robot.x + point[0], robot.y + point[1], point[2]]
+            rospy.set_param(f'/gazebo/view/{name}', place)
+        pictures: list[Image] = []
+        watch = rospy.Subscriber('/gazebo/view/image_raw', Image, pictures.append)
+        try:
+            wait_until(lambda: bool(pictures), _ANSWER, 'a picture on /gazebo/view/image_raw')
+        finally:
+            watch.unregister()
+        image = pictures[0]
+        return np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3)
+
+    def close(self) -> None:
+        """Take the node off the master."""
+        rospy.signal_shutdown('the demo is over')
+
+
+def _offered(service: str) -> bool:
+    try:
+        rospy.wait_for_service(service, timeout=_PERIOD)
+    except rospy.ROSException:
+        return False
+    return True
+
+
+def _sample(stamp: rospy.Time, pose: Pose) -> PlanarSample:
+    q = pose.orientation
+    return PlanarSample(stamp.to_sec(), time.monotonic(), pose.position.x, pose.position.y,
+                        yaw_of((q.x, q.y, q.z, q.w)))

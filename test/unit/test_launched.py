@@ -1,0 +1,37 @@
+"""Processes that the demo starts."""
+
+import subprocess
+import sys
+
+import pytest
+
+from rosbots_description.cli.launched import Launched, _descendants
+
+
+@pytest.mark.parametrize(('output', 'sentence'), [
+    ('[INFO] all well\n[ERROR] [1.5, 0.0]: no such mesh\n[INFO] bye\n',
+     '[ERROR] [1.5, 0.0]: no such mesh (see {log})'),
+    ('\x1b]2;title\x07\x1b[31m[gazebo-2] process has died [pid 7, exit code 1, cmd /a/b c].\x1b[0m',
+     '[gazebo-2] process has died [pid 7, exit code 1] (see {log})'),
+    ('done\n', 'see {log}'),
+])
+def test_complaint_is_the_last_error_without_colours(tmp_path, output, sentence):
+    log = tmp_path / 'launch.log'
+    with Launched(['--version'], log, {'PATH': '/usr/bin'}) as launched:
+        launched.wait(10.0)
+    log.write_text(output)
+    assert launched.complaint() == sentence.format(log=log)
+
+
+def test_descendants_are_found_across_sessions():
+    parent = subprocess.Popen(
+        [sys.executable, '-c',
+         'import subprocess; p = subprocess.Popen(["sleep", "60"], start_new_session=True); '
+         'print(p.pid, flush=True); p.wait()'], stdout=subprocess.PIPE, text=True)
+    try:
+        child = int(parent.stdout.readline())
+        assert _descendants(parent.pid) == [child]
+    finally:
+        subprocess.run(['kill', str(child), str(parent.pid)], check=True)
+        parent.wait()
+        parent.stdout.close()
