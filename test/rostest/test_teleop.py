@@ -1,13 +1,8 @@
 #!/usr/bin/env python3
 """Drive the real teleop_twist_keyboard.py on a pseudo-terminal and listen to what it publishes."""
 
-import os
-import pty
-import select
 import signal
-import subprocess
 import sys
-import termios
 import threading
 import time
 import unittest
@@ -15,41 +10,10 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from terminal import Terminal
 
 DEADLINE = 10.0  # [s] for what should take well under a second; slow machines are no failure
 CTRL_C_LIMIT = 2.0  # [s] promised to the user
-
-
-class Terminal:
-    """A pseudo-terminal with a program in it; collects what the program shows."""
-
-    def __init__(self, *command):
-        self._keyboard, self._screen = pty.openpty()
-        self.saved_mode = termios.tcgetattr(self._screen)
-        self.process = subprocess.Popen(
-            command, stdin=self._screen, stdout=self._screen, stderr=self._screen,
-            start_new_session=True)
-        self._shown = b''
-
-    def type(self, key):
-        os.write(self._keyboard, key.encode())
-
-    def shown(self):
-        """Return everything shown so far."""
-        while select.select([self._keyboard], [], [], 0.0)[0]:
-            self._shown += os.read(self._keyboard, 4096)
-        return self._shown.decode()
-
-    def mode(self):
-        """Return the terminal's settings."""
-        return termios.tcgetattr(self._screen)
-
-    def close(self):
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
-        os.close(self._keyboard)
-        os.close(self._screen)
 
 
 def wait_for(condition):

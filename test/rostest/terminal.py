@@ -1,0 +1,39 @@
+"""A program on a pseudo-terminal, as a person runs it: keys in, screen out."""
+
+import os
+import pty
+import select
+import subprocess
+import termios
+
+
+class Terminal:
+    """A pseudo-terminal with a program in it; collects what the program shows."""
+
+    def __init__(self, *command):
+        self._keyboard, self._screen = pty.openpty()
+        self.saved_mode = termios.tcgetattr(self._screen)
+        self.process = subprocess.Popen(
+            command, stdin=self._screen, stdout=self._screen, stderr=self._screen,
+            start_new_session=True)
+        self._shown = b''
+
+    def type(self, key):
+        os.write(self._keyboard, key.encode())
+
+    def shown(self):
+        """Return everything shown so far."""
+        while select.select([self._keyboard], [], [], 0.0)[0]:
+            self._shown += os.read(self._keyboard, 4096)
+        return self._shown.decode()
+
+    def mode(self):
+        """Return the terminal's settings."""
+        return termios.tcgetattr(self._screen)
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        os.close(self._keyboard)
+        os.close(self._screen)

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""A reader follows the article: nine steps, each in a terminal of its own."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from gazebo_msgs.srv import GetModelState
+from simulator import wait_until
+from terminal import Terminal
+
+STEP = 20.0  # [s, wall] in which a step shows what it is to show
+MOVED = 0.05  # [m] or [rad], far more than a standing robot creeps
+TELEOP = (
+    ['rosrun', 'teleop_twist_keyboard', 'teleop_twist_keyboard.py', '/cmd_vel:=/part2_cmr/cmd_vel']
+)
+ROSBOTS = Path(__file__).resolve().parents[2] / 'rosbots'
+SPAWN = ['roslaunch', 'rosbots_description', 'spawn.launch']
+WAITING = 'Waiting for service /gazebo/spawn_urdf_model'
+SPAWNED = 'Spawn status: SpawnModel: Successfully spawned entity'
+DELETE = ['rosservice', 'call', '/gazebo/delete_model', "model_name: 'rosbots'"]
+
+
+def output_of(*command, script=''):
+    result = subprocess.run(
+        command, input=script, capture_output=True, text=True, timeout=STEP, check=True)
+    return result.stdout
+
+
+class ArticleTest(unittest.TestCase):
+
+    def setUp(self):
+        self._terminals = []
+
+    def tearDown(self):
+        for terminal in reversed(self._terminals):
+            if terminal.process.poll() is None:
+                os.killpg(terminal.process.pid, signal.SIGTERM)
+                terminal.process.wait(STEP)
+            terminal.close()
+
+    def open(self, *command):
+        terminal = Terminal(*command)
+        self._terminals.append(terminal)
+        return terminal
+
+    def see(self, terminal, text):
+        wait_until(lambda: text in terminal.shown(), f'{text!r} on the screen', STEP)
+
+    def close(self, terminal, code=0):
+        """Press Ctrl-C."""
+        os.killpg(terminal.process.pid, signal.SIGINT)
+        wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
+                   'the end of the program', STEP)
+        self.assertEqual(terminal.process.returncode, code, terminal.shown())
+
+    def state(self):
+        answer = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)('rosbots', '')
+        self.assertTrue(answer.success)
+        return answer
+
+    def standing(self):
+        return abs(self.state().pose.position.z + 0.12) < 0.01
+
+    def press(self, teleop, key, quantity, sign):
+        """Press a key and wait until the robot has moved the right way; then stop it."""
+        start = quantity(self.state())
+        teleop.type(key)
+        wait_until(lambda: sign * (quantity(self.state()) - start) > MOVED, f'motion by {key!r}')
+        teleop.type('k')
+        wait_until(lambda: abs(self.state().twist.linear.x) < 0.01
+                   and abs(self.state().twist.angular.z) < 0.01, 'the stop')
+
+    def test_all_steps(self):
+        # 1: the package is found
+        where = output_of(ROSBOTS, 'shell', script='roscd rosbots_description && ls')
+        self.assertIn('package.xml', where)
+        # 5: spawning before there is a simulator waits for it
+        early = self.open(*SPAWN)
+        self.see(early, WAITING)
+        self.assertIsNone(early.process.poll())
+        # 3: the simulator, with its window if there is a display; the early spawn completes
+        simulator = self.open(*['roslaunch', 'gazebo_ros', 'empty_world.launch'])
+        self.see(early, SPAWNED)
+        self.see(early, 'process has finished cleanly')
+        # 6: the model goes, and the plugin's topics with it
+        self.assertIn('/part2_cmr/cmd_vel', output_of('rostopic', 'list').split())
+        answer = output_of(*DELETE)
+        self.assertIn('success: True', answer)
+        self.assertIn('DeleteModel: successfully deleted model', answer)
+        self.assertNotIn('/part2_cmr/cmd_vel', output_of('rostopic', 'list').split())
+        # 4 and 7: it comes again
+        again = self.open(*SPAWN)
+        self.see(again, SPAWNED)
+        self.assertIn('/part2_cmr/cmd_vel', output_of('rostopic', 'list').split())
+        wait_until(self.standing, 'the robot standing on its wheels')
+        # 8: the keyboard drives it
+        teleop = self.open(*TELEOP)
+        self.see(teleop, 'currently:')
+        self.press(teleop, 'i', lambda state: state.pose.position.x, 1)
+        self.press(teleop, ',', lambda state: state.pose.position.x, -1)
+        self.press(teleop, 'j', lambda state: state.pose.orientation.z, 1)
+        self.press(teleop, 'l', lambda state: state.pose.orientation.z, -1)
+        # 9: Ctrl-C ends everything
+        teleop.type('\x03')
+        wait_until(lambda: teleop.process.poll() is not None, 'the end of the teleop')
+        self.assertEqual(teleop.process.returncode, 0)
+        self.close(simulator)
+
+    def test_the_robot_is_shown_in_rviz(self):
+        # 2: with the display of whoever runs this, or one that nobody sees
+        command = ['roslaunch', 'rosbots_description', 'rviz.launch']
+        if 'DISPLAY' not in os.environ:
+            self.assertTrue(shutil.which('xvfb-run'), 'install xvfb')
+            command = ['xvfb-run', '-a', *command]
+        view = self.open(*command)
+        for node in ('/joint_state_publisher', '/robot_state_publisher', '/rviz'):
+            wait_until(lambda node=node: node in output_of('rosnode', 'list').split(), node, STEP)
+        wait_until(lambda: '/rviz' in output_of('rostopic', 'info', '/tf'), 'RViz reading TF', STEP)
+        os.killpg(view.process.pid, signal.SIGINT)
+        wait_until(lambda: view.shown() is not None and view.process.poll() is not None,
+                   'the end of RViz', STEP)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_article', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'article', ArticleTest, sys.argv)
