@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""The combined launch file gives one clean tree of frames, and it moves with the robot."""
+
+import sys
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import Twist
+from simulator import DEADLINE, wait_until
+from tf2_msgs.msg import TFMessage
+
+FIXED_FRAMES = {'base_link', 'base_second_link', 'mcu_link', 'batery_link', 'caster_back_link'}
+START = 30.0  # [s, wall] for simulator, spawn and robot_state_publisher
+
+
+class FramesTest(unittest.TestCase):
+
+    def test_every_frame_has_one_parent_and_all_hang_on_odom(self):
+        parents, latest = {}, {}
+
+        def listen(message):
+            for transform in message.transforms:
+                child, parent = transform.child_frame_id, transform.header.frame_id
+                parents.setdefault(child, set()).add(parent)
+                latest[child] = transform
+
+        subscribers = [rospy.Subscriber(name, TFMessage, listen) for name in ('/tf', '/tf_static')]
+        expected = FIXED_FRAMES | {'base_footprint', 'wheel_left_link', 'wheel_right_link'}
+        wait_until(lambda: expected <= set(parents), 'all frames', START)
+        before = latest['base_footprint'].transform.translation.x
+        publisher = rospy.Publisher('/part2_cmr/cmd_vel', Twist, queue_size=1)
+        wait_until(publisher.get_num_connections, 'the plugin')
+        command = Twist()
+        command.linear.x = 0.5
+        publisher.publish(command)
+        wait_until(lambda: latest['base_footprint'].transform.translation.x > before + 0.2,
+                   'the tree moving', DEADLINE)
+        for subscriber in subscribers:
+            subscriber.unregister()
+        self.assertEqual({child for child, names in parents.items() if len(names) > 1}, set())
+        self.assertEqual(parents['base_footprint'], {'odom'})
+        self.assertEqual(parents['base_link'], {'base_footprint'})
+        roots = set().union(*parents.values()) - set(parents)
+        self.assertEqual(roots, {'odom'})
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_simulation', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'simulation', FramesTest, sys.argv)
