@@ -91,6 +91,17 @@ def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
     )
 
 
+def in_link_axes(inertial: Inertial) -> Inertial:
+    """Return the same mass properties with the tensor in the axes of the link."""
+    turn = _matrix(inertial.pose.orientation)
+    total = settle(turn @ tensor(inertial) @ turn.T)
+    return Inertial(
+        inertial.mass, Pose(inertial.pose.position),
+        ixx=float(total[0, 0]), iyy=float(total[1, 1]), izz=float(total[2, 2]),
+        ixy=float(total[0, 1]), ixz=float(total[0, 2]), iyz=float(total[1, 2]),
+    )
+
+
 def turnable(inertial: Inertial) -> Inertial:
     """Return `inertial` with each zero principal moment replaced by that of a small solid ball.
 

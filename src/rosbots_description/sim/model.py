@@ -89,6 +89,11 @@ class Joint:
         """Return what the motor gave in the last step [N m or N]."""
         return self.model.engine.joint_effort(self.model.body, self.name)
 
+    @property
+    def motor(self) -> tuple[float, float]:
+        """Return the motor's target velocity [rad/s or m/s] and its greatest effort [N m or N]."""
+        return self.model.body.motors[self.name]
+
     def push(self, effort: float) -> None:
         """Push during the next step by `effort` [N m or N], beside the motor."""
         self.model.engine.push_joint(self.model.body, self.name, effort)

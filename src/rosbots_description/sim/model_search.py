@@ -131,7 +131,7 @@ def _chosen(manifest: str, asker: etree._Element) -> str:
 
 def _version(text: str) -> tuple[int, ...]:
     parts = text.strip().split('.')
-    return tuple(int(part) for part in parts) if all(p.isdigit() for p in parts) else (0, 0)
+    return tuple(int(part) for part in parts) if all(p.isdecimal() for p in parts) else (0, 0)
 
 
 def find_world(name: str, directories: Iterable[str | os.PathLike] = ()) -> Path:

@@ -1,8 +1,14 @@
 """The physics settings of a world, under the names of gazebo_msgs and with Gazebo's live values."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import astuple, dataclass, fields
 
+from .errors import SimError
 from .pose import Vector
+
+SHORTEST_STEP, LONGEST_STEP = 1e-9, 10.0  # [s]; the clock counts nanoseconds
+SLOWEST_RATE = 0.001  # [Hz] beside 0, which means as fast as possible
+MOST_ITERATIONS = 10_000  # of the solver; more would only make a step take for ever
 
 
 @dataclass(frozen=True)
@@ -26,3 +32,28 @@ class PhysicsSettings:
     contact_surface_layer: float = 0.001  # [m]
     contact_max_correcting_vel: float = 100.0  # [m/s]
     max_contacts: int = 20
+
+
+def check(physics: PhysicsSettings) -> None:
+    """Refuse settings that no world can have.
+
+    Raises:
+        SimError: a number is not finite or out of its range; the sentence says which.
+    """
+    for field, value in zip(fields(physics), astuple(physics), strict=True):
+        if not all(map(math.isfinite, value if isinstance(value, tuple) else (value,))):
+            raise SimError(f'{field.name} is {value}; it must be finite')
+    for name, least, most, unit in (
+        ('step_size', SHORTEST_STEP, LONGEST_STEP, '[s]'),
+        ('max_update_rate', 0.0, math.inf, '[Hz], where 0 is as fast as possible'),
+        ('sor_pgs_iters', 0, MOST_ITERATIONS, ''),
+    ):
+        value = getattr(physics, name)
+        if not least <= value <= most:
+            words = f'from {least:g} to {most:g} {unit}'.rstrip()
+            raise SimError(f'{name} is {value:g}; it must be {words}')
+    if 0.0 < physics.max_update_rate < SLOWEST_RATE:
+        raise SimError(
+            f'max_update_rate is {physics.max_update_rate:g}; it must be at least '
+            f'{SLOWEST_RATE:g} [Hz], or 0 for as fast as possible'
+        )

@@ -1,5 +1,8 @@
 """What happens at which step: hooks say when they want to run next, the rest runs straight."""
 
+import math
+from fractions import Fraction
+
 NEVER = 1 << 62  # a step count that no simulation reaches
 
 
@@ -40,3 +43,12 @@ class Schedule:
         for hook in self._hooks:
             if hook.due <= step:
                 hook.update()
+
+    def change_step(self, now: int, ratio: Fraction) -> None:
+        """Keep every hook due at its time, now that steps last `ratio` times as long.
+
+        What falls between two steps of the new size happens at the later one.
+        """
+        for hook in self._hooks:
+            if hook.due != NEVER:
+                hook.due = now + max(1, math.ceil((hook.due - now) / ratio))

@@ -3,6 +3,7 @@
 import contextlib
 import logging
 from collections.abc import Iterator
+from fractions import Fraction
 from pathlib import Path
 from typing import Protocol
 
@@ -91,7 +92,11 @@ class World:
     def set_physics(self, physics: PhysicsSettings) -> None:
         """Use these settings from the next step on."""
         self.physics = physics
+        step_ns = self.clock.step_ns
         self.clock.set_step_size(physics.step_size)
+        if self.clock.step_ns != step_ns:
+            ratio = Fraction(self.clock.step_ns, step_ns)
+            self.schedule.change_step(self.clock.steps, ratio)
         self.engine.apply(physics)
 
     def spawn(self, spec: ModelSpec, name: str, pose: Pose) -> Model:

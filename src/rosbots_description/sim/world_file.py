@@ -30,6 +30,11 @@ _READ = ('model', 'include', 'light', 'plugin', 'scene', 'physics', 'gravity', '
 _IDLE = ('gui', 'audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
 
 
+# World plugins whose work the server does anyway.
+_SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
+           'libgazebo_ros_init.so', 'libgazebo_ros_factory.so')
+
+
 @dataclass
 class _Content:
     """What is found while the elements of a world are walked."""
@@ -90,15 +95,36 @@ def load_world(
     return spec
 
 
+def open_world(
+    path: str | os.PathLike,
+    *,
+    find_model: FindModel,
+    find_package: FindPackage | None = None,
+) -> WorldSpec:
+    """Read and check the world file at `path`, as `load_world` does.
+
+    Raises:
+        ModelError: the file cannot be read; or as `load_world`.
+    """
+    try:
+        with open(path, 'rb') as file:
+            text = file.read()
+    except OSError as error:
+        raise ModelError(f"world file '{path}' cannot be read: {error.strerror}") from error
+    return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package)
+
+
 def populate(world: World, spec: WorldSpec) -> None:
     """Put everything that moves or stands into a world that is empty, and set its clock.
 
-    Lights, scene and plugins of the world stay in `spec` for those who serve them.
+    Lights and scene stay in `spec` for those who serve them; plugins of the world that do more
+    than the server does anyway are named as not run.
 
     Raises:
         ModelError: the world has a model of the same name already.
     """
     world.set_physics(spec.physics)
+    world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
     for model, pose in spec.models:
         world.spawn(model, model.name, pose)
     for state in spec.states:
@@ -107,7 +133,12 @@ def populate(world: World, spec: WorldSpec) -> None:
             logger.warning("the world's <state> has a model '%s' that is not there", state.name)
         else:
             apply_state(model, state)
-    world.clock.steps = round(spec.time / spec.physics.step_size)
+    for plugin in spec.plugins:
+        if plugin.filename not in _SERVED:
+            logger.warning(
+                "world plugin '%s' (%s, line %d) is not run here", plugin.name, plugin.filename,
+                plugin.element.line,
+            )
 
 
 def _frames(world: etree._Element) -> Frames:
@@ -159,6 +190,8 @@ def _add_model(
 ) -> None:
     try:
         parts = read()
+        if not parts.name:
+            raise fault(element, 'the model has no name; add <name>...</name>')
         name = _free_name(document, element, parts.name, content)
         own = element.find('pose') is not None or parts.pose_element is None
         pose = frames.place(element if own else parts.pose_element.getparent())

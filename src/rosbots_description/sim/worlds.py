@@ -1,8 +1,9 @@
 """The worlds that come with the simulator."""
 
-from .pose import IDENTITY
+from .pose import IDENTITY, Pose
 from .spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual
 from .world import World
+from .world_spec import DIRECTIONAL, LightSpec
 
 GROUND_PLANE = ModelSpec(
     name='ground_plane',
@@ -18,7 +19,22 @@ GROUND_PLANE = ModelSpec(
     ),
 )
 
+SUN = LightSpec(
+    name='sun',
+    type=DIRECTIONAL,
+    pose=Pose((0.0, 0.0, 10.0)),
+    diffuse=(0.8, 0.8, 0.8, 1.0),
+    specular=(0.2, 0.2, 0.2, 1.0),
+    range=1000.0,
+    attenuation_constant=0.9,
+    attenuation_linear=0.01,
+    attenuation_quadratic=0.001,
+    direction=(-0.5, 0.1, -0.9),
+    cast_shadows=True,
+)
+
 
 def add_empty_world(world: World) -> None:
-    """Put in what Gazebo's empty world has: an endless ground at z = 0."""
+    """Put in what Gazebo's empty world has: an endless ground at z = 0, and the sun."""
     world.spawn(GROUND_PLANE, GROUND_PLANE.name, IDENTITY)
+    world.lights[SUN.name] = SUN

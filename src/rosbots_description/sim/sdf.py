@@ -1,0 +1,96 @@
+"""From the text of an SDF to a `ModelSpec`, or to the light that it describes."""
+
+import logging
+
+from lxml import etree
+
+from .errors import ModelError
+from .gazebo_tags import inject_namespace
+from .markup_values import fault
+from .model_search import FindModel
+from .pose import IDENTITY, Pose
+from .sdf_document import SdfDocument, SdfLibrary
+from .sdf_light import read_light
+from .sdf_model import ModelParts, model_spec, read_include, read_model
+from .sdf_values import pose_in
+from .spec import ModelSpec
+from .uris import FindPackage
+from .world_spec import LightSpec
+
+logger = logging.getLogger(__name__)
+
+
+def load_sdf(
+    text: str | bytes,
+    name: str,
+    *,
+    source: str = 'model_xml',
+    robot_namespace: str = '',
+    find_model: FindModel,
+    find_package: FindPackage | None = None,
+) -> tuple[ModelSpec, Pose]:
+    """Read and check the first model of an SDF: its <model>, or the <include> of its <world>.
+
+    Args:
+        name: of the model; its own name does not matter, as in Gazebo.
+        source: where the text comes from; it begins every message.
+        robot_namespace: given to plugins of this text that have no <robotNamespace>.
+        find_model: path below the model path -> file or directory, or None, for model://; see
+            `ModelSearch`.
+        find_package: package name -> its directory, or None if unknown, for package://.
+
+    Returns:
+        The model, and the <pose> it has, which the caller composes with the pose it spawns at:
+        initial o pose. An included model has the pose of its <include>.
+
+    Raises:
+        ModelError: the description cannot be simulated; the sentence says where and why.
+
+    What can be simulated, but not quite as written, is a warning, named once for each file.
+    """
+    library = SdfLibrary(find_model, find_package)
+    document = library.add(text, source)
+    inject_namespace(document.root, robot_namespace)
+    parts, pose_element = _first_model(document)
+    spec = model_spec(parts, name)
+    library.log_notes()
+    return spec, _own_pose(pose_element)
+
+
+def load_sdf_light(text: str | bytes, name: str, *, source: str = 'model_xml') -> LightSpec | None:
+    """Return the light that an SDF begins with, under `name`; None where it begins otherwise.
+
+    Raises:
+        ModelError: the text is no SDF, or a number of the light is wrong.
+    """
+    library = SdfLibrary(lambda inner: None, None)
+    document = library.add(text, source)
+    first = document.root[0] if len(document.root) else None
+    if first is None or first.tag.lower() != 'light':
+        return None
+    first.set('name', name)
+    light = read_light(document, first, pose_in(first.find('pose')))
+    library.log_notes()
+    return light
+
+
+def _first_model(document: SdfDocument) -> tuple[ModelParts, etree._Element | None]:
+    root = document.root
+    models = root.findall('model')
+    if len(models) > 1:
+        document.notes.warn(models[1], 'only the first model is spawned')
+    if models:
+        return read_model(document, models[0]), models[0].find('pose')
+    include = root.find('world/include')
+    if include is None:
+        raise fault(root, 'it has neither a <model> nor a <world> with an <include>')
+    return read_include(document, include), include.find('pose')
+
+
+def _own_pose(element: etree._Element | None) -> Pose:
+    """Return the pose; one that is malformed counts as none, as upstream."""
+    try:
+        return pose_in(element)
+    except ModelError as error:
+        logger.error('%s; the model stands where it is spawned', error)
+        return IDENTITY

@@ -1,0 +1,184 @@
+"""One SDF text, its version and its place on disk; and all texts that one reading opens."""
+
+import os
+from collections.abc import Callable
+
+from lxml import etree
+
+from .errors import ModelError
+from .markup import parse
+from .markup_values import fault, scalar, tag_of
+from .model_search import BUILT_IN_MODELS, FindModel, climbs, description_file
+from .sdf_notes import Notes
+from .uris import FindPackage, file_path, substitute_packages
+
+NEWEST = (1, 7)
+_UNVERSIONED = (1, 6)
+MAX_DEPTH = 50  # of includes; more can only be files that include each other
+MAX_INCLUDES = 5000
+
+
+class SdfDocument:
+    """A parsed SDF text.
+
+    Attributes:
+        root: the <sdf> (or <gazebo>) element.
+        version: e.g. (1, 6); axes of joints mean different things in different versions.
+        notes: what is to be said about it.
+    """
+
+    def __init__(
+        self, text: str | bytes, source: str, library: 'SdfLibrary', directory: str = ''
+    ) -> None:
+        """Parse a text.
+
+        Args:
+            directory: where its file lies, for addresses relative to it; '' if it has none.
+        Raises:
+            ModelError: it is no XML, or no SDF.
+        """
+        self.library = library
+        self.root = parse(text, source)
+        self.notes = Notes(source)
+        self._directory = directory
+        if self.root.tag not in ('sdf', 'gazebo'):
+            raise fault(
+                self.root,
+                f'the first element is <{tag_of(self.root)}>; an SDF begins with '
+                '<sdf version="1.6">',
+            )
+        self.version = self._read_version()
+
+    def file(self, element: etree._Element, uri: str) -> str:
+        """Return the absolute path that an address in `element` stands for.
+
+        model:// goes along the model path, package:// to ROS packages, file:// and plain paths
+        are absolute or relative to the file that names them.
+
+        Raises:
+            ModelError: nothing is found there, or the address climbs out of a model (`..`).
+        """
+        if uri.startswith('model://'):
+            return self._in_models(element, uri)
+        if uri.startswith('package://'):
+            if self.library.find_package is not None:
+                uri = substitute_packages(uri, self.library.find_package)
+            return file_path(element, uri)
+        plain = uri.removeprefix('file://')
+        if '://' not in plain and not os.path.isabs(plain) and self._directory:
+            return os.path.normpath(os.path.join(self._directory, plain))
+        return file_path(element, uri)
+
+    def included(self, element: etree._Element) -> 'SdfDocument':
+        """Return the document that an <include> names.
+
+        Raises:
+            ModelError: there is none, or it cannot be read.
+        """
+        uri_element = element.find('uri')
+        uri = '' if uri_element is None else scalar(uri_element)
+        if not uri:
+            raise fault(element, 'an <include> without <uri>; add <uri>model://MODEL</uri>')
+        if uri.startswith(('http://', 'https://')):
+            raise fault(
+                uri_element,
+                f"'{uri}': models are not fetched from the network; put the model's folder on "
+                'GAZEBO_MODEL_PATH and include model://FOLDER',
+            )
+        built_in = BUILT_IN_MODELS.get(uri.removeprefix('model://').strip('/'))
+        try:
+            path = self.file(uri_element, uri)
+        except ModelError:
+            if built_in is None:
+                raise
+            return self.library.built_in(uri, built_in)
+        return self.library.open(description_file(path, uri_element))
+
+    def _in_models(self, element: etree._Element, uri: str) -> str:
+        inner = uri.removeprefix('model://')
+        if climbs(inner):
+            raise fault(element, f"'{uri}' leaves the model path; '..' is not accepted there")
+        found = self.library.find_model(inner)
+        if found is None:
+            raise fault(
+                element,
+                f"'{uri}' is not to be found along the model path; add the folder that holds "
+                f"'{inner.split('/')[0]}' to GAZEBO_MODEL_PATH where the simulator is started",
+            )
+        return found
+
+    def _read_version(self) -> tuple[int, int]:
+        text = self.root.get('version', '').strip()
+        if not text:
+            self.notes.warn(self.root, 'no version="..." is given; it is read as SDF 1.6')
+            return _UNVERSIONED
+        parts = text.split('.')
+        if not all(part.isdecimal() for part in parts) or len(parts) < 2:
+            raise fault(self.root, f'version="{text}" is wrong; it is something like "1.6"')
+        version = (int(parts[0]), int(parts[1]))
+        if version > NEWEST:
+            self.notes.warn(self.root, f'SDF {text} is newer than 1.7; it is read as SDF 1.7')
+        return version
+
+
+class SdfLibrary:
+    """The documents that one reading opens, each file once.
+
+    Args:
+        find_model: path below the model path -> the file or directory, or None.
+        find_package: package name -> its directory, or None; None: there are no packages.
+    """
+
+    def __init__(self, find_model: FindModel, find_package: FindPackage | None) -> None:
+        self.find_model = find_model
+        self.find_package = find_package
+        self._documents: dict[str, SdfDocument] = {}
+        self._reading: list[SdfDocument] = []
+        self._included = 0
+
+    def add(self, text: str | bytes, source: str, directory: str = '') -> SdfDocument:
+        """Return the document of a text; `directory` is where its file lies, if it has one."""
+        document = SdfDocument(text, source, self, directory)
+        self._documents[source] = document
+        return document
+
+    def open(self, path: str) -> SdfDocument:
+        """Return the document of a file.
+
+        Raises:
+            ModelError: the file cannot be read, or holds no SDF.
+        """
+        if path not in self._documents:
+            try:
+                with open(path, 'rb') as file:
+                    text = file.read()
+            except OSError as error:
+                raise ModelError(f"'{path}' cannot be read: {error.strerror}") from error
+            self.add(text, path, os.path.dirname(path))
+        return self._documents[path]
+
+    def built_in(self, uri: str, text: str) -> SdfDocument:
+        """Return the document of a model that is always there."""
+        return self._documents.get(uri) or self.add(text, uri)
+
+    def within(self, document: SdfDocument, element: etree._Element, read: Callable):
+        """Return `read()`, during which `document` counts as being read.
+
+        Raises:
+            ModelError: it is being read already: files that include each other.
+        """
+        if document in self._reading or len(self._reading) >= MAX_DEPTH:
+            raise fault(element, 'the included model includes itself')
+        self._included += 1
+        if self._included > MAX_INCLUDES:
+            raise fault(element, f'more than {MAX_INCLUDES} includes are not accepted')
+        self._reading.append(document)
+        try:
+            return read()
+        finally:
+            self._reading.pop()
+
+    def log_notes(self) -> None:
+        """Say what is to be said about all documents."""
+        for document in self._documents.values():
+            document.notes.log()

@@ -1,0 +1,124 @@
+"""Where things stand in a model or world whose poses may each be given in another's frame."""
+
+from dataclasses import dataclass
+
+from lxml import etree
+
+from .markup_values import fault, suggestion, tag_of
+from .pose import IDENTITY, Pose, compose
+from .sdf_values import pose_in
+
+MODEL_FRAME = '__model__'
+
+
+@dataclass(frozen=True)
+class _Frame:
+    element: etree._Element  # what is called so, for messages
+    pose: Pose  # in `base`
+    base: str  # name of another frame; '' for the root
+    carrier: str | None  # the frame it is attached to; None for a link
+
+
+class Frames:
+    """The named frames of one model, or of a world, each posed in another or in the root.
+
+    All results are given in the root: the model's own frame, or the world.
+    """
+
+    def __init__(self, *root_names: str) -> None:
+        self._roots = {'', *root_names}
+        self._frames: dict[str, _Frame] = {}
+        self._known: dict[str, Pose] = {}
+
+    def add(
+        self,
+        name: str,
+        element: etree._Element,
+        base: str = '',
+        carrier: str | None = None,
+        pose_element: etree._Element | None = None,
+    ) -> None:
+        """Make a frame known by what its <pose> says; the first one of a name counts.
+
+        Args:
+            base: the frame its pose is given in unless the pose names another.
+            carrier: the frame whose link it moves with; None if it is a link itself.
+            pose_element: the <pose>, where it is not that of `element`.
+        """
+        pose = element.find('pose') if pose_element is None else pose_element
+        frame = _Frame(element, pose_in(pose), _base_of(pose, base), carrier)
+        self._frames.setdefault(name, frame)
+
+    def add_at(self, name: str, element: etree._Element, pose: Pose, base: str) -> None:
+        """Make a link known by its pose in `base`."""
+        self._frames.setdefault(name, _Frame(element, pose, base, None))
+
+    def pose_of(self, name: str, asker: etree._Element) -> Pose:
+        """Return the pose of a frame.
+
+        Raises:
+            ModelError: there is no such frame, or frames are posed in a ring; said of `asker`.
+        """
+        chain: list[tuple[str, _Frame]] = []
+        seen: set[str] = set()
+        while name not in self._known and not self._is_root(name):
+            frame = self._find(name, asker)
+            if name in seen:
+                raise fault(
+                    frame.element, f"'{name}' is posed relative to itself, in a ring of frames"
+                )
+            seen.add(name)
+            chain.append((name, frame))
+            name, asker = frame.base, frame.element
+        pose = self._known.get(name, IDENTITY)
+        for frame_name, frame in reversed(chain):
+            pose = self._known[frame_name] = compose(pose, frame.pose)
+        return pose
+
+    def place(self, element: etree._Element, base: str = '') -> Pose:
+        """Return the pose of something that has a <pose>, given in `base` unless that says else.
+
+        Raises:
+            ModelError: as `pose_of`.
+        """
+        pose = element.find('pose')
+        asker = element if pose is None else pose
+        return compose(self.pose_of(_base_of(pose, base), asker), pose_in(pose))
+
+    def link_of(self, name: str, asker: etree._Element) -> str:
+        """Return the link that a frame moves with.
+
+        Raises:
+            ModelError: there is no such frame, it is attached to none, or frames form a ring.
+        """
+        seen: list[str] = []
+        while True:
+            frame = self._find(name, asker)
+            if frame.carrier is None:
+                return name
+            seen.append(name)
+            if frame.carrier in seen:
+                raise fault(asker, f"'{seen[0]}' is attached to itself in a ring of frames")
+            if frame.carrier in self._roots:
+                raise fault(asker, f"'{seen[0]}' is attached to no link; name a link")
+            name = frame.carrier
+
+    def _find(self, name: str, asker: etree._Element) -> _Frame:
+        frame = self._frames.get(name)
+        if frame is None:
+            raise fault(
+                asker,
+                f"<{tag_of(asker)}> names '{name}', but no link, joint or frame is called so"
+                f'{suggestion(name, self._frames)}',
+            )
+        return frame
+
+    def _is_root(self, name: str) -> bool:
+        return name in self._roots and name not in self._frames
+
+
+def _base_of(pose: etree._Element | None, default: str) -> str:
+    """Return the frame a <pose> is given in: `relative_to`, or `frame` before SDF 1.7."""
+    if pose is None:
+        return default
+    return pose.get('relative_to') or pose.get('frame') or default

@@ -1,0 +1,202 @@
+"""Joints of SDF, and how those that are read become trees."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from lxml import etree
+
+from .kinematic_tree import WORLD
+from .markup_values import fault, required_name
+from .pose import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
+from .sdf_document import SdfDocument
+from .sdf_frames import MODEL_FRAME, Frames
+from .sdf_values import limit_of, not_negative_of, text_of, truth_of, unit_vector_of
+from .spec import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
+
+_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC, 'fixed': FIXED}
+_NOT_SIMULATED = ('ball', 'universal', 'screw', 'revolute2', 'gearbox')
+_UP = (0.0, 0.0, 1.0)
+# Before SDF 1.5 axes are given in the model's frame; until 1.6 a flag may say so; since 1.7 an
+# attribute names the frame.
+_AXIS_IN_JOINT, _AXIS_BY_NAME = (1, 5), (1, 7)
+
+
+def add_joint_frame(frames: Frames, element: etree._Element) -> None:
+    """Make a joint's frame known: it stands in the child's and moves with it."""
+    child = text_of(element, 'child')
+    base = '' if child == WORLD else child
+    frames.add(required_name(element), element, base, carrier=child or None)
+
+
+def read_joint(
+    document: SdfDocument, element: etree._Element, frames: Frames
+) -> JointSpec | None:
+    """Return the joint of a <joint>, or None where its type is noted as not simulated.
+
+    Raises:
+        ModelError: a name, type, link, frame or number is missing or wrong.
+    """
+    name = required_name(element)
+    written = element.get('type', '')
+    if written in _NOT_SIMULATED:
+        document.notes.warn(
+            element, f'{written} joints are not simulated, its two links are not connected'
+        )
+        return None
+    if written not in _TYPES:
+        raise fault(element, f"type '{written}' is unknown; there are {', '.join(_TYPES)}")
+    document.notes.check(
+        element, ('pose', 'parent', 'child', 'axis'), ('physics', 'provide_feedback')
+    )
+    kind = _TYPES[written]
+    parent, child = _end(element, 'parent', frames), _end(element, 'child', frames)
+    if parent == child:
+        raise fault(element, f"it connects '{parent}' with itself; two links are needed")
+    if child == WORLD and kind != FIXED:
+        raise fault(element, 'the world cannot be the child of a joint that moves; swap the two')
+    if child == WORLD:  # what is fixed to what does not matter
+        parent, child = child, parent
+    frame = frames.place(element, base=_child_frame(element))
+    spec = JointSpec(
+        name, kind, parent, child, pose=relative(frame, frames.pose_of(child, element))
+    )
+    if kind == FIXED:
+        return spec
+    return replace(spec, **_motion(document, element, written, frame, frames))
+
+
+def _child_frame(element: etree._Element) -> str:
+    child = text_of(element, 'child')
+    return '' if child == WORLD else child
+
+
+def _end(element: etree._Element, role: str, frames: Frames) -> str:
+    name = text_of(element, role)
+    if not name:
+        raise fault(element, f'it has no <{role}>; name a link')
+    return WORLD if name == WORLD else frames.link_of(name, element.find(role))
+
+
+def _motion(
+    document: SdfDocument, element: etree._Element, written: str, frame: Pose, frames: Frames
+) -> dict:
+    """Return axis, limits and dynamics as fields of JointSpec; `frame` is the joint's."""
+    axis = element.find('axis')
+    if axis is None:
+        return {'axis': _UP}
+    notes = document.notes
+    notes.check(
+        axis, ('xyz', 'limit', 'dynamics', 'use_parent_model_frame', 'initial_position')
+    )
+    fields = {'axis': _axis(document, axis, frame, frames)}
+    limit, dynamics = axis.find('limit'), axis.find('dynamics')
+    if dynamics is not None:
+        notes.check(dynamics, ('damping', 'friction'))
+        fields |= {
+            key: not_negative_of(dynamics, key, 0.0) for key in ('damping', 'friction')
+        }
+    initial = axis.find('initial_position')
+    if initial is not None:
+        notes.unread(initial)
+    if limit is None:
+        return fields
+    notes.check(limit, ('lower', 'upper', 'effort', 'velocity'), ('stiffness', 'dissipation'))
+    for key in ('effort', 'velocity'):
+        value = limit_of(limit, key)
+        fields[key] = value if value is not None and value >= 0.0 else None
+    if written == 'continuous':
+        return fields
+    lower, upper = limit_of(limit, 'lower'), limit_of(limit, 'upper')
+    if lower is not None and upper is not None and lower > upper:
+        notes.warn(
+            limit, f'lower limit {lower:g} is above upper limit {upper:g}, the two are switched'
+        )
+        lower, upper = upper, lower
+    return fields | {'lower': lower, 'upper': upper}
+
+
+def _axis(document: SdfDocument, axis: etree._Element, frame: Pose, frames: Frames) -> Vector:
+    """Return the unit axis in the joint's frame."""
+    vector = unit_vector_of(axis, 'xyz', _UP)
+    version = document.version
+    if version >= _AXIS_BY_NAME:
+        xyz = axis.find('xyz')
+        named = '' if xyz is None else xyz.get('expressed_in', '')
+        if not named:
+            return vector
+        given_in = frames.pose_of(named, xyz)
+    elif version < _AXIS_IN_JOINT or truth_of(axis, 'use_parent_model_frame'):
+        given_in = frames.pose_of(MODEL_FRAME, axis)
+    else:
+        return vector
+    return rotate(conjugate(frame.orientation), rotate(given_in.orientation, vector))
+
+
+def as_trees(
+    document: SdfDocument,
+    links: Sequence[LinkSpec],
+    joints: Sequence[tuple[JointSpec, etree._Element]],
+) -> tuple[JointSpec, ...]:
+    """Return the joints so that every link is the child of at most one, parents known.
+
+    SDF allows any graph of links. The engine works in joint coordinates, which needs trees: a
+    joint that closes a ring is left out and noted, and one that points towards the root is turned
+    round, by its axis as well, so that its position keeps its sign.
+    """
+    group = {name: name for name in (WORLD, *(link.name for link in links))}
+
+    def head(name: str) -> str:
+        while group[name] != name:
+            name = group[name] = group[group[name]]
+        return name
+
+    kept: list[JointSpec] = []
+    for joint, element in joints:
+        ends = head(joint.parent), head(joint.child)
+        if ends[0] == ends[1]:
+            document.notes.warn(
+                element,
+                f"it closes a ring of joints, which is not simulated; '{joint.parent}' and "
+                f"'{joint.child}' are not connected by it",
+            )
+            continue
+        group[ends[1]] = ends[0]
+        kept.append(joint)
+    return _directed(links, kept)
+
+
+def _directed(links: Sequence[LinkSpec], joints: Sequence[JointSpec]) -> tuple[JointSpec, ...]:
+    """Return the joints, which form no ring, all pointing away from their tree's root."""
+    poses = {link.name: link.pose for link in links}
+    children = {joint.child for joint in joints}
+    roots = [WORLD, *(name for name in poses if name not in children), *poses]
+    at: dict[str, list[int]] = {}
+    for i, joint in enumerate(joints):
+        at.setdefault(joint.parent, []).append(i)
+        at.setdefault(joint.child, []).append(i)
+    directed = list(joints)
+    reached: set[str] = set()
+    for root in roots:
+        waiting = [root]
+        while waiting:
+            name = waiting.pop()
+            if name in reached:
+                continue
+            reached.add(name)
+            for i in at.get(name, ()):
+                if directed[i].child == name and directed[i].parent not in reached:
+                    directed[i] = _turned_round(directed[i], poses)
+                waiting.append(directed[i].child)
+    return tuple(directed)
+
+
+def _turned_round(joint: JointSpec, poses: dict[str, Pose]) -> JointSpec:
+    frame = compose(poses[joint.child], joint.pose)
+    x, y, z = joint.axis
+    return replace(
+        joint,
+        parent=joint.child,
+        child=joint.parent,
+        pose=relative(frame, poses.get(joint.parent, IDENTITY)),
+        axis=(-x, -y, -z),
+    )

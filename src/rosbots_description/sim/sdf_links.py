@@ -1,0 +1,140 @@
+"""Links of SDF: masses, shapes and flags."""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+
+from lxml import etree
+
+from .inertia import is_positive
+from .kinematic_tree import WORLD
+from .markup_values import fault, required_name, to_element
+from .pose import IDENTITY, Pose, relative, to_rpy
+from .sdf_document import SdfDocument
+from .sdf_frames import Frames
+from .sdf_shapes import read_collision, read_visual
+from .sdf_values import number_of, pose_in, truth_of
+from .spec import Collision, Element, Inertial, LinkSpec, Visual
+
+_READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
+         'velocity_decay', 'sensor', 'light', 'projector')
+_PARTS = ('sensor', 'light', 'projector')
+_MOMENTS, _PRODUCTS = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
+
+# What a link has about which nothing is said.
+UNIT_INERTIAL = Inertial(1.0, IDENTITY, 1.0, 1.0, 1.0)
+
+ReadShape = Callable[[SdfDocument, etree._Element, str, Pose], Collision | Visual | None]
+
+
+def read_link(
+    document: SdfDocument,
+    element: etree._Element,
+    frames: Frames,
+    static: bool,
+    self_collide: bool,
+) -> LinkSpec:
+    """Return the link of a <link>, posed in its model.
+
+    Args:
+        frames: those of the model.
+        static: the model does not move, so masses do not matter.
+        self_collide: what the model says of links that say nothing.
+    Raises:
+        ModelError: a name, number, frame, geometry or mesh file is missing or wrong.
+    """
+    name = required_name(element)
+    if name == WORLD:
+        raise fault(element, f"a link cannot be called '{WORLD}', which means the world itself")
+    document.notes.check(element, _READ, ('must_be_base_link',))
+    pose = frames.place(element)
+    return LinkSpec(
+        name,
+        pose,
+        _inertial(document, element, static),
+        _shapes(document, element, frames, pose, 'collision', read_collision),
+        _shapes(document, element, frames, pose, 'visual', read_visual),
+        gravity=truth_of(element, 'gravity', True),
+        self_collide=truth_of(element, 'self_collide', self_collide),
+        kinematic=truth_of(element, 'kinematic'),
+        linear_damping=number_of(element, 'velocity_decay/linear', 0.0),
+        angular_damping=number_of(element, 'velocity_decay/angular', 0.0),
+        sensors=tuple(
+            _part(part, frames, pose) for part in element if part.tag in _PARTS
+        ),
+    )
+
+
+def _shapes(
+    document: SdfDocument,
+    link: etree._Element,
+    frames: Frames,
+    link_pose: Pose,
+    tag: str,
+    read: ReadShape,
+) -> tuple:
+    """Return the shapes of one kind, under names that differ, posed in the link's frame."""
+    shapes: dict[str, Collision | Visual] = {}
+    taken: Counter[str] = Counter()
+    for element in link.iterfind(tag):
+        plain = name = element.get('name', '').strip() or tag
+        while name in taken:
+            name = f'{plain}_{taken[plain]}'
+            taken[plain] += 1
+        taken[name] += 1
+        shape = read(document, element, name, _pose_in_link(element, frames, link_pose))
+        if shape is not None:
+            shapes[name] = shape
+    return tuple(shapes.values())
+
+
+def _pose_in_link(element: etree._Element, frames: Frames, link_pose: Pose) -> Pose:
+    pose = element.find('pose')
+    if pose is not None and (pose.get('relative_to') or pose.get('frame')):
+        return relative(frames.place(element), link_pose)
+    return pose_in(pose)
+
+
+def _part(element: etree._Element, frames: Frames, link_pose: Pose) -> Element:
+    """Return a sensor, light or projector as plain values, its <pose> given in the link."""
+    part = to_element(element)
+    old = part.child('pose')
+    if old is None:
+        return part
+    pose = _pose_in_link(element, frames, link_pose)
+    numbers = (*pose.position, *to_rpy(pose.orientation))
+    new = Element('pose', ' '.join(f'{0.0 + x:.12g}' for x in numbers), line=old.line)
+    return replace(part, children=tuple(new if c is old else c for c in part.children))
+
+
+def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Inertial | None:
+    """Return the mass properties; what is not given is 1 kg and 1 kg m^2, as SDF has it."""
+    if static:
+        return None
+    element = link.find('inertial')
+    if element is None:
+        return UNIT_INERTIAL
+    document.notes.check(element, ('mass', 'inertia', 'pose'))
+    mass = number_of(element, 'mass', 1.0)
+    if mass <= 0.0:
+        raise fault(
+            element.find('mass'),
+            f'mass {mass:g} kg is wrong; a link that moves has a mass greater than zero',
+        )
+    values = {key: number_of(element, f'inertia/{key}', 1.0) for key in _MOMENTS}
+    values |= {key: number_of(element, f'inertia/{key}', 0.0) for key in _PRODUCTS}
+    inertial = Inertial(mass, pose_in(element.find('pose')), **values)
+    if any(values.values()):
+        for key in _MOMENTS:
+            if values[key] <= 0.0:
+                raise fault(
+                    element.find(f'inertia/{key}'),
+                    f'<{key}> is {values[key]:g}; a moment of inertia is greater than zero',
+                )
+        if not is_positive(inertial):
+            raise fault(
+                element.find('inertia'),
+                'the products ixy, ixz, iyz are too great beside ixx, iyy, izz: about some axis '
+                'the moment of inertia is negative',
+            )
+    return inertial

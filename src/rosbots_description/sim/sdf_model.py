@@ -1,0 +1,259 @@
+"""Models of SDF: links, joints, plugins, models inside models and included ones, made flat.
+
+What belongs to an inner model is called `inner::name` in the outer one, as Gazebo has it. Fixed
+joints stay joints: only URDF is lumped.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
+
+from lxml import etree
+
+from .bullet_description import kinematic_trees, rider_surfaces
+from .inertia import turnable
+from .kinematic_tree import WORLD
+from .lumping import MAX_JOINTS
+from .markup_values import fault, required_name, to_element
+from .pose import Pose, compose
+from .sdf_document import SdfDocument
+from .sdf_frames import MODEL_FRAME, Frames
+from .sdf_joints import add_joint_frame, as_trees, read_joint
+from .sdf_links import UNIT_INERTIAL, read_link
+from .sdf_values import text_of, truth_of
+from .spec import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
+
+_READ = ('pose', 'link', 'joint', 'frame', 'plugin', 'model', 'include', 'static', 'self_collide')
+_INCLUDE_READ = ('uri', 'name', 'pose', 'static', 'plugin')
+
+
+@dataclass
+class ModelParts:
+    """What a model consists of, in its own frame, with the elements that say so.
+
+    `pose_element` says where it stands in what it belongs to.
+    """
+
+    document: SdfDocument
+    element: etree._Element
+    name: str
+    static: bool
+    pose_element: etree._Element | None
+    links: list[LinkSpec] = field(default_factory=list)
+    joints: list[tuple[JointSpec, etree._Element]] = field(default_factory=list)
+    plugins: list[PluginSpec] = field(default_factory=list)
+
+
+def read_model(
+    document: SdfDocument, element: etree._Element, static: bool | None = None
+) -> ModelParts:
+    """Return the parts of a <model>, those of the models in it included.
+
+    Args:
+        static: whether it stands still; None: its own <static> decides.
+    Raises:
+        ModelError: something in it cannot be simulated; the sentence says where and why.
+    """
+    document.notes.check(element, _READ, ('allow_auto_disable',))
+    if static is None:
+        static = truth_of(element, 'static')
+    parts = ModelParts(
+        document, element, element.get('name', ''), static, element.find('pose')
+    )
+    # What is in a model that stands still stands still.
+    inherited = True if static else None
+    inner = [
+        read_model(document, child, inherited) if child.tag == 'model'
+        else read_include(document, child, inherited)
+        for child in element if child.tag in ('model', 'include')
+    ]
+    frames = _frames(element, inner)
+    for child in element.iterfind('plugin'):
+        _add_plugin(document, child, parts)
+    self_collide = truth_of(element, 'self_collide')
+    parts.links = [
+        read_link(document, child, frames, parts.static, self_collide)
+        for child in element.iterfind('link')
+    ]
+    for model in inner:
+        _take_in(parts, model, frames.pose_of(model.name, model.element))
+    for child in element.iterfind('joint'):
+        joint = read_joint(document, child, frames)
+        if joint is not None:
+            parts.joints.append((joint, child))
+    canonical = element.get('canonical_link')
+    if canonical and parts.links and canonical != parts.links[0].name:
+        document.notes.warn(element, 'canonical_link is not read; the first link is canonical')
+    return parts
+
+
+def read_include(
+    document: SdfDocument, element: etree._Element, static: bool | None = None
+) -> ModelParts:
+    """Return the parts of the model that an <include> names, with its name, pose and static.
+
+    Args:
+        static: whether it stands still; None: the <static> of the include or the model decides.
+    Raises:
+        ModelError: there is no such model, or it cannot be simulated.
+    """
+    document.notes.check(element, _INCLUDE_READ)
+    other = document.included(element)
+    model = other.root.find('model')
+    if model is None:
+        raise fault(
+            element, f"'{text_of(element, 'uri')}' describes no <model>; it cannot be included here"
+        )
+    if static is None and element.find('static') is not None:
+        static = truth_of(element, 'static')
+    parts = document.library.within(other, element, lambda: read_model(other, model, static))
+    parts.element = element
+    parts.name = text_of(element, 'name', parts.name)
+    if element.find('pose') is not None:
+        parts.pose_element = element.find('pose')
+    for child in element.iterfind('plugin'):
+        _add_plugin(document, child, parts)
+    return parts
+
+
+def model_spec(parts: ModelParts, name: str) -> ModelSpec:
+    """Return a model complete and checked, under the name it is to have.
+
+    Raises:
+        ModelError: it has no link, names meet twice, or its joints are too many.
+    """
+    if not parts.links:
+        raise fault(parts.element, 'the model has no <link>; a model needs at least one')
+    _require_unique(parts, [link.name for link in parts.links], 'link')
+    _require_unique(parts, [joint.name for joint, _ in parts.joints], 'joint')
+    joints = as_trees(parts.document, parts.links, parts.joints)
+    links = parts.links
+    if not parts.static:
+        links = _movable(parts, links, {joint.child for joint in joints})
+    spec = ModelSpec(name, tuple(links), joints, tuple(parts.plugins), parts.static)
+    for tree in kinematic_trees(spec):
+        # Every surface of its own rides on its link by a joint of the engine's.
+        count = sum(max(1, len(rider_surfaces(link))) for link in tree.links) - 1
+        if count > MAX_JOINTS and not spec.static:
+            raise fault(
+                parts.element,
+                f'the links that hang together need more than {MAX_JOINTS} joints in the '
+                'physics engine, which holds no more; split the model',
+            )
+    return spec
+
+
+def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:
+    """Return the frames of a model; the first of a name counts: links, models, then others."""
+    frames = Frames(MODEL_FRAME)
+    for child in element.iterfind('link'):
+        frames.add(required_name(child), child)
+    for model in inner:
+        if not model.name:
+            raise fault(model.element, 'a <model> without name; add name="..."')
+        first = f'{model.name}::{model.links[0].name}' if model.links else ''
+        frames.add(model.name, model.element, carrier=first, pose_element=model.pose_element)
+        for link in model.links:
+            frames.add_at(f'{model.name}::{link.name}', model.element, link.pose, model.name)
+    for child in element.iterfind('joint'):
+        add_joint_frame(frames, child)
+    for child in element.iterfind('frame'):
+        attached = child.get('attached_to', '')
+        frames.add(required_name(child), child, attached, carrier=attached)
+    return frames
+
+
+def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
+    """Add an inner model, which stands at `pose`, to the outer one."""
+    prefix = f'{inner.name}::'
+    names = {link.name for link in inner.links} | {joint.name for joint, _ in inner.joints}
+    bolted = inner.static and not parts.static
+    parts.links += [
+        replace(
+            link,
+            name=prefix + link.name,
+            pose=compose(pose, link.pose),
+            kinematic=link.kinematic or bolted,
+            sensors=tuple(_scoped(sensor, names, prefix) for sensor in link.sensors),
+        )
+        for link in inner.links
+    ]
+    parts.joints += [
+        (
+            replace(
+                joint,
+                name=prefix + joint.name,
+                parent=joint.parent if joint.parent == WORLD else prefix + joint.parent,
+                child=prefix + joint.child,
+            ),
+            element,
+        )
+        for joint, element in inner.joints
+    ]
+    parts.plugins += [
+        replace(plugin, element=_scoped(plugin.element, names, prefix))
+        for plugin in inner.plugins
+    ]
+
+
+def _scoped(element: Element, names: Collection[str], prefix: str) -> Element:
+    """Return a plugin or sensor of an inner model; links and joints it names get their new name."""
+    return replace(
+        element,
+        text=prefix + element.text if element.text in names else element.text,
+        children=tuple(_scoped(child, names, prefix) for child in element.children),
+    )
+
+
+def _add_plugin(document: SdfDocument, element: etree._Element, parts: ModelParts) -> None:
+    plugin = read_plugin(document, element)
+    if plugin is not None:
+        parts.plugins.append(plugin)
+
+
+def read_plugin(document: SdfDocument, element: etree._Element) -> PluginSpec | None:
+    """Return a <plugin>; one without filename is noted and ignored."""
+    filename = element.get('filename', '').strip()
+    if not filename:
+        document.notes.warn(
+            element,
+            'a <plugin> without filename is ignored; filename="libgazebo_ros_….so" picks the code',
+        )
+        return None
+    return PluginSpec(element.get('name', ''), filename, to_element(element))
+
+
+def _movable(
+    parts: ModelParts, links: Sequence[LinkSpec], children: Collection[str]
+) -> list[LinkSpec]:
+    """Return the links of a model that moves, as the engine can move them; notes say what not."""
+    notes, made = parts.document.notes, []
+    for link in links:
+        inertial = turnable(link.inertial or UNIT_INERTIAL)
+        if inertial is not (link.inertial or UNIT_INERTIAL):
+            notes.warn(
+                parts.element,
+                f"link '{link.name}': an inertia of zero cannot be simulated; "
+                'that of a small ball of the same mass is used',
+            )
+        solid = tuple(c for c in link.collisions if not isinstance(c.geometry, Plane))
+        if len(solid) < len(link.collisions):
+            notes.warn(
+                parts.element,
+                f"link '{link.name}': an endless plane cannot move, it touches nothing; "
+                'make the model <static>',
+            )
+        kinematic = link.kinematic and link.name not in children
+        if link.kinematic and not kinematic:
+            notes.warn(
+                parts.element,
+                f"link '{link.name}': <kinematic> is not read where a joint moves the link",
+            )
+        made.append(replace(link, inertial=inertial, collisions=solid, kinematic=kinematic))
+    return made
+
+
+def _require_unique(parts: ModelParts, names: Sequence[str], kind: str) -> None:
+    twice = [name for name, count in Counter(names).items() if count > 1]
+    if twice:
+        raise fault(parts.element, f"there are two {kind}s '{twice[0]}'; names must differ")

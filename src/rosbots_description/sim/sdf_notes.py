@@ -1,0 +1,87 @@
+"""What an SDF file asks for that is not simulated, named once per file by path and line."""
+
+import logging
+from collections.abc import Collection
+
+from lxml import etree
+
+from .markup_values import parse_numbers, place, scalar, tag_of
+
+logger = logging.getLogger(__name__)
+
+# A leaf that says only what is so here anyway is not worth a word.
+_NEUTRAL: dict[str, tuple[float, ...]] = {
+    'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0), 'restitution_coefficient': (0.0,),
+    'threshold': (100000.0,), 'slip': (0.0,), 'slip1': (0.0,), 'slip2': (0.0,),
+    'soft_cfm': (0.0,), 'soft_erp': (0.2,), 'collide_without_contact': (0.0,),
+    'collide_without_contact_bitmask': (1.0,), 'collide_bitmask': (65535.0,),
+    'category_bitmask': (65535.0,), 'spring_reference': (0.0,), 'spring_stiffness': (0.0,),
+    'coefficient': (1.0,), 'use_patch_radius': (1.0,), 'patch_radius': (0.0,),
+    'surface_radius': (0.0,), 'visible': (1.0,), 'initial_position': (0.0,), 'center': (0.0,),
+}
+
+
+class Notes:
+    """Collects what is to be said about one file; `log` says it, each thing once."""
+
+    def __init__(self, source: str) -> None:
+        self._source = source
+        self._unread: dict[str, list[int]] = {}
+        self._idle: dict[str, list[int]] = {}
+        self._sentences: dict[str, None] = {}
+
+    def check(
+        self, element: etree._Element, read: Collection[str], idle: Collection[str] = ()
+    ) -> None:
+        """Note the children of `element` that nobody reads.
+
+        Args:
+            read: tags that are read.
+            idle: tags that change nothing that is simulated here, such as a solver's settings.
+        """
+        for child in element:
+            if child.tag not in read:
+                self.unread(child, idle=child.tag in idle)
+
+    def unread(self, element: etree._Element, idle: bool = False) -> None:
+        """Note an element that is not simulated, unless it asks for nothing."""
+        if not _is_neutral(element):
+            lines = (self._idle if idle else self._unread).setdefault(_path(element), [])
+            if element.sourceline not in lines:
+                lines.append(element.sourceline)
+
+    def warn(self, element: etree._Element, sentence: str) -> None:
+        """Note that something is done differently than `element` asks."""
+        self._sentences[f'{place(element)}: {sentence}'] = None
+
+    def log(self) -> None:
+        """Say everything; what changes nothing that is simulated only at level debug."""
+        for sentence in self._sentences:
+            logger.warning('%s', sentence)
+        if self._unread:
+            logger.warning('%s: not simulated: %s', self._source, _list(self._unread))
+        if self._idle:
+            logger.debug('%s: without effect here: %s', self._source, _list(self._idle))
+
+
+def _is_neutral(element: etree._Element) -> bool:
+    if len(element):
+        return all(_is_neutral(child) for child in element)
+    text = scalar(element).lower()
+    if element.tag in _NEUTRAL and text:
+        text = {'true': '1', 'false': '0'}.get(text, text)
+        neutral = _NEUTRAL[element.tag]
+        return parse_numbers(text, len(neutral)) == neutral
+    return not text and not element.get('filename')
+
+
+def _path(element: etree._Element) -> str:
+    tags = [tag_of(element), *(tag_of(ancestor) for ancestor in element.iterancestors())]
+    return '/'.join(reversed(tags[:-1] or tags))
+
+
+def _list(lines_of: dict[str, list[int]]) -> str:
+    return ', '.join(
+        f'{path} (line {lines[0]}' + (f' and {len(lines) - 1} more)' if len(lines) > 1 else ')')
+        for path, lines in lines_of.items()
+    )

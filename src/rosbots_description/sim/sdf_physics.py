@@ -1,0 +1,94 @@
+"""The <physics> and <gravity> of a world, in today's form and in that of SDF 1.3."""
+
+from dataclasses import fields
+
+from lxml import etree
+
+from .markup_values import fault, scalar, tag_of
+from .physics import PhysicsSettings
+from .sdf_document import SdfDocument
+from .sdf_values import number_of, numbers_of
+
+# Where each setting stands in <physics>; later paths, of older versions, count less.
+_PATHS: dict[str, tuple[str, ...]] = {
+    'step_size': ('max_step_size', 'ode/solver/dt'),
+    'max_update_rate': ('real_time_update_rate', 'update_rate'),
+    'gravity': ('gravity',),
+    'max_contacts': ('max_contacts', 'ode/max_contacts'),
+    'sor_pgs_precon_iters': ('ode/solver/precon_iters',),
+    'sor_pgs_iters': ('ode/solver/iters',),
+    'sor_pgs_w': ('ode/solver/sor',),
+    'cfm': ('ode/constraints/cfm',),
+    'erp': ('ode/constraints/erp',),
+    'contact_surface_layer': ('ode/constraints/contact_surface_layer',),
+    'contact_max_correcting_vel': ('ode/constraints/contact_max_correcting_vel',),
+}
+_READ = ('max_step_size', 'real_time_update_rate', 'update_rate', 'gravity', 'max_contacts', 'ode')
+# The rate says how fast the simulator tries to be; the solvers' own settings have no counterpart.
+_IDLE = ('real_time_factor', 'bullet', 'simbody', 'dart')
+_ODE_IDLE = ('type', 'min_step_size', 'use_dynamic_moi_rescaling', 'friction_model',
+             'thread_position_correction', 'island_threads')
+_SHORTEST, _LONGEST = 1e-9, 1.0  # steps; the clock counts nanoseconds [s]
+_MOST_PASSES = 100_000  # of the solver
+
+
+def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSettings:
+    """Return the settings of the <physics> that counts: the default one, else the first.
+
+    Raises:
+        ModelError: something is no number, or one that no world can have.
+    """
+    plain = PhysicsSettings()
+    settings: dict[str, object] = {}
+    gravity = world.find('gravity')
+    if gravity is not None and scalar(gravity):
+        settings['gravity'] = numbers_of(world, 'gravity', plain.gravity)
+    choices = world.findall('physics')
+    if not choices:
+        return PhysicsSettings(**settings)
+    chosen = next((p for p in choices if p.get('default') in ('1', 'true')), choices[0])
+    _check(document, chosen)
+    for field in fields(PhysicsSettings):
+        for path in _PATHS.get(field.name, ()):
+            element = chosen.find(path)
+            if element is not None and scalar(element) and field.name not in settings:
+                settings[field.name] = _value(chosen, path, getattr(plain, field.name))
+    _require(chosen, settings, 'step_size', lambda value: _SHORTEST <= value <= _LONGEST,
+             f'greater than zero and at most {_LONGEST:g} [s]')
+    _require(chosen, settings, 'max_update_rate', lambda value: value >= 0.0,
+             'zero (as fast as possible) or more [Hz]')
+    _require(chosen, settings, 'sor_pgs_iters', lambda value: 0 < value <= _MOST_PASSES,
+             f'greater than zero and at most {_MOST_PASSES}')
+    return PhysicsSettings(**settings)
+
+
+def _check(document: SdfDocument, physics: etree._Element) -> None:
+    notes = document.notes
+    kind = physics.get('type', 'ode')
+    if kind != 'ode':
+        notes.warn(physics, f"physics type '{kind}' is not here; PyBullet is used for all")
+    notes.check(physics, _READ, _IDLE)
+    for path, read in (
+        ('ode', ('solver', 'constraints', 'max_contacts')),
+        ('ode/solver', ('dt', 'precon_iters', 'iters', 'sor')),
+        ('ode/constraints',
+         ('cfm', 'erp', 'contact_surface_layer', 'contact_max_correcting_vel')),
+    ):
+        part = physics.find(path)
+        if part is not None:
+            notes.check(part, read, _ODE_IDLE)
+
+
+def _value(physics: etree._Element, path: str, default: object) -> object:
+    if isinstance(default, tuple):
+        return numbers_of(physics, path, default)
+    number = number_of(physics, path, 0.0)
+    return round(number) if isinstance(default, int) else number
+
+
+def _require(physics: etree._Element, settings: dict, name: str, holds, cure: str) -> None:
+    if name in settings and not holds(settings[name]):
+        element = next(
+            physics.find(path) for path in _PATHS[name] if physics.find(path) is not None
+        )
+        raise fault(element, f'<{tag_of(element)}> is {scalar(element)}; it must be {cure}')

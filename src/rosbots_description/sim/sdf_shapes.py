@@ -1,0 +1,206 @@
+"""Collisions and visuals of SDF: geometry, surface and looks."""
+
+from lxml import etree
+
+from .errors import ModelError
+from .gazebo_materials import gazebo_material
+from .gazebo_tags import ENDLESS_FRICTION
+from .markup_values import fault, tag_of
+from .mesh_reading import check_mesh
+from .pose import Pose
+from .sdf_document import SdfDocument
+from .sdf_values import (
+    colour_of,
+    limit_of,
+    not_negative_of,
+    number_of,
+    numbers_of,
+    sizes_of,
+    text_of,
+    truth_of,
+    unit_vector_of,
+)
+from .spec import (
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Material,
+    Mesh,
+    Plane,
+    Sphere,
+    Surface,
+    Visual,
+)
+from .submesh import submesh_file
+
+_NOT_SIMULATED = ('heightmap', 'polyline', 'image', 'capsule', 'ellipsoid', 'cone')
+_UP = (0.0, 0.0, 1.0)
+
+
+def read_collision(
+    document: SdfDocument, element: etree._Element, name: str, pose: Pose
+) -> Collision | None:
+    """Return a <collision>, or None where its shape is noted as not simulated.
+
+    Args:
+        pose: in the link's frame.
+    Raises:
+        ModelError: a number, geometry or mesh file is missing or wrong.
+    """
+    document.notes.check(
+        element, ('pose', 'geometry', 'surface', 'max_contacts', 'laser_retro'), ('meta',)
+    )
+    geometry = _geometry(document, element)
+    if geometry is None:
+        return None
+    return Collision(name, geometry, pose, _surface(document, element))
+
+
+def read_visual(
+    document: SdfDocument, element: etree._Element, name: str, pose: Pose
+) -> Visual | None:
+    """Return a <visual>, or None where it is invisible or its shape is noted as not shown.
+
+    Args:
+        pose: in the link's frame.
+    Raises:
+        ModelError: a number, geometry or mesh file is missing or wrong.
+    """
+    document.notes.check(
+        element,
+        ('pose', 'geometry', 'material', 'transparency', 'visible'),
+        ('cast_shadows', 'laser_retro', 'meta', 'visibility_flags'),
+    )
+    geometry = _geometry(document, element)
+    if geometry is None or not truth_of(element, 'visible', True):
+        return None
+    material = _material(document, element)
+    if material is None and not isinstance(geometry, Mesh):
+        material = Material()
+    return Visual(name, geometry, pose, material)
+
+
+def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None:
+    shapes = list(element.iterfind('geometry/*'))
+    if not shapes:
+        raise fault(
+            element,
+            f"<{element.tag} name='{element.get('name', '')}'> has no shape; put <geometry> with "
+            'a box, sphere, cylinder, plane or mesh into it',
+        )
+    shape = shapes[0]
+    match shape.tag:
+        case 'box':
+            return Box(sizes_of(shape, 'size', 3))
+        case 'sphere':
+            return Sphere(sizes_of(shape, 'radius')[0])
+        case 'cylinder':
+            return Cylinder(sizes_of(shape, 'radius')[0], sizes_of(shape, 'length')[0])
+        case 'plane':
+            return Plane(
+                unit_vector_of(shape, 'normal', _UP), numbers_of(shape, 'size', (1.0, 1.0))
+            )
+        case 'mesh':
+            return _mesh(document, shape)
+        case 'empty':
+            return None
+        case tag if tag in _NOT_SIMULATED:
+            document.notes.unread(shape)
+            return None
+    raise fault(
+        shape,
+        f"geometry '{tag_of(shape)}' is unknown; there are box, sphere, cylinder, plane and mesh",
+    )
+
+
+def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
+    document.notes.check(element, ('uri', 'scale', 'submesh'))
+    uri_element = element.find('uri')
+    uri = text_of(element, 'uri')
+    if not uri:
+        raise fault(element, 'a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>')
+    scale = numbers_of(element, 'scale', (1.0, 1.0, 1.0))
+    if 0.0 in scale:
+        raise fault(element, '<scale> of <mesh> is wrong; no factor may be zero')
+    path = document.file(uri_element, uri)
+    submesh = text_of(element, 'submesh/name')
+    try:
+        if submesh:
+            path = submesh_file(path, submesh, truth_of(element, 'submesh/center'))
+        check_mesh(path)
+    except ModelError as error:
+        raise fault(uri_element, str(error)) from error
+    return Mesh(path, scale, uri)
+
+
+def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
+    default = Surface()
+    extra = {
+        'laser_retro': number_of(collision, 'laser_retro', default.laser_retro),
+        'max_contacts': int(number_of(collision, 'max_contacts', default.max_contacts)),
+    }
+    surface = collision.find('surface')
+    if surface is None:
+        return Surface(**extra)
+    for path, read in (
+        ('.', ('friction', 'contact')),
+        ('friction', ('ode',)),
+        ('friction/ode', ('mu', 'mu2', 'fdir1')),
+        ('contact', ('ode',)),
+        ('contact/ode', ('kp', 'kd', 'max_vel', 'min_depth')),
+    ):
+        part = surface.find(path)
+        if part is not None:
+            # Settings of engines that Gazebo would not use either.
+            document.notes.check(
+                part, read, ('bullet', 'soft_contact', 'poissons_ratio', 'elastic_modulus')
+            )
+    contact = 'contact/ode'
+    stiffness = limit_of(surface, f'{contact}/kp')
+    return Surface(
+        mu=_friction(surface, 'friction/ode/mu', default.mu),
+        mu2=_friction(surface, 'friction/ode/mu2', default.mu2),
+        fdir1=numbers_of(surface, 'friction/ode/fdir1', default.fdir1),
+        kp=default.kp if stiffness is None
+        else not_negative_of(surface, f'{contact}/kp', default.kp),
+        kd=not_negative_of(surface, f'{contact}/kd', default.kd),
+        max_vel=not_negative_of(surface, f'{contact}/max_vel', default.max_vel),
+        min_depth=not_negative_of(surface, f'{contact}/min_depth', default.min_depth),
+        **extra,
+    )
+
+
+def _friction(surface: etree._Element, path: str, default: float) -> float:
+    """Return a friction coefficient; negative means endless in Gazebo."""
+    value = number_of(surface, path, default)
+    return value if value >= 0.0 else ENDLESS_FRICTION
+
+
+def _material(document: SdfDocument, visual: etree._Element) -> Material | None:
+    """Return the looks: <diffuse> (or <ambient>) before the script's colour, as in Gazebo."""
+    element = visual.find('material')
+    if element is None:
+        return None
+    document.notes.check(
+        element,
+        ('script', 'diffuse', 'ambient'),
+        ('specular', 'emissive', 'shader', 'lighting', 'pbr', 'double_sided', 'shininess'),
+    )
+    script = text_of(element, 'script/name') or text_of(element, 'script')
+    colour = colour_of(element, 'diffuse') or colour_of(element, 'ambient')
+    material = gazebo_material(script)
+    if colour is not None:
+        material = Material(colour, script)
+    elif script and material is None:
+        document.notes.warn(
+            element,
+            f"material '{script}' is none of Gazebo's plain ones, grey is shown; add <diffuse>",
+        )
+        material = Material(script=script)
+    transparency = number_of(visual, 'transparency', 0.0)
+    if material is None or transparency == 0.0:
+        return material
+    red, green, blue, alpha = material.rgba
+    return Material((red, green, blue, alpha * min(1.0, max(0.0, 1.0 - transparency))),
+                    material.script)

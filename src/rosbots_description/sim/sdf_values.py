@@ -1,0 +1,127 @@
+"""Read values from the child elements of SDF: where one is missing or empty, SDF's default."""
+
+import math
+
+from lxml import etree
+
+from .markup_values import fault, scalar, scalar_numbers, tag_of, truth
+from .pose import IDENTITY, Pose, Vector, from_rpy
+from .pose import normalise as normalise_quaternion
+
+Colour = tuple[float, float, float, float]
+
+# SDF's own "no limit" is 1e16; nothing that is simulated comes near this [rad, m, N, N m].
+_ENDLESS = 1e15
+
+
+def text_of(parent: etree._Element, path: str, default: str = '') -> str:
+    """Return the text of the element at `path` below `parent`, without surrounding blanks."""
+    element = parent.find(path)
+    return default if element is None else scalar(element) or default
+
+
+def numbers_of(
+    parent: etree._Element, path: str, default: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Return as many finite numbers as `default` has.
+
+    Raises:
+        ModelError: the text is something else.
+    """
+    element = parent.find(path)
+    if element is None or not scalar(element):
+        return default
+    return scalar_numbers(element, len(default))
+
+
+def number_of(parent: etree._Element, path: str, default: float) -> float:
+    """Return one finite number, as `numbers_of` does."""
+    return numbers_of(parent, path, (default,))[0]
+
+
+def not_negative_of(parent: etree._Element, path: str, default: float) -> float:
+    """Return one finite number that is zero or more."""
+    value = number_of(parent, path, default)
+    if value < 0.0:
+        element = parent.find(path)
+        raise fault(element, f'<{tag_of(element)}> is {value:g}; it must not be negative')
+    return value
+
+
+def sizes_of(parent: etree._Element, path: str, count: int = 1) -> tuple[float, ...]:
+    """Return lengths greater than zero [m]; the element must be there.
+
+    Raises:
+        ModelError: it is missing, no number, or not greater than zero.
+    """
+    element = parent.find(path)
+    if element is None:
+        raise fault(parent, f'<{tag_of(parent)}> has no <{path}> [m]')
+    values = scalar_numbers(element, count)
+    if min(values) <= 0.0:
+        raise fault(
+            element, f"<{path}> is '{scalar(element)}'; a size must be greater than zero"
+        )
+    return values
+
+
+def limit_of(parent: etree._Element, path: str) -> float | None:
+    """Return a limit, or None where the number stands for endless (1e16, inf, ...)."""
+    element = parent.find(path)
+    if element is None or not scalar(element):
+        return None
+    if scalar(element).lower().lstrip('+-') in ('inf', 'infinity'):
+        return None
+    value = scalar_numbers(element, 1)[0]
+    return value if abs(value) < _ENDLESS else None
+
+
+def truth_of(parent: etree._Element, path: str, default: bool = False) -> bool:
+    """Tell whether the element says true, yes or 1; `default` where it says nothing."""
+    element = parent.find(path)
+    return default if element is None or not scalar(element) else truth(element)
+
+
+def colour_of(parent: etree._Element, path: str) -> Colour | None:
+    """Return red, green, blue, alpha, each brought into 0..1; None where there is none."""
+    element = parent.find(path)
+    if element is None or not scalar(element):
+        return None
+    count = 3 if len(scalar(element).split()) == 3 else 4
+    rgba = (*scalar_numbers(element, count), 1.0)[:4]
+    return tuple(min(1.0, max(0.0, value)) for value in rgba)
+
+
+def unit_vector_of(parent: etree._Element, path: str, default: Vector) -> Vector:
+    """Return a direction of length 1.
+
+    Raises:
+        ModelError: all three numbers are zero.
+    """
+    vector = numbers_of(parent, path, default)
+    largest = max(abs(x) for x in vector)
+    if largest == 0.0:
+        raise fault(
+            parent.find(path), f'<{path}> has no direction; one of the three must not be zero'
+        )
+    # Scaled first, so that neither tiny nor huge numbers are squared.
+    x, y, z = (x / largest for x in vector)
+    length = math.sqrt(x * x + y * y + z * z)
+    return (x / length, y / length, z / length)
+
+
+def pose_in(element: etree._Element | None) -> Pose:
+    """Return what a <pose> says: "x y z roll pitch yaw" [m, rad]; without one the identity.
+
+    What SDF 1.9 adds, degrees and quaternions (x, y, z, w), is understood too.
+    """
+    if element is None or not scalar(element):
+        return IDENTITY
+    if element.get('rotation_format') == 'quat_xyzw':
+        *position, x, y, z, w = scalar_numbers(element, 7)
+        return Pose(tuple(position), normalise_quaternion((x, y, z, w)))
+    numbers = scalar_numbers(element, 6)
+    angles = numbers[3:]
+    if element.get('degrees', '').lower() in ('true', '1'):
+        angles = tuple(math.radians(angle) for angle in angles)
+    return Pose(numbers[:3], from_rpy(*angles))

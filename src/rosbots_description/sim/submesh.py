@@ -1,0 +1,104 @@
+"""One part of a Collada file by its name, as a file of its own: what SDF calls a submesh.
+
+A part is what a <node> of that name shows, as in Gazebo. The rest of the file stays as it is, so
+units, transforms and colours do too.
+"""
+
+import hashlib
+import os
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+from lxml import etree
+
+from .errors import ModelError
+from .markup_values import suggestion
+from .mesh_reading import MAX_BYTES, read_mesh
+
+_SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
+
+
+def submesh_file(path: str, name: str, center: bool) -> str:
+    """Return a file that shows only the part `name` of the mesh file `path`.
+
+    It lies in a private directory that lives as long as the process.
+
+    Args:
+        center: move the middle of the part's bounding box into the origin.
+    Raises:
+        ModelError: the file is no Collada that can be read, or has no such part.
+    """
+    try:
+        state = os.stat(path)
+    except OSError as error:
+        raise ModelError(f"mesh file '{path}' does not exist or cannot be reached") from error
+    return _submesh_file(path, state.st_mtime_ns, state.st_size, name, center)
+
+
+@lru_cache(maxsize=256)
+def _submesh_file(path: str, mtime_ns: int, size: int, name: str, center: bool) -> str:
+    if not path.lower().endswith('.dae') or size > MAX_BYTES:
+        raise ModelError(
+            f"mesh file '{path}': only .dae files of at most {MAX_BYTES} bytes have submeshes here"
+        )
+    root = _parse(path)
+    _keep_only(root, path, name)
+    file = _write(root, path)
+    if center:
+        _move_to_middle(root, file)
+        file = _write(root, path)
+    return file
+
+
+def _parse(path: str) -> etree._Element:
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    try:
+        return etree.fromstring(Path(path).read_bytes(), parser)
+    except (OSError, etree.XMLSyntaxError) as error:
+        raise ModelError(f"mesh file '{path}' is broken or no .dae file: {error}") from error
+
+
+def _keep_only(root: etree._Element, path: str, name: str) -> None:
+    shown = [
+        element for node in root.iterfind('.//{*}node') for element in node
+        if isinstance(element.tag, str) and etree.QName(element).localname in _SHOWN
+    ]
+    names = {_name(element.getparent()) for element in shown}
+    if name not in names:
+        raise ModelError(f"mesh file '{path}' has no submesh '{name}'{suggestion(name, names)}")
+    for element in shown:
+        if _name(element.getparent()) != name:
+            element.getparent().remove(element)
+
+
+def _name(node: etree._Element) -> str:
+    return node.get('name') or node.get('id') or ''
+
+
+def _move_to_middle(root: etree._Element, file: str) -> None:
+    vertices, faces = read_mesh(file).triangles()
+    used = vertices[faces.ravel()]
+    unit = root.find('{*}asset/{*}unit')
+    metres = 1.0 if unit is None else float(unit.get('meter', '1'))
+    shift = -(used.min(axis=0) + used.max(axis=0)) / 2.0 / metres
+    scene = root.find('.//{*}visual_scene')
+    namespace = etree.QName(scene).namespace
+    tag = f'{{{namespace}}}' if namespace else ''
+    wrapper = etree.Element(f'{tag}node', id='submesh_centre')
+    etree.SubElement(wrapper, f'{tag}translate').text = ' '.join(f'{x:.12g}' for x in shift)
+    wrapper.extend(scene.findall('{*}node'))
+    scene.insert(0, wrapper)
+
+
+def _write(root: etree._Element, path: str) -> str:
+    content = etree.tostring(root)
+    digest = hashlib.sha256(content).hexdigest()[:32]
+    file = Path(_directory().name) / f'{Path(path).stem}_{digest}.dae'
+    file.write_bytes(content)
+    return str(file)
+
+
+@lru_cache(maxsize=1)
+def _directory() -> tempfile.TemporaryDirectory:
+    return tempfile.TemporaryDirectory(prefix='rosbots_submeshes_')

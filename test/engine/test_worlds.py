@@ -1,0 +1,164 @@
+"""The worlds that come with the simulator stand; worlds from files move as they should."""
+
+import math
+import time
+
+import pytest
+from support import ROOT, SETTLED, SPAWN_POSE, robot_spec
+
+from rosbots_description.sim.model_search import ModelSearch, find_world
+from rosbots_description.sim.pose import to_rpy
+from rosbots_description.sim.world import World
+from rosbots_description.sim.world_file import load_world, open_world, populate
+
+STILL = 0.001  # [m] that something at rest may creep in the time below
+TURNED = 0.001  # [rad] and turn
+SECONDS = 3000  # steps of 1 ms
+OWN_WORLDS = {
+    'empty': ['ground_plane'],
+    'shapes': ['ground_plane', 'box', 'sphere', 'cylinder'],
+    'room': ['ground_plane', 'walls', 'table', 'bookcase', 'column', 'crate_large', 'crate_small',
+             'barrel', 'ball'],
+    'maze': ['ground_plane', 'maze'],
+}
+
+
+@pytest.fixture(name='world')
+def fixture_world():
+    world = World()
+    yield world
+    world.close()
+
+
+def load(text):
+    return load_world(text, 'w.world', find_model=ModelSearch())
+
+
+def own(name):
+    return open_world(find_world(f'worlds/{name}.world', [ROOT]), find_model=ModelSearch())
+
+
+def fill(world, body):
+    spec = load(f'<sdf version="1.6"><world name="w">{body}</world></sdf>')
+    assert spec.faults == ()
+    populate(world, spec)
+    return spec
+
+
+@pytest.mark.parametrize('name', OWN_WORLDS)
+def test_nothing_moves_or_falls_in_our_own_worlds(world, name, caplog):
+    populate(world, own(name))
+    before = {model.name: model.pose for model in world.models.values()}
+    world.run(SECONDS)
+    assert list(world.models) == OWN_WORLDS[name]
+    for model in world.models.values():
+        was, now = before[model.name], model.pose
+        assert math.dist(was.position, now.position) < STILL, model.name
+        turn = 2.0 * math.acos(min(1.0, abs(sum(
+            a * b for a, b in zip(was.orientation, now.orientation, strict=True)))))
+        assert turn < TURNED, model.name
+    assert caplog.text == ''
+
+
+@pytest.mark.parametrize('name', ['room', 'maze'])
+def test_the_robot_finds_room_where_it_is_spawned(world, name):
+    populate(world, own(name))
+    robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.run(SETTLED)
+    assert math.hypot(*robot.pose.position[:2]) < 0.05
+    assert abs(to_rpy(robot.pose.orientation)[2]) < 0.05
+
+
+def test_the_robot_does_not_drive_through_the_walls_of_the_maze(world):
+    populate(world, own('maze'))
+    robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.run(SETTLED)
+    robot.plugins[0].command(1.0, 0.0)
+    world.run(10000)  # far longer than the way to the first wall, 3 m ahead
+    assert 2.0 < robot.pose.position[0] < 3.0
+
+
+def test_an_empty_world_file_is_read_in_a_moment():
+    path = find_world('worlds/empty.world', [ROOT])
+    load(path.read_bytes())  # what is done once in a process is done
+    start = time.perf_counter()
+    for _ in range(20):
+        load(path.read_bytes())
+    assert (time.perf_counter() - start) / 20 < 0.02
+
+
+def test_physics_of_the_file_holds(world):
+    fill(world, '''<gravity>0 0 -2</gravity>
+      <physics type="ode"><max_step_size>0.002</max_step_size></physics>
+      <model name="ball"><pose>0 0 100 0 0 0</pose><link name="link"/></model>''')
+    world.run(500)
+    assert world.clock.now == pytest.approx(1.0)
+    # g t^2 / 2, and half a step more since velocities change first
+    fallen = 100.0 - world.models['ball'].pose.position[2]
+    assert fallen == pytest.approx(1.0, rel=0.003)
+
+
+def test_a_kinematic_link_stays_and_carries(world):
+    fill(world, '''<model name="shelf"><pose>0 0 2 0 0 0</pose><link name="link">
+      <kinematic>1</kinematic><collision name="c"><geometry><box><size>1 1 0.1</size></box>
+      </geometry></collision></link></model>
+      <model name="box"><pose>0 0 2.3 0 0 0</pose><link name="link"><collision name="c"><geometry>
+      <box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model>''')
+    world.run(1000)
+    assert world.models['shelf'].pose.position == (0.0, 0.0, 2.0)
+    assert world.models['box'].pose.position[2] == pytest.approx(2.3, abs=0.01)
+
+
+DOORS = '''<model name="doors"><pose>0 0 1 0 0 0</pose>{}</model>'''.format(''.join(
+    f'''<link name="{side}"><pose>0 {y} 0 0 0 0</pose><inertial><mass>5</mass></inertial></link>
+    <joint name="{side}_hinge" type="revolute"><parent>world</parent><child>{side}</child>
+    <pose>0 {-y / 2} 0 0 0 0</pose><axis><xyz>0 0 1</xyz></axis></joint>'''
+    for side, y in (('left', 1.0), ('right', -1.0))
+))
+
+
+def test_doors_hinged_to_the_world_swing_and_do_not_fall(world):
+    fill(world, DOORS)
+    doors = world.models['doors']
+    doors.joints['left_hinge'].set_motor(1.0, 100.0)
+    world.run(1000)
+    left, right = doors.links['left'].pose, doors.links['right'].pose
+    assert to_rpy(left.orientation)[2] == pytest.approx(1.0, abs=0.05)
+    # It turns about the hinge, half a metre beside its middle.
+    assert left.position == pytest.approx((-0.5 * math.sin(1.0), 0.5 + 0.5 * math.cos(1.0), 1.0),
+                                          abs=0.03)
+    assert right.position == pytest.approx((0.0, -1.0, 1.0), abs=0.001)
+
+
+def test_a_saved_state_puts_models_and_joints_where_they_were(world):
+    y, x = 0.5 + 0.5 * math.cos(0.8), -0.5 * math.sin(0.8)
+    fill(world, DOORS + f'''<state world_name="w"><sim_time>3 250000000</sim_time>
+      <model name="doors"><pose>10 0 1 0 0 0</pose>
+      <link name="left"><pose>{10 + x} {y} 1 0 0 0.8</pose></link>
+      <link name="right"><pose>10 -1 1 0 0 0</pose></link></model></state>''')
+    doors = world.models['doors']
+    assert world.clock.now == 3.25
+    assert doors.joints['left_hinge'].position == pytest.approx(0.8)
+    assert doors.links['left'].pose.position == pytest.approx((10 + x, y, 1.0))
+    assert doors.links['right'].pose.position == pytest.approx((10.0, -1.0, 1.0))
+    assert doors.initial_pose.position == (0.0, 0.0, 1.0)
+
+
+def test_links_of_a_standing_model_are_put_where_the_state_has_them(world):
+    fill(world, '''<model name="posts"><static>1</static><link name="a"/><link name="b"/></model>
+      <state world_name="w"><model name="posts"><pose>1 0 0 0 0 0</pose>
+      <link name="a"><pose>1 0 0 0 0 0</pose></link><link name="b"><pose>1 5 0 0 0 0</pose></link>
+      </model></state>''')
+    links = world.models['posts'].links
+    assert [link.pose.position for link in links.values()] == [(1.0, 0.0, 0.0), (1.0, 5.0, 0.0)]
+
+
+def test_fixed_joints_hold_links_of_an_sdf_together(world):
+    fill(world, '''<model name="pair"><pose>0 0 9 0 0 0</pose><link name="a"/>
+      <link name="b"><pose>1 0 0 0 0 0</pose></link>
+      <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint></model>''')
+    pair = world.models['pair']
+    world.run(300)
+    a, b = (link.pose.position for link in pair.links.values())
+    assert a[2] < 9.0
+    assert (b[0] - a[0], b[1] - a[1], b[2] - a[2]) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)

@@ -1,0 +1,376 @@
+"""SDF texts become models; what is not simulated is named, what is broken is refused."""
+
+import logging
+import math
+
+import pytest
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.gazebo_tags import ENDLESS_FRICTION
+from rosbots_description.sim.mesh_reading import read_mesh
+from rosbots_description.sim.model_search import BUILT_IN_MODELS, ModelSearch
+from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.sdf import load_sdf, load_sdf_light
+from rosbots_description.sim.spec import Box, Cylinder, Material, Plane, Sphere, Surface
+from rosbots_description.sim.worlds import GROUND_PLANE
+
+BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
+TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
+
+
+def load(body, version='1.6', **options):
+    text = f'<sdf version="{version}"><model name="own">{body}</model></sdf>'
+    spec, _ = load_sdf(text, 'bot', source='bot.sdf', find_model=ModelSearch(), **options)
+    return spec
+
+
+def link(inside='', name='a'):
+    return f'<link name="{name}">{inside}</link>'
+
+
+def collision(inside):
+    return load(link(f'<collision name="c">{inside}</collision>')).links[0].collisions[0]
+
+
+def visual(inside):
+    return load(link(f'<visual name="v">{inside}{BOX}</visual>')).links[0].visuals[0]
+
+
+def complaint(body):
+    with pytest.raises(ModelError) as caught:
+        load(body)
+    sentence = str(caught.value)
+    assert sentence.startswith('bot.sdf, line ')
+    assert '\n' not in sentence
+    return sentence
+
+
+def warnings_of(caplog, body, **options):
+    with caplog.at_level(logging.DEBUG):
+        load(body, **options)
+    return [r.getMessage() for r in caplog.records if r.levelno == logging.WARNING]
+
+
+def test_the_model_gets_the_name_it_is_spawned_under_and_keeps_its_own_pose():
+    text = ('<sdf version="1.6"><model name="x"><pose>1 2 3 0 0 0</pose><link name="a"/></model>'
+            '</sdf>')
+    spec, pose = load_sdf(text, 'bot', find_model=ModelSearch())
+    assert spec.name == 'bot'
+    assert pose == Pose((1.0, 2.0, 3.0))
+
+
+def test_a_gazebo_root_element_is_as_good_as_sdf():
+    text = '<gazebo version="1.3"><model name="x"><link name="a"/></model></gazebo>'
+    assert load_sdf(text, 'bot', find_model=ModelSearch())[0].links[0].name == 'a'
+
+
+def test_a_malformed_pose_of_the_model_counts_as_none(caplog):
+    text = '<sdf version="1.6"><model name="x"><pose>1 2</pose><link name="a"/></model></sdf>'
+    assert load_sdf(text, 'bot', find_model=ModelSearch())[1] == Pose()
+    assert 'six finite numbers' in caplog.text
+
+
+def test_the_built_in_ground_plane_is_the_one_of_the_empty_world():
+    spec, _ = load_sdf(BUILT_IN_MODELS['ground_plane'], 'ground_plane', find_model=ModelSearch())
+    assert spec == GROUND_PLANE
+
+
+def test_what_is_not_said_about_a_mass_is_one():
+    inertial = load(link()).links[0].inertial
+    assert (inertial.mass, inertial.ixx, inertial.iyy, inertial.izz) == (1.0, 1.0, 1.0, 1.0)
+    assert (inertial.ixy, inertial.ixz, inertial.iyz) == (0.0, 0.0, 0.0)
+
+
+def test_an_inertial_is_read_with_its_own_pose():
+    inertial = load(link(
+        '<inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
+        '<izz>0.25</izz><ixy>0.01</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>'
+    )).links[0].inertial
+    assert (inertial.mass, inertial.pose) == (2.0, Pose((0.0, 0.0, 0.5)))
+    assert (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy) == (0.1, 0.2, 0.25, 0.01)
+
+
+def test_an_inertia_of_zero_gets_that_of_a_ball(caplog):
+    body = link('<inertial><mass>1</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia>'
+                '</inertial>')
+    assert load(body).links[0].inertial.ixx > 0.0
+    assert "link 'a': an inertia of zero" in caplog.text
+
+
+def test_masses_do_not_matter_to_a_model_that_stands():
+    spec = load('<static>true</static>' + link('<inertial><mass>0</mass></inertial>'))
+    assert spec.static
+    assert spec.links[0].inertial is None
+
+
+@pytest.mark.parametrize('shape, expected', [
+    ('<box><size>1 2 3</size></box>', Box((1.0, 2.0, 3.0))),
+    ('<sphere><radius>0.5</radius></sphere>', Sphere(0.5)),
+    ('<cylinder><radius>0.5</radius><length>2</length></cylinder>', Cylinder(0.5, 2.0)),
+])
+def test_a_shape_has_its_size(shape, expected):
+    assert collision(f'<geometry>{shape}</geometry>').geometry == expected
+
+
+def test_a_plane_has_a_unit_normal():
+    body = link('<collision name="c"><geometry><plane><normal>0 0 2</normal><size>3 4</size>'
+                '</plane></geometry></collision>')
+    plane = load('<static>1</static>' + body).links[0].collisions[0].geometry
+    assert plane == Plane((0.0, 0.0, 1.0), (3.0, 4.0))
+
+
+def test_a_plane_in_a_model_that_moves_is_left_out_and_named(caplog):
+    body = link('<collision name="c"><geometry><plane/></geometry></collision>')
+    assert load(body).links[0].collisions == ()
+    assert 'an endless plane cannot move' in caplog.text
+
+
+def test_a_mesh_is_found_along_the_model_path_and_scaled(tmp_path):
+    (tmp_path / 'chair' / 'meshes').mkdir(parents=True)
+    (tmp_path / 'chair' / 'meshes' / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
+    text = f'''<sdf version="1.6"><model name="m">{link("""<visual name="v"><geometry><mesh>
+      <uri>model://chair/meshes/seat.obj</uri><scale>2 2 1</scale></mesh></geometry></visual>""")}
+      </model></sdf>'''
+    spec, _ = load_sdf(text, 'm', find_model=ModelSearch([tmp_path]))
+    mesh = spec.links[0].visuals[0].geometry
+    assert mesh.path == str(tmp_path / 'chair' / 'meshes' / 'seat.obj')
+    assert (mesh.scale, mesh.uri) == ((2.0, 2.0, 1.0), 'model://chair/meshes/seat.obj')
+    assert spec.links[0].visuals[0].material is None
+
+
+def test_a_mesh_of_a_package_is_found(tmp_path):
+    (tmp_path / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
+    body = link('<visual name="v"><geometry><mesh><uri>package://furniture/seat.obj</uri></mesh>'
+                '</geometry></visual>')
+    spec = load(body, find_package={'furniture': str(tmp_path)}.get)
+    assert spec.links[0].visuals[0].geometry.path == str(tmp_path / 'seat.obj')
+
+
+def submesh(tmp_path, name, center):
+    """Return the corners that a link shows of a file with two triangles, 0.01 m a unit."""
+    (tmp_path / 'two.dae').write_text(two_triangles(), encoding='utf-8')
+    spec = load(link(f'<visual name="v"><geometry><mesh><uri>file://{tmp_path}/two.dae</uri>'
+                     f'<submesh><name>{name}</name><center>{center}</center></submesh></mesh>'
+                     '</geometry></visual>'))
+    vertices, faces = read_mesh(spec.links[0].visuals[0].geometry.path).triangles()
+    return vertices[faces.ravel()]
+
+
+def two_triangles():
+    node = '''<node name="{}"><translate>{} 0 0</translate>
+      <instance_geometry url="#shape"/></node>'''
+    return f'''<?xml version="1.0"?>
+      <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+      <asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset>
+      <library_geometries><geometry id="shape"><mesh><source id="p">
+      <float_array id="f" count="9">0 0 0 100 0 0 0 200 0</float_array><technique_common>
+      <accessor source="#f" count="3" stride="3"><param name="X" type="float"/>
+      <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
+      </source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+      <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+      </mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s">
+      {node.format('left', 1000)}{node.format('right', -1000)}</visual_scene>
+      </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>'''
+
+
+def test_a_submesh_is_only_that_part_of_its_file(tmp_path):
+    corners = submesh(tmp_path, 'left', 'false')
+    assert corners.min(axis=0) == pytest.approx((10.0, 0.0, 0.0))
+    assert corners.max(axis=0) == pytest.approx((11.0, 2.0, 0.0))
+
+
+def test_a_centred_submesh_has_its_middle_in_the_origin(tmp_path):
+    corners = submesh(tmp_path, 'right', 'true')
+    assert corners.min(axis=0) == pytest.approx((-0.5, -1.0, 0.0))
+    assert corners.max(axis=0) == pytest.approx((0.5, 1.0, 0.0))
+
+
+def test_an_unknown_submesh_is_refused_with_the_one_that_may_be_meant(tmp_path):
+    with pytest.raises(ModelError, match="no submesh 'lef'; did you mean 'left'"):
+        submesh(tmp_path, 'lef', 'false')
+
+
+def test_a_missing_mesh_is_named_with_its_address():
+    sentence = complaint(link(
+        '<collision name="c"><geometry><mesh><uri>model://chair/seat.dae</uri></mesh></geometry>'
+        '</collision>'
+    ))
+    assert "'model://chair/seat.dae' is not to be found along the model path" in sentence
+    assert 'GAZEBO_MODEL_PATH' in sentence
+
+
+@pytest.mark.parametrize('uri', ['model://../secret.dae', 'model://a/../../secret.dae'])
+def test_a_path_that_climbs_out_of_the_model_path_is_refused(uri):
+    sentence = complaint(link(
+        f'<visual name="v"><geometry><mesh><uri>{uri}</uri></mesh></geometry></visual>'
+    ))
+    assert "'..' is not accepted" in sentence
+
+
+def test_a_heightmap_is_named_by_path_and_line(caplog):
+    said = warnings_of(caplog, '\n' + link(
+        '<collision name="c"><geometry><heightmap><uri>x.png</uri></heightmap></geometry>'
+        '</collision>'
+    ))
+    assert said == [
+        'bot.sdf: not simulated: model/link/collision/geometry/heightmap (line 2)'
+    ]
+
+
+def test_a_surface_has_sdfs_defaults():
+    assert collision(BOX).surface == Surface()
+
+
+def test_a_surface_is_read():
+    surface = collision(BOX + '''<max_contacts>5</max_contacts><laser_retro>7</laser_retro>
+      <surface><friction><ode><mu>0.3</mu><mu2>0.2</mu2><fdir1>1 0 0</fdir1></ode></friction>
+      <contact><ode><kp>1e6</kp><kd>10</kd><max_vel>0.1</max_vel><min_depth>0.001</min_depth>
+      </ode></contact></surface>''').surface
+    assert surface == Surface(0.3, 0.2, (1.0, 0.0, 0.0), 1e6, 10.0, 0.1, 0.001, 5, 7.0)
+
+
+def test_a_negative_friction_is_endless():
+    surface = collision(BOX + '<surface><friction><ode><mu>-1</mu></ode></friction></surface>')
+    assert surface.surface.mu == ENDLESS_FRICTION
+
+
+def test_a_script_of_gazebo_gives_its_colour():
+    inside = '<material><script><name>Gazebo/Red</name><uri>file://media</uri></script></material>'
+    assert visual(inside).material == Material((1.0, 0.0, 0.0, 1.0), 'Gazebo/Red')
+
+
+def test_a_diffuse_colour_counts_before_the_script():
+    inside = ('<material><script><name>Gazebo/Red</name></script><ambient>0 1 0 1</ambient>'
+              '<diffuse>0 0 1</diffuse></material>')
+    assert visual(inside).material == Material((0.0, 0.0, 1.0, 1.0), 'Gazebo/Red')
+
+
+def test_transparency_takes_from_alpha():
+    inside = '<material><diffuse>0 0 1 1</diffuse></material><transparency>0.25</transparency>'
+    assert visual(inside).material.rgba == (0.0, 0.0, 1.0, 0.75)
+
+
+def test_an_unknown_script_is_shown_grey_and_named(caplog):
+    inside = '<material><script><name>Road1/Image</name></script></material>'
+    assert visual(inside).material == Material(script='Road1/Image')
+    assert "material 'Road1/Image'" in caplog.text
+
+
+def test_an_invisible_visual_is_not_there():
+    body = link(f'<visual name="v"><visible>0</visible>{BOX}</visual>')
+    assert load(body).links[0].visuals == ()
+
+
+def test_flags_of_a_link_are_read():
+    made = load(link('<gravity>0</gravity><self_collide>1</self_collide><kinematic>true</kinematic>'
+                     '<velocity_decay><linear>0.1</linear><angular>0.2</angular></velocity_decay>'
+                     )).links[0]
+    assert (made.gravity, made.self_collide, made.kinematic) == (False, True, True)
+    assert (made.linear_damping, made.angular_damping) == (0.1, 0.2)
+
+
+def test_a_link_that_says_nothing_collides_with_itself_as_its_model_says():
+    other = link('<self_collide>0</self_collide>', 'b')
+    body = '<self_collide>true</self_collide>' + link() + other
+    assert [made.self_collide for made in load(body).links] == [True, False]
+
+
+def test_shapes_of_one_name_get_different_ones():
+    shape = f'<collision name="c">{BOX}</collision>'
+    made = load(link(shape + shape)).links[0].collisions
+    assert [collision.name for collision in made] == ['c', 'c_1']
+
+
+def test_sensors_and_plugins_are_kept_with_their_lines():
+    spec = load(link('<sensor name="s" type="ray"><update_rate>5</update_rate></sensor>')
+                + '\n<plugin name="p" filename="lib.so"><a>1</a></plugin>')
+    sensor, plugin = spec.links[0].sensors[0], spec.plugins[0]
+    assert (sensor.attributes['type'], sensor.child('update_rate').text) == ('ray', '5')
+    assert (plugin.name, plugin.filename, plugin.element.child('a').text) == ('p', 'lib.so', '1')
+    assert plugin.element.line == 2
+
+
+def test_a_namespace_goes_to_plugins_that_have_none():
+    spec = load(link() + '<plugin name="p" filename="a.so"/><plugin name="q" filename="b.so">'
+                '<robotNamespace/></plugin>', robot_namespace='/r1')
+    assert [p.element.child('robotNamespace').text for p in spec.plugins] == ['/r1', '']
+
+
+def test_what_is_not_simulated_is_named_once_with_path_and_line(caplog):
+    body = '\n'.join([link('<audio_source>x</audio_source><battery>y</battery>'),
+                      link('<battery>z</battery>', 'b')])
+    assert warnings_of(caplog, body) == [
+        'bot.sdf: not simulated: model/link/audio_source (line 1), '
+        'model/link/battery (line 1 and 1 more)'
+    ]
+
+
+def test_what_asks_for_nothing_is_not_worth_a_word(caplog):
+    body = link(f'<enable_wind>0</enable_wind><collision name="c">{BOX}<surface><bounce/>'
+                '<friction><torsional><ode/></torsional><ode/></friction><contact><ode/></contact>'
+                '</surface></collision>') + '<allow_auto_disable>1</allow_auto_disable>'
+    assert warnings_of(caplog, body) == []
+
+
+def test_an_own_light_is_known_by_the_name_it_is_spawned_under():
+    text = '''<sdf version="1.6"><light type="spot" name="lamp"><pose>0 0 3 0 0 0</pose>
+      <diffuse>1 0.5 0 1</diffuse><direction>0 0 -1</direction><cast_shadows>1</cast_shadows>
+      <attenuation><range>20</range><constant>0.5</constant><linear>0.1</linear>
+      <quadratic>0.01</quadratic></attenuation></light></sdf>'''
+    light = load_sdf_light(text, 'kitchen')
+    assert (light.name, light.type, light.pose.position) == ('kitchen', 'spot', (0.0, 0.0, 3.0))
+    assert (light.diffuse, light.cast_shadows) == ((1.0, 0.5, 0.0, 1.0), True)
+    assert (light.range, light.attenuation_constant) == (20.0, 0.5)
+    assert (light.attenuation_linear, light.attenuation_quadratic) == (0.1, 0.01)
+
+
+def test_a_model_is_no_light():
+    assert load_sdf_light('<sdf version="1.6"><model name="m"/></sdf>', 'm') is None
+
+
+def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
+    spec = load(link('<pose degrees="true">0 0 0 0 0 90</pose>')
+                + link('<pose rotation_format="quat_xyzw">0 0 0 0 0 2 2</pose>', 'b'))
+    quarter = math.sqrt(0.5)
+    for made in spec.links:
+        assert made.pose.orientation == pytest.approx((0.0, 0.0, quarter, quarter))
+
+
+@pytest.mark.parametrize('body, part', [
+    ('', 'the model has no <link>'),
+    (link(name=''), 'a <link> without name'),
+    (link(name='world'), "a link cannot be called 'world'"),
+    (link() + link(), "there are two links 'a'"),
+    (link('<inertial><mass>-1</mass></inertial>'), 'mass -1 kg is wrong'),
+    (link('<inertial><mass>heavy</mass></inertial>'), "<mass> is 'heavy'"),
+    (link('<inertial><inertia><ixx>-1</ixx></inertia></inertial>'), '<ixx> is -1'),
+    (link('<inertial><inertia><ixy>9</ixy></inertia></inertial>'), 'ixy, ixz, iyz are too great'),
+    (link('<pose>0 0 nan 0 0 0</pose>'), 'it takes six finite numbers'),
+    (link('<collision name="c"/>'), "<collision name='c'> has no shape"),
+    (link('<collision name="c"><geometry><box/></geometry></collision>'), '<box> has no <size>'),
+    (link('<collision name="c"><geometry><sphere><radius>0</radius></sphere></geometry>'
+          '</collision>'), 'a size must be greater than zero'),
+    (link('<collision name="c"><geometry><torus/></geometry></collision>'),
+     "geometry 'torus' is unknown"),
+    (link('<visual name="v"><geometry><mesh/></geometry></visual>'), 'a <mesh> without <uri>'),
+    (link(f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact></surface>'
+          '</collision>'), '<kp> is -5; it must not be negative'),
+])
+def test_what_is_broken_is_refused_with_the_place_and_the_fault(body, part):
+    assert part in complaint(body)
+
+
+@pytest.mark.parametrize('text, part', [
+    ('<robot name="r"/>', 'the first element is <robot>'),
+    ('<sdf version="1.6"/>', 'neither a <model> nor a <world> with an <include>'),
+    ('<sdf version="new"><model name="m"/></sdf>', 'version="new" is wrong'),
+    ('<sdf version="1.6"><model name="m">', 'not well-formed XML'),
+])
+def test_a_text_that_is_no_sdf_is_refused(text, part):
+    with pytest.raises(ModelError, match=part):
+        load_sdf(text, 'm', find_model=ModelSearch())
+
+
+def test_a_newer_version_is_read_as_the_newest_known_one(caplog):
+    assert load(link(), version='1.9').links
+    assert 'SDF 1.9 is newer than 1.7' in caplog.text

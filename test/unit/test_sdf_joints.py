@@ -1,0 +1,174 @@
+"""Joints of SDF: whose axis, which limits, and trees out of any graph."""
+
+import math
+
+import pytest
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.pose import Pose, compose
+from rosbots_description.sim.sdf import load_sdf
+from rosbots_description.sim.spec import FIXED, PRISMATIC, REVOLUTE
+
+# b stands a metre along x, turned by a quarter about z: its x axis is the model's y axis.
+LINKS = f'''<link name="a"/><link name="b"><pose>1 0 0 0 0 {math.pi / 2}</pose></link>
+  <link name="c"><pose>2 0 0 0 0 0</pose></link><link name="d"><pose>3 0 0 0 0 0</pose></link>'''
+
+
+def load(joints, version='1.6', links=LINKS):
+    text = f'<sdf version="{version}"><model name="m">{links}{joints}</model></sdf>'
+    return load_sdf(text, 'm', source='m.sdf', find_model=ModelSearch())[0]
+
+
+def joint(parent='a', child='b', kind='revolute', inside='<axis><xyz>1 0 0</xyz></axis>', name=''):
+    return (f'<joint name="{name or parent + child}" type="{kind}"><parent>{parent}</parent>'
+            f'<child>{child}</child>{inside}</joint>')
+
+
+def only(*arguments, version='1.6', **options):
+    return load(joint(*arguments, **options), version).joints[0]
+
+
+def complaint(joints):
+    with pytest.raises(ModelError) as caught:
+        load(joints)
+    assert str(caught.value).startswith('m.sdf, line ')
+    return str(caught.value)
+
+
+def test_a_fixed_joint_stays_a_joint():
+    made = only(kind='fixed', inside='')
+    assert (made.type, made.parent, made.child, made.pose) == (FIXED, 'a', 'b', Pose())
+
+
+def test_a_continuous_joint_is_a_revolute_one_without_limits():
+    made = only(kind='continuous',
+                inside='<axis><limit><lower>0</lower><upper>1</upper></limit></axis>')
+    assert (made.type, made.lower, made.upper) == (REVOLUTE, None, None)
+
+
+def test_an_axis_is_given_in_the_joints_frame():
+    assert only().axis == (1.0, 0.0, 0.0)
+
+
+def test_an_axis_may_be_given_in_the_models_frame():
+    inside = '<axis><xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame></axis>'
+    assert only(inside=inside).axis == pytest.approx((0.0, -1.0, 0.0))
+
+
+def test_before_sdf_1_5_every_axis_is_given_in_the_models_frame():
+    assert only(version='1.4').axis == pytest.approx((0.0, -1.0, 0.0))
+
+
+def test_since_sdf_1_7_an_axis_names_its_frame():
+    inside = '<axis><xyz expressed_in="{}">1 0 0</xyz></axis>'
+    assert only(version='1.7', inside=inside.format('__model__')).axis == pytest.approx((0, -1, 0))
+    assert only(version='1.7', inside=inside.format('b')).axis == pytest.approx((1, 0, 0))
+
+
+def test_an_axis_is_of_length_one():
+    assert only(inside='<axis><xyz>0 3 4</xyz></axis>').axis == pytest.approx((0.0, 0.6, 0.8))
+
+
+def test_the_joints_pose_is_given_in_the_childs_frame():
+    made = only(inside='<pose>0 0 1 0 0 0</pose><axis><xyz>1 0 0</xyz></axis>')
+    assert made.pose == Pose((0.0, 0.0, 1.0))
+
+
+def test_the_joints_pose_may_be_given_in_the_parents_frame():
+    made = only(version='1.7', inside='<pose relative_to="a">0 0 1 0 0 0</pose>')
+    assert made.pose.position == pytest.approx((0.0, 1.0, 1.0))
+
+
+def test_limits_and_dynamics_are_read():
+    made = only(kind='prismatic', inside='''<axis><xyz>0 0 1</xyz><limit><lower>-1</lower>
+      <upper>2</upper><effort>10</effort><velocity>3</velocity></limit>
+      <dynamics><damping>0.5</damping><friction>0.1</friction></dynamics></axis>''')
+    assert made.type == PRISMATIC
+    assert (made.lower, made.upper, made.effort, made.velocity) == (-1.0, 2.0, 10.0, 3.0)
+    assert (made.damping, made.friction) == (0.5, 0.1)
+
+
+@pytest.mark.parametrize('lower, upper', [('-1e16', '1e16'), ('-inf', 'inf'),
+                                          ('-1.79769e+308', '1.79769e+308')])
+def test_endless_limits_are_none(lower, upper):
+    made = only(inside=f'''<axis><xyz>0 0 1</xyz><limit><lower>{lower}</lower>
+      <upper>{upper}</upper><effort>-1</effort><velocity>-1</velocity></limit></axis>''')
+    assert (made.lower, made.upper, made.effort, made.velocity) == (None, None, None, None)
+
+
+def test_limits_the_wrong_way_round_are_switched_and_named(caplog):
+    made = only(inside='<axis><limit><lower>1</lower><upper>-1</upper></limit></axis>')
+    assert (made.lower, made.upper) == (-1.0, 1.0)
+    assert 'the two are switched' in caplog.text
+
+
+@pytest.mark.parametrize('kind', ['ball', 'universal', 'screw', 'revolute2', 'gearbox'])
+def test_a_joint_that_is_not_simulated_is_left_out_and_named(kind, caplog):
+    assert load(joint(kind=kind)).joints == ()
+    assert f"joint 'ab': {kind} joints are not simulated" in caplog.text
+
+
+def test_a_joint_may_hang_on_the_world():
+    made = only('world', 'b', kind='fixed', inside='')
+    assert (made.parent, made.child) == ('world', 'b')
+
+
+def test_the_world_fixed_to_a_link_is_the_link_fixed_to_the_world():
+    made = only('b', 'world', kind='fixed', inside='')
+    assert (made.parent, made.child) == ('world', 'b')
+
+
+def test_several_trees_are_one_model():
+    spec = load(joint('a', 'b') + joint('c', 'd'))
+    assert [(made.parent, made.child) for made in spec.joints] == [('a', 'b'), ('c', 'd')]
+
+
+def test_the_joint_that_closes_a_ring_is_left_out_and_named(caplog):
+    spec = load(joint('a', 'b') + joint('b', 'c') + joint('a', 'c'))
+    assert [made.name for made in spec.joints] == ['ab', 'bc']
+    assert "joint 'ac': it closes a ring of joints" in caplog.text
+
+
+def test_a_second_joint_to_the_world_closes_a_ring(caplog):
+    spec = load(joint('world', 'a') + joint('a', 'b') + joint('world', 'b'))
+    assert [made.name for made in spec.joints] == ['worlda', 'ab']
+    assert 'closes a ring' in caplog.text
+
+
+def test_a_link_below_two_joints_turns_one_of_them_round():
+    spec = load(joint('a', 'b') + joint('c', 'b', inside='''<pose>0 0 1 0 0 0</pose>
+      <axis><xyz>1 0 0</xyz></axis>'''))
+    turned = spec.joints[1]
+    assert [(made.parent, made.child) for made in spec.joints] == [('a', 'b'), ('b', 'c')]
+    # The joint stays where it was, and its position keeps its sign.
+    in_model = compose(spec.link('c').pose, turned.pose)
+    assert in_model.position == pytest.approx((1.0, 0.0, 1.0))
+    assert turned.axis == (-1.0, 0.0, 0.0)
+
+
+def test_what_hangs_on_the_world_in_the_end_hangs_on_it_from_the_start():
+    spec = load(joint('a', 'b') + joint('world', 'b', kind='fixed', inside=''))
+    assert {(made.parent, made.child) for made in spec.joints} == {('world', 'b'), ('b', 'a')}
+
+
+@pytest.mark.parametrize('text, part', [
+    (joint(kind='hinge'), "type 'hinge' is unknown"),
+    (joint('a', 'bb'), "<child> names 'bb'"),
+    (joint('', 'b', name='j'), 'it has no <parent>'),
+    (joint('a', 'a'), "connects 'a' with itself"),
+    (joint('a', 'world'), 'the world cannot be the child'),
+    (joint() + joint(), "there are two joints 'ab'"),
+    (joint(inside='<axis><xyz>0 0 0</xyz></axis>'), '<xyz> has no direction'),
+    (joint(inside='<axis><dynamics><damping>-1</damping></dynamics></axis>'),
+     '<damping> is -1; it must not be negative'),
+])
+def test_a_broken_joint_is_refused(text, part):
+    assert part in complaint(text)
+
+
+def test_more_joints_than_the_engine_can_hold_are_refused():
+    links = ''.join(f'<link name="l{i}"/>' for i in range(130))
+    joints = ''.join(joint(f'l{i}', f'l{i + 1}') for i in range(129))
+    with pytest.raises(ModelError, match='more than 127 joints'):
+        load(joints, links=links)

@@ -1,0 +1,230 @@
+"""World files become worlds as plain values."""
+
+import logging
+import math
+
+import pytest
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.physics import PhysicsSettings
+from rosbots_description.sim.pose import Pose, compose, from_rpy
+from rosbots_description.sim.sdf_state import joint_positions
+from rosbots_description.sim.spec import PRISMATIC, REVOLUTE, JointSpec, LinkSpec, ModelSpec
+from rosbots_description.sim.world_file import load_world, open_world
+from rosbots_description.sim.world_spec import ModelState, SceneSpec
+from rosbots_description.sim.worlds import GROUND_PLANE
+
+SUN = '<include><uri>model://sun</uri></include>'
+GROUND = '<include><uri>model://ground_plane</uri></include>'
+BOX = '<model name="{}"><pose>{}</pose><link name="link"/></model>'
+
+
+def load(body, version='1.6', directories=()):
+    text = f'<sdf version="{version}"><world name="w">{body}</world></sdf>'
+    return load_world(text, 'w.world', find_model=ModelSearch(directories))
+
+
+def physics(body):
+    return load(f'<physics type="ode">{body}</physics>').physics
+
+
+def complaint(body):
+    with pytest.raises(ModelError) as caught:
+        load(body)
+    assert str(caught.value).startswith('w.world, line ')
+    return str(caught.value)
+
+
+def test_an_empty_world_has_a_ground_and_a_sun_of_its_own():
+    world = load(GROUND + SUN)
+    assert world.models == ((GROUND_PLANE, Pose()),)
+    sun = world.lights[0]
+    assert (sun.name, sun.type, sun.cast_shadows) == ('sun', 'directional', True)
+    assert sun.direction[2] < 0.0
+    assert (world.physics, world.scene, world.faults) == (PhysicsSettings(), SceneSpec(), ())
+
+
+def test_models_stand_in_the_order_of_the_file():
+    world = load(BOX.format('b', '1 0 0 0 0 0') + GROUND + BOX.format('a', '0 2 0 0 0 0'))
+    assert [model.name for model, _ in world.models] == ['b', 'ground_plane', 'a']
+    assert [pose.position for _, pose in world.models] == [(1, 0, 0), (0, 0, 0), (0, 2, 0)]
+
+
+def test_an_include_overrides_name_and_pose():
+    include = ('<include><uri>model://ground_plane</uri><name>floor</name>'
+               '<pose>0 0 -1 0 0 0</pose></include>')
+    model, pose = load(include).models[0]
+    assert (model.name, pose) == ('floor', Pose((0.0, 0.0, -1.0)))
+
+
+def test_a_light_can_be_included_under_a_name_and_at_a_place():
+    include = '<include><uri>model://sun</uri><name>lamp</name><pose>0 0 3 0 0 0</pose></include>'
+    light = load(include).lights[0]
+    assert (light.name, light.pose.position) == ('lamp', (0.0, 0.0, 3.0))
+
+
+def test_models_may_be_posed_in_frames_of_the_world():
+    world = load(f'''<frame name="corner"><pose>5 0 0 0 0 {math.pi / 2}</pose></frame>
+      <model name="m"><pose relative_to="corner">1 0 0 0 0 0</pose><link name="a"/></model>
+      <model name="n"><pose relative_to="m">1 0 0 0 0 0</pose><link name="a"/></model>''', '1.7')
+    assert world.models[0][1].position == pytest.approx((5.0, 1.0, 0.0))
+    assert world.models[1][1].position == pytest.approx((5.0, 2.0, 0.0))
+
+
+def test_two_models_of_one_name_get_different_ones(caplog):
+    world = load(BOX.format('m', '0 0 0 0 0 0') * 3)
+    assert [model.name for model, _ in world.models] == ['m', 'm_0', 'm_1']
+    assert "this one is called 'm_0'" in caplog.text
+
+
+def test_a_model_that_cannot_be_simulated_is_left_out_with_an_error(caplog):
+    broken = '<model name="bad"><link name="a"><inertial><mass>0</mass></inertial></link></model>'
+    world = load(broken + BOX.format('good', '0 0 0 0 0 0') + '<include><uri>model://no</uri></include>')
+    assert [model.name for model, _ in world.models] == ['good']
+    assert len(world.faults) == 2
+    assert 'mass 0 kg is wrong' in world.faults[0]
+    assert "'model://no' is not to be found" in world.faults[1]
+    errors = [record.getMessage() for record in caplog.records if record.levelno == logging.ERROR]
+    assert errors == [f'{fault}; the world stands without this model' for fault in world.faults]
+
+
+def test_physics_is_read():
+    assert physics('''<max_step_size>0.002</max_step_size><real_time_factor>1</real_time_factor>
+      <real_time_update_rate>0</real_time_update_rate><max_contacts>30</max_contacts>
+      <gravity>0 0 -1.6</gravity><ode><solver><type>quick</type><iters>100</iters>
+      <precon_iters>2</precon_iters><sor>1.1</sor></solver><constraints><cfm>0.1</cfm><erp>0.3</erp>
+      <contact_max_correcting_vel>50</contact_max_correcting_vel><contact_surface_layer>0.002
+      </contact_surface_layer></constraints></ode>''') == PhysicsSettings(
+        step_size=0.002, max_update_rate=0.0, gravity=(0.0, 0.0, -1.6), sor_pgs_precon_iters=2,
+        sor_pgs_iters=100, sor_pgs_w=1.1, cfm=0.1, erp=0.3, contact_surface_layer=0.002,
+        contact_max_correcting_vel=50.0, max_contacts=30,
+    )
+
+
+def test_physics_of_sdf_1_3_is_understood():
+    made = physics('<update_rate>500</update_rate><ode><solver><dt>0.005</dt></solver></ode>')
+    assert (made.step_size, made.max_update_rate) == (0.005, 500.0)
+
+
+def test_gravity_of_the_world_counts_before_that_of_its_physics():
+    world = load('<gravity>0 0 -3.7</gravity><physics><gravity>0 0 -1</gravity></physics>')
+    assert world.physics.gravity == (0.0, 0.0, -3.7)
+
+
+def test_the_default_physics_is_taken_of_several():
+    slow = '<physics name="a"><max_step_size>0.01</max_step_size></physics>'
+    fast = '<physics name="b" default="1"><max_step_size>0.02</max_step_size></physics>'
+    assert load(slow + fast).physics.step_size == 0.02
+    assert load(slow + fast.replace(' default="1"', '')).physics.step_size == 0.01
+
+
+def test_another_engine_is_named(caplog):
+    load('<physics type="bullet"/>')
+    assert "physics type 'bullet' is not here" in caplog.text
+
+
+def test_the_scene_is_kept():
+    scene = load('''<scene><ambient>0.1 0.2 0.3 1</ambient><background>0 0 1 1</background>
+      <shadows>0</shadows></scene>''').scene
+    assert scene == SceneSpec((0.1, 0.2, 0.3, 1.0), (0.0, 0.0, 1.0, 1.0), False)
+
+
+def test_lights_of_the_world_are_kept():
+    lights = load('<light type="point" name="a"><pose>1 2 3 0 0 0</pose></light>'
+                  '<light type="directional" name="b"/>').lights
+    assert [(light.name, light.type, light.pose.position) for light in lights] == [
+        ('a', 'point', (1.0, 2.0, 3.0)), ('b', 'directional', (0.0, 0.0, 0.0))
+    ]
+
+
+def test_plugins_of_the_world_are_kept():
+    plugin = load('<plugin name="p" filename="lib.so"><a>1</a></plugin>').plugins[0]
+    assert (plugin.name, plugin.filename, plugin.element.child('a').text) == ('p', 'lib.so', '1')
+
+
+def test_a_model_without_name_is_left_out():
+    assert load('<model><link name="a"/></model>').faults == (
+        'w.world, line 1: a <model> without name; add name="..."',
+    )
+
+
+def test_what_is_not_simulated_is_named_once_by_path_and_line(caplog):
+    load('\n<actor name="walker"><pose>0 0 0 0 0 0</pose></actor>\n<population name="p"><a>1</a>'
+         '</population><wind><linear_velocity>0 0 0</linear_velocity></wind><gui><a>1</a></gui>')
+    assert [record.getMessage() for record in caplog.records] == [
+        'w.world: not simulated: world/actor (line 2), world/population (line 3)'
+    ]
+
+
+def test_a_saved_state_is_kept_apart_from_the_poses_that_models_reset_to():
+    world = load(BOX.format('m', '0 0 0 0 0 0') + '''<state world_name="w">
+      <sim_time>12 500000000</sim_time><real_time>3 0</real_time><iterations>7</iterations>
+      <model name="m"><pose>1 0 0 0 0 0</pose><scale>1 1 1</scale>
+        <link name="link"><pose>1 0 0 0 0 0</pose><velocity>9 0 0 0 0 0</velocity></link>
+        <model name="in"><link name="l"><pose>2 0 0 0 0 0</pose></link></model></model></state>
+      <state world_name="w"><sim_time>99 0</sim_time></state>''')
+    assert world.time == 12.5
+    assert world.models[0][1] == Pose()
+    state = world.states[0]
+    assert (state.name, state.pose.position) == ('m', (1.0, 0.0, 0.0))
+    assert {name: pose.position for name, pose in state.links.items()} == {
+        'link': (1.0, 0.0, 0.0), 'in::l': (2.0, 0.0, 0.0)
+    }
+
+
+@pytest.mark.parametrize('kind, axis, moved, position', [
+    (REVOLUTE, (0.0, 0.0, 1.0), Pose(orientation=from_rpy(0.0, 0.0, 0.7)), 0.7),
+    (REVOLUTE, (0.0, -1.0, 0.0), Pose(orientation=from_rpy(0.0, 0.4, 0.0)), -0.4),
+    (PRISMATIC, (1.0, 0.0, 0.0), Pose((0.3, 0.0, 0.0)), 0.3),
+])
+def test_joint_positions_follow_from_where_the_links_stood(kind, axis, moved, position):
+    frame = Pose((0.0, 0.5, 0.0), from_rpy(0.1, 0.2, 0.3))  # of the joint in the child
+    child = Pose((1.0, 2.0, 3.0), from_rpy(0.3, 0.2, 0.1))  # at position zero
+    spec = ModelSpec('m', (LinkSpec('a'), LinkSpec('b', child)),
+                     (JointSpec('j', kind, 'a', 'b', frame, axis),))
+    world = Pose((5.0, 5.0, 0.0), from_rpy(0.0, 0.0, 1.0))
+    # The child moves about the joint's frame, not about its own origin.
+    joint = compose(compose(child, frame), moved)
+    back = Pose((0.0, -0.5, 0.0))
+    turned = compose(joint, Pose(orientation=_inverse(frame.orientation)))
+    placed = compose(turned, back)
+    state = ModelState('m', world, {'a': world, 'b': compose(world, placed)})
+    assert joint_positions(spec, state) == {'j': pytest.approx(position)}
+
+
+def _inverse(q):
+    return (-q[0], -q[1], -q[2], q[3])
+
+
+@pytest.mark.parametrize('body, part', [
+    ('<physics><max_step_size>0</max_step_size></physics>', 'greater than zero'),
+    ('<physics><ode><solver><iters>1e20</iters></solver></ode></physics>', 'at most 100000'),
+    ('<physics><real_time_update_rate>-5</real_time_update_rate></physics>', 'or more [Hz]'),
+    ('<physics><max_step_size>fast</max_step_size></physics>', 'it takes one finite number'),
+    ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
+    ('<light type="laser" name="l"/>', "light type 'laser' is unknown"),
+    ('<light type="point"/>', 'a <light> without name'),
+])
+def test_what_is_broken_in_the_world_itself_is_refused(body, part):
+    assert part in complaint(body)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(ModelError, match=f"world file '{tmp_path}/w.world' cannot be read"):
+        open_world(tmp_path / 'w.world', find_model=ModelSearch())
+
+
+def test_addresses_may_be_relative_to_the_world_file(tmp_path):
+    (tmp_path / 'floor.sdf').write_text(
+        '<sdf version="1.6"><model name="m"><link name="a"/></model></sdf>', encoding='utf-8')
+    (tmp_path / 'w.world').write_text(
+        '<sdf version="1.6"><world name="w"><include><uri>floor.sdf</uri></include></world></sdf>',
+        encoding='utf-8')
+    world = open_world(tmp_path / 'w.world', find_model=ModelSearch())
+    assert [model.name for model, _ in world.models] == ['m']
+
+
+def test_a_text_without_world_is_no_world_file():
+    with pytest.raises(ModelError, match='it has no <world>'):
+        load_world('<sdf version="1.6"/>', 'w.world', find_model=ModelSearch())
