@@ -14,8 +14,9 @@ from collections.abc import Callable
 
 from article import SETTLED, robot_spec, robot_urdf
 
-from rosbots_description.sim.engine import pybullet, silent
+from rosbots_description.sim.engine import pybullet
 from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.silence import silent
 from rosbots_description.sim.world import World
 from rosbots_description.sim.worlds import add_empty_world
 

@@ -5,10 +5,7 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
-import contextlib
 import os
-import sys
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from .bullet_description import (
@@ -23,6 +20,7 @@ from .bullet_description import (
 from .inertia import principal_axes
 from .physics import PhysicsSettings
 from .pose import IDENTITY, Pose, Twist, Vector, add, compose, cross, inverse, rotate, subtract
+from .silence import silent
 from .spec import FIXED, Collision, Cylinder, Inertial, JointSpec, LinkSpec, ModelSpec
 
 # PyBullet solves in joint coordinates and comes as near with fewer passes than ODE. 20 for ODE's 50
@@ -34,24 +32,6 @@ _SCRUB = 1 / 8
 _MASSLESS = Inertial(0.0)
 _ANY_SPEED = 1e9  # [rad/s or m/s] PyBullet would stop every joint at 100
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
-
-
-@contextlib.contextmanager
-def silent() -> Iterator[None]:
-    """Send what C code prints to nowhere; Python's own streams are flushed first."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    saved = [os.dup(1), os.dup(2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 1)
-        os.dup2(nowhere, 2)
-        yield
-    finally:
-        os.dup2(saved[0], 1)
-        os.dup2(saved[1], 2)
-        for descriptor in (nowhere, *saved):
-            os.close(descriptor)
 
 
 with silent():  # it announces its build time
