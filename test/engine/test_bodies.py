@@ -171,6 +171,32 @@ def test_collisions_of_one_link_can_have_different_friction():
         assert model.twist.linear[0] == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.parametrize('depth', [0.25, 0.1, 0.01])
+def test_a_box_spawned_inside_the_ground_comes_out_without_a_jump(depth):
+    with empty_world() as world:
+        box = world.spawn(
+            urdf_spec(box_urdf('0.5 0.5 0.5', 1.0)), 'box', Pose((0, 0, 0.25 - depth))
+        )
+        highest = 0.0
+        for _ in range(100):
+            world.run(20)
+            highest = max(highest, box.pose.position[2])
+        assert highest < 0.25 + 0.15
+        assert box.pose.position[2] == pytest.approx(0.25, abs=0.002)
+
+
+def test_two_boxes_in_one_place_part_gently():
+    spec = urdf_spec(box_urdf('0.5 0.5 0.5', 1.0))
+    with empty_world() as world:
+        boxes = [world.spawn(spec, f'box{i}', Pose((0.1 * i, 0.0, 0.25))) for i in range(2)]
+        fastest = 0.0
+        for _ in range(150):
+            world.run(20)
+            fastest = max(fastest, *(abs(x) for box in boxes for x in box.twist.linear))
+        assert fastest < 5.0
+        assert math.dist(boxes[0].pose.position, boxes[1].pose.position) > 0.49
+
+
 def test_five_boxes_stand_on_each_other():
     spec = urdf_spec(box_urdf('0.5 0.5 0.5', 1.0))
     with empty_world() as world:
