@@ -67,7 +67,8 @@ def main(argv: list[str] | None = None) -> int:
 def _run(folder: Path) -> None:
     """Do all steps in order.
 
-    :raises DemoError, OSError: one of them failed.
+    Raises:
+        DemoError, OSError: one of them failed.
     """
     folder.mkdir(parents=True, exist_ok=True)
     environment = _private_environment(folder)

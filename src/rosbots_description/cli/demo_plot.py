@@ -21,7 +21,8 @@ _ARROW = 0.35  # [m] length of the arrow that shows a heading
 def save_picture(path: Path, pixels: np.ndarray) -> None:
     """Write RGB bytes (height, width, 3) as PNG.
 
-    :raises OSError: the file cannot be written.
+    Raises:
+        OSError: the file cannot be written.
     """
     pyplot.imsave(path, pixels)
 
@@ -33,9 +34,11 @@ def plot_path(
 ) -> None:
     """Write a top view of the drive as PNG.
 
-    :param drive: each segment with the ground truth of its time, world frame.
-    :param odometry: the whole drive as odometry has it.
-    :raises OSError: the file cannot be written.
+    Args:
+        drive: each segment with the ground truth of its time, world frame.
+        odometry: the whole drive as odometry has it.
+    Raises:
+        OSError: the file cannot be written.
     """
     figure, axes = pyplot.subplots(figsize=(8, 6), layout='constrained')
     for segment, samples in drive:

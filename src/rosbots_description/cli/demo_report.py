@@ -64,7 +64,8 @@ class Row:
 def steady_motion(samples: Sequence[PlanarSample]) -> Motion:
     """Return the mean velocity once SETTLING has passed since the first sample.
 
-    :raises ValueError: fewer than two samples are left.
+    Raises:
+        ValueError: fewer than two samples are left.
     """
     steady = [sample for sample in samples if sample.stamp >= samples[0].stamp + SETTLING]
     if len(steady) < 2 or steady[-1].stamp <= steady[0].stamp:

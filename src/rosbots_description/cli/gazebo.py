@@ -21,7 +21,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     The server gets the whole command line, the client only --verbose. Without a display the server
     runs alone.
 
-    :return: the server's exit code.
+    Returns:
+        The server's exit code.
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     folder = Path(sys.argv[0]).absolute().parent

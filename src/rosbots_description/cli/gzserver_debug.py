@@ -12,7 +12,8 @@ from rosbots_description.cli import gzserver
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run gzserver; show the stacks of all threads on a crash and on SIGUSR1.
 
-    :return: the server's exit code.
+    Returns:
+        The server's exit code.
     """
     faulthandler.enable()
     faulthandler.register(signal.SIGUSR1)

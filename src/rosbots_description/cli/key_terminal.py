@@ -32,11 +32,14 @@ def single_keys(fd: int) -> Iterator[None]:
 def read_key(fd: int, timeout: float, go_on: Callable[[], bool]) -> str | None:
     """Return the next key.
 
-    :param fd: file descriptor of a terminal in single_keys mode.
-    :param timeout: longest wait for a key [s, wall].
-    :param go_on: asked every now and then; false ends the wait.
-    :return: one character; None when no key came.
-    :raises EOFError: the terminal is gone.
+    Args:
+        fd: file descriptor of a terminal in single_keys mode.
+        timeout: longest wait for a key [s, wall].
+        go_on: asked every now and then; false ends the wait.
+    Returns:
+        One character; None when no key came.
+    Raises:
+        EOFError: the terminal is gone.
     """
     end = time.monotonic() + timeout
     while go_on():

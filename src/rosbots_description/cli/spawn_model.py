@@ -62,8 +62,10 @@ def _parser() -> argparse.ArgumentParser:
 def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     """Read the flags (without the program's name); ROS remappings are skipped.
 
-    :return: the flags by name; positions in m, angles in rad.
-    :raises SystemExit: code 2 with usage on stderr for wrong flags, code 0 for -h.
+    Returns:
+        The flags by name; positions in m, angles in rad.
+    Raises:
+        SystemExit: code 2 with usage on stderr for wrong flags, code 0 for -h.
     """
     def plain(text):
         # argparse takes -1e-3 for a flag, but knows -0.001 for a number.
@@ -75,7 +77,8 @@ def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Spawn the model that the command line describes.
 
-    :return: exit code: 0 done, 1 failed (the reason is logged), 2 wrong usage (by SystemExit),
+    Returns:
+        Exit code: 0 done, 1 failed (the reason is logged), 2 wrong usage (by SystemExit),
         130 interrupted.
     """
     arguments = sys.argv[1:] if arguments is None else arguments

@@ -43,7 +43,8 @@ class Settings:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Read keys and publish velocity commands until Ctrl-C.
 
-    :return: exit code: 0 at the end, 1 when there is no terminal or a parameter is wrong.
+    Returns:
+        Exit code: 0 at the end, 1 when there is no terminal or a parameter is wrong.
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     if not sys.stdin.isatty():

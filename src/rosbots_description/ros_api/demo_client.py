@@ -26,10 +26,12 @@ def wait_until(condition: Callable[[], bool], timeout: float, what: str,
                alive: Callable[[], bool] = lambda: True) -> None:
     """Wait for a condition.
 
-    :param timeout: longest time to wait [s, wall].
-    :param what: what is waited for, completes the sentence "gave up waiting for …".
-    :param alive: tells whether waiting still makes sense.
-    :raises TimeoutError: it did not come true in time, or waiting makes no sense any more.
+    Args:
+        timeout: longest time to wait [s, wall].
+        what: what is waited for, completes the sentence "gave up waiting for …".
+        alive: tells whether waiting still makes sense.
+    Raises:
+        TimeoutError: it did not come true in time, or waiting makes no sense any more.
     """
     deadline = time.monotonic() + timeout
     while not condition():
@@ -54,9 +56,11 @@ class DemoClient:
     def __init__(self, model: str, timeout: float, alive: Callable[[], bool]) -> None:
         """Start the node once there are a master and a simulator.
 
-        :param timeout: longest time to wait for both [s, wall].
-        :param alive: tells whether the simulator's process still runs.
-        :raises TimeoutError: they did not come.
+        Args:
+            timeout: longest time to wait for both [s, wall].
+            alive: tells whether the simulator's process still runs.
+        Raises:
+            TimeoutError: they did not come.
         """
         self._model = model
         wait_until(rosgraph.is_master_online, timeout, 'the ROS master', alive)
@@ -88,7 +92,8 @@ class DemoClient:
     def delete(self) -> str:
         """Delete the model and return the simulator's words.
 
-        :raises ConnectionError: the simulator refused or did not answer.
+        Raises:
+            ConnectionError: the simulator refused or did not answer.
         """
         try:
             response = self._delete(self._model)
@@ -101,7 +106,8 @@ class DemoClient:
     def wait_for_plugin(self) -> None:
         """Wait until the robot listens to commands and reports odometry.
 
-        :raises TimeoutError: it does not.
+        Raises:
+            TimeoutError: it does not.
         """
         self._odometry.clear()
         wait_until(lambda: self._command.get_num_connections() > 0 and bool(self._odometry),
@@ -111,12 +117,15 @@ class DemoClient:
             -> tuple[list[PlanarSample], list[PlanarSample]]:
         """Command a velocity and watch.
 
-        :param speed: along the robot's x [m/s].
-        :param turn_rate: counter-clockwise [rad/s].
-        :param duration: how long [s, simulated].
-        :return: the samples of ground truth and of odometry, world frame, oldest first.
-        :raises TimeoutError: simulated time stands still or crawls.
-        :raises ConnectionError: the model or the simulator has gone.
+        Args:
+            speed: along the robot's x [m/s].
+            turn_rate: counter-clockwise [rad/s].
+            duration: how long [s, simulated].
+        Returns:
+            The samples of ground truth and of odometry, world frame, oldest first.
+        Raises:
+            TimeoutError: simulated time stands still or crawls.
+            ConnectionError: the model or the simulator has gone.
         """
         command = Twist()
         command.linear.x, command.angular.z = speed, turn_rate
@@ -137,7 +146,8 @@ class DemoClient:
     def look_at_robot(self) -> np.ndarray:
         """Return the robot as the simulator's own camera sees it: (height, width, 3) RGB bytes.
 
-        :raises TimeoutError: no picture came.
+        Raises:
+            TimeoutError: no picture came.
         """
         robot = self._state().pose.position
         for name, point in (('eye', EYE), ('target', TARGET)):

@@ -25,10 +25,12 @@ def interruptibly(function: Callable, patience: float = math.inf):
     rospy sits in a socket while a service works and does not hear Ctrl-C there. So the function
     runs in a thread of its own that may be left behind.
 
-    :param patience: longest time to wait [s, wall].
-    :raises rospy.ROSInterruptException: the node was shut down first.
-    :raises rospy.ROSException: patience ran out.
-    :raises Exception: whatever the function raises.
+    Args:
+        patience: longest time to wait [s, wall].
+    Raises:
+        rospy.ROSInterruptException: the node was shut down first.
+        rospy.ROSException: patience ran out.
+        Exception: whatever the function raises.
     """
     outcome = {}
     done = threading.Event()
@@ -55,8 +57,10 @@ def interruptibly(function: Callable, patience: float = math.inf):
 def _call(service: str, service_class, **request):
     """Wait without limit for the service and call it.
 
-    :return: the response, or None after a call error (which is logged).
-    :raises rospy.ROSInterruptException: the node was shut down first.
+    Returns:
+        The response, or None after a call error (which is logged).
+    Raises:
+        rospy.ROSInterruptException: the node was shut down first.
     """
     rospy.loginfo('Waiting for service %s', service)
     interruptibly(lambda: rospy.wait_for_service(service))
@@ -86,12 +90,15 @@ def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str
                            gazebo_namespace: str) -> bool | None:
     """Put a model given as SDF into the world; wait without limit for the simulator.
 
-    :param robot_namespace: namespace for those of the model's plugins that name none themselves.
-    :param initial_pose: pose [m, quaternion x y z w] in reference_frame.
-    :param reference_frame: name of an entity; empty, 'world' or 'map' for the world frame.
-    :param gazebo_namespace: namespace of the simulator's services, usually '/gazebo'.
-    :return: whether it worked, None after a call error (both are logged).
-    :raises rospy.ROSInterruptException: the node was shut down first.
+    Args:
+        robot_namespace: namespace for those of the model's plugins that name none themselves.
+        initial_pose: pose [m, quaternion x y z w] in reference_frame.
+        reference_frame: name of an entity; empty, 'world' or 'map' for the world frame.
+        gazebo_namespace: namespace of the simulator's services, usually '/gazebo'.
+    Returns:
+        Whether it worked, None after a call error (both are logged).
+    Raises:
+        rospy.ROSInterruptException: the node was shut down first.
     """
     return _spawn(gazebo_namespace + '/spawn_sdf_model', model_name=model_name,
                   model_xml=model_xml, robot_namespace=robot_namespace,
@@ -112,9 +119,12 @@ def set_model_configuration_client(model_name: str, model_param_name: str,
                                    gazebo_namespace: str) -> bool | None:
     """Set joint positions [rad or m] of a model at once; wait without limit for the simulator.
 
-    :param model_param_name: passed on; simulators do not use it.
-    :return: whether it worked, None after a call error (both are logged).
-    :raises rospy.ROSInterruptException: the node was shut down first.
+    Args:
+        model_param_name: passed on; simulators do not use it.
+    Returns:
+        Whether it worked, None after a call error (both are logged).
+    Raises:
+        rospy.ROSInterruptException: the node was shut down first.
     """
     response = _call(gazebo_namespace + '/set_model_configuration', SetModelConfiguration,
                      model_name=model_name, urdf_param_name=model_param_name,

@@ -17,8 +17,9 @@ class MissingFileError(SourceError):
 def read_file(name: str) -> bytes:
     """Return the contents of a file.
 
-    :raises MissingFileError: there is no such file.
-    :raises SourceError: it is unreadable or empty.
+    Raises:
+        MissingFileError: there is no such file.
+        SourceError: it is unreadable or empty.
     """
     path = Path(name)
     if not path.exists():
@@ -37,8 +38,10 @@ def read_file(name: str) -> bytes:
 def canonical_xml(text: bytes | str, package_to_model: bool = False) -> str:
     """Return the XML as ASCII without declaration and comments.
 
-    :param package_to_model: turn ``package://`` of mesh file names into ``model://``.
-    :raises SourceError: the text is not well-formed XML.
+    Args:
+        package_to_model: turn ``package://`` of mesh file names into ``model://``.
+    Raises:
+        SourceError: the text is not well-formed XML.
     """
     try:
         root = ElementTree.fromstring(text)

@@ -39,9 +39,11 @@ _LAST_WORD = 1.5  # [s] wall time for the deletion at the end; Ctrl-C has to end
 def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
     """Spawn a model as spawn_model's flags say.
 
-    :param flags: see cli.spawn_model; positions in m, angles in rad.
-    :param arguments: the command line without the program's name, for ROS remappings.
-    :return: exit code; every failure has been logged.
+    Args:
+        flags: see cli.spawn_model; positions in m, angles in rad.
+        arguments: the command line without the program's name, for ROS remappings.
+    Returns:
+        Exit code; every failure has been logged.
 
     Subscribes (with -wait):
         <gazebo_namespace>/model_states (gazebo_msgs/ModelStates)

@@ -21,9 +21,10 @@ class VelocityPublisher:
     def __init__(self, stamped: bool = False, frame_id: str = '', repeat_rate: float = 0.0):
         """Advertise the topic; the node must have been started.
 
-        :param frame_id: frame of stamped commands.
-        :param repeat_rate: [Hz, wall]; 0 means no repetition. Repetition starts at once, with
-            zeros, so that the robot hears from its driver from the beginning.
+        Args:
+            frame_id: frame of stamped commands.
+            repeat_rate: [Hz, wall]; 0 means no repetition. Repetition starts at once, with
+                zeros, so that the robot hears from its driver from the beginning.
         """
         self._stamped = stamped
         self._frame_id = frame_id

@@ -29,7 +29,7 @@ _ITERATIONS = 0.4
 # A wheel touches along a line and scrubs when it turns on the spot. Its torque per normal force is
 # this share of the wheel's width: 1/4 if the line is pressed evenly, 0 if only one edge touches.
 _SCRUB = 1 / 8
-# Rate at which bodies that overlap are pushed apart [1/s]. PyBullet's own 200 (at 1 ms) shoots a box
+# Rate at which overlapping bodies are pushed apart [1/s]. PyBullet's own 200 (at 1 ms) shoots a box
 # that is spawned half sunk 20 m high, this 0.1 m; Gazebo limits the speed, which PyBullet cannot.
 _PUSH_OUT = 10.0
 _MASSLESS = Inertial(0.0)

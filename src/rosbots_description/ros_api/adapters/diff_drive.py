@@ -6,11 +6,8 @@ Publishes:
     <ns>/<odometryTopic> (nav_msgs/Odometry), unless publishTf is false.
     /tf (tf2_msgs/TFMessage): odometry frame to base frame, and the wheels if wanted.
     <ns>/joint_states (sensor_msgs/JointState): right, left, if publishWheelJointState.
-
-Parameters
-----------
+Parameters:
     tf_prefix, searched from the plugin's namespace upward.
-
 """
 
 import logging

@@ -1,0 +1,107 @@
+"""doc/gazebo_compatibility.md has exactly one row for each name that the code registers."""
+
+from collections import Counter
+from contextlib import closing
+from types import SimpleNamespace
+from xml.etree import ElementTree
+
+import pytest
+import rospy
+from support import ROOT
+
+from rosbots_description.ros_api import node
+from rosbots_description.ros_api.loop import Loop
+from rosbots_description.ros_api.packages import find_model, find_package
+from rosbots_description.ros_api.server import Server
+from rosbots_description.ros_api.world_loading import read_world
+from rosbots_description.sim import plugins  # noqa: F401  registers
+from rosbots_description.sim.plugins.registry import known_filenames
+from rosbots_description.sim.world import World
+
+TABLE = ROOT / 'doc' / 'gazebo_compatibility.md'
+EMPTY_WORLD = ROOT / 'companions' / 'gazebo_ros' / 'launch' / 'empty_world.launch'
+OFFERED = ('same', 'better', 'ours')
+MISSING = 'not supported'
+OF_EVERY_NODE = {'/gazebo/get_loggers', '/gazebo/set_logger_level'}  # rospy's own services
+
+
+def rows(section):
+    """Return (name, state, remark) of each row of the table below a heading."""
+    text = TABLE.read_text(encoding='utf-8').split(f'\n## {section}\n')[1].split('\n## ')[0]
+    cells = [line.strip('|').split('|') for line in text.splitlines() if line.startswith('| `')]
+    return [(name.strip(' `'), state.strip(), how.strip()) for name, state, how in cells]
+
+
+def table(section):
+    """Return the state of each name in a section."""
+    return {name: state for name, state, _ in rows(section)}
+
+
+def offered(section):
+    """Return the names that a section says are there."""
+    return {name for name, state in table(section).items() if state in OFFERED}
+
+
+def global_name(name):
+    return name.replace('~', '/gazebo/') if name.startswith('~') else name
+
+
+@pytest.fixture(scope='module')
+def registered():
+    """Return the names of services, topics and parameters that the node uses in two steps."""
+    names = {kind: set() for kind in ('services', 'topics', 'parameters')}
+
+    def endpoint(kind):
+        def make(name, *_arguments, **_options):
+            names[kind].add(global_name(name))
+            # everybody listens, so that also what is only done for listeners is done
+            return SimpleNamespace(publish=lambda _message: None, get_num_connections=lambda: 1)
+
+        return make
+
+    def parameter(name, default=None):
+        names['parameters'].add(global_name(name))
+        return True if default is False else default  # what is off by default is looked at, too
+
+    world = World()
+    with pytest.MonkeyPatch.context() as patch, closing(world):
+        for name, kind in (
+            ('Service', 'services'), ('Publisher', 'topics'), ('Subscriber', 'topics')
+        ):
+            patch.setattr(rospy, name, endpoint(kind))
+        for name in ('get_param', 'has_param', 'set_param'):
+            patch.setattr(rospy, name, parameter)
+        loop = Loop(world)
+        registrar = SimpleNamespace(post=loop.post)
+        server = Server(world, loop, registrar, find_package, find_model)
+        node._connect(server, read_world('worlds/empty.world'))
+        loop.run(steps=2)
+    return names
+
+
+@pytest.mark.parametrize(
+    'section', ['Services', 'Topics', 'Parameters', 'Arguments of empty_world.launch', 'Plugins']
+)
+def test_each_name_has_one_row_with_a_known_state(section):
+    counts = Counter(name for name, _, _ in rows(section))
+    assert [name for name, count in counts.items() if count > 1] == []
+    for name, state, how in rows(section):
+        assert state in (*OFFERED, MISSING), name
+        assert how or state == 'same', f'{name}: say how, or why not'
+
+
+@pytest.mark.parametrize('section', ['Services', 'Topics', 'Parameters'])
+def test_the_node_offers_what_its_table_says_and_nothing_else(section, registered):
+    found = registered[section.lower()]
+    if section == 'Services':
+        found = found | OF_EVERY_NODE
+    assert found == offered(section)
+
+
+def test_every_plugin_has_a_row_that_says_it_is_there():
+    assert set(known_filenames()) == offered('Plugins')
+
+
+def test_every_argument_of_the_launch_file_has_a_row():
+    arguments = {arg.get('name') for arg in ElementTree.parse(EMPTY_WORLD).getroot().iter('arg')}
+    assert arguments == set(table('Arguments of empty_world.launch'))
