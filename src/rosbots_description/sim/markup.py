@@ -72,7 +72,7 @@ def _decode(text: str | bytes, source: str) -> bytes:
             ) from error
     text = text.removeprefix('\ufeff')
     if not text.strip():
-        raise ModelError(f'{source}: the text is empty; a <robot> element was expected')
+        raise ModelError(f'{source}: the text is empty; a <robot> or <sdf> element was expected')
     # The text is decoded already: whatever encoding the declaration names would only confuse.
     declaration = _DECLARATION.match(text)
     if declaration:
