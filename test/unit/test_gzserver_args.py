@@ -20,9 +20,15 @@ def test_the_line_of_the_launch_file_leaves_nothing_to_say():
     assert said == ()
 
 
-def test_plugins_port_seed_and_lockstep_are_accepted():
-    given, said = _read('-s liba.so -s libb.so -p 11346 --seed 3 --lockstep --iters 100')
+def test_plugins_port_and_lockstep_are_accepted():
+    given, said = _read('-s liba.so -s libb.so -p 11346 --lockstep --iters 100')
     assert (given.iters, said) == (100, ())
+
+
+def test_a_seed_is_accepted_and_said_to_change_nothing():
+    given, ((level, text),) = _read('--seed 3')
+    assert (given.seed, level) == (3, logging.INFO)
+    assert '--seed 3' in text
 
 
 def test_another_engine_is_an_information():
@@ -44,9 +50,10 @@ def test_remappings_are_told_from_options():
         ['-u', 'a.world'], ['__name:=gazebo', 'a:=b'])
 
 
-def test_another_world_is_refused_by_name(capsys):
+def test_a_world_that_is_not_there_ends_with_one_sentence(capsys):
     assert main(['worlds/mud.world']) == 1
-    assert "'worlds/mud.world'" in capsys.readouterr().err
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "'worlds/mud.world'" in line
 
 
 def test_a_missing_engine_is_one_sentence():

@@ -6,7 +6,9 @@ import signal
 import sys
 from collections.abc import Sequence
 
-EMPTY_WORLD = 'empty.world'
+from ..sim.errors import SimError
+
+EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'
 
 
@@ -17,11 +19,13 @@ def parser() -> argparse.ArgumentParser:
         description='Simulate a world, physics by PyBullet, behind the ROS interface of Gazebo.',
     )
     add = made.add_argument
-    add('world', nargs='?', default=EMPTY_WORLD, help=f'world file; so far {EMPTY_WORLD}')
+    add('world', nargs='?', default=EMPTY_WORLD,
+        help='world file, by path or along GAZEBO_RESOURCE_PATH; our own are worlds/empty.world, '
+             f'maze, room and shapes; default {EMPTY_WORLD}')
     add('-u', '--pause', action='store_true', help='start paused')
     add('-e', '--physics', metavar='ENGINE', default=ENGINE,
         help='accepted for compatibility; the engine is always PyBullet')
-    add('--seed', type=int, metavar='NUMBER', help='accepted; nothing here is random yet')
+    add('--seed', type=int, metavar='NUMBER', help='accepted; nothing here is random')
     add('--iters', type=_count, metavar='NUMBER', help='end after so many steps')
     add('--verbose', action='store_true', help='accepted; what matters is logged anyway')
     add('-r', '--record', action='store_true', help='not supported')
@@ -57,12 +61,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _main(arguments: Sequence[str]) -> int:
     own, remappings = split_remappings(arguments)
     given, unknown = parser().parse_known_args(own)
-    if given.world.rsplit('/', 1)[-1] != EMPTY_WORLD:
-        sys.stderr.write(
-            f"gzserver: world file '{given.world}' cannot be loaded: this version simulates "
-            f'{EMPTY_WORLD} only; spawn what else there is to be\n'
-        )
-        return 1
     try:
         from ..ros_api import node  # noqa: PLC0415  needs what may be missing
     except ModuleNotFoundError as error:
@@ -73,8 +71,12 @@ def _main(arguments: Sequence[str]) -> int:
             'pip install pybullet==3.2.7\n'
         )
         return 1
-    options = node.Options(paused=given.pause, steps=given.iters, remarks=remarks(given, unknown))
-    return node.run(options, remappings)
+    options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown))
+    try:
+        return node.run(options, remappings)
+    except SimError as error:
+        sys.stderr.write(f'gzserver: {error}\n')
+        return 1
 
 
 def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[int, str], ...]:
@@ -87,6 +89,11 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
             logging.INFO,
             f"physics engine '{given.physics}' is simulated by PyBullet, as every engine is here; "
             'parameters are those of ode',
+        ))
+    if given.seed is not None:
+        found.append((
+            logging.INFO,
+            f'--seed {given.seed} changes nothing: no number here is random, every run is the same',
         ))
     if given.record:
         found.append((logging.WARNING, 'recording (-r) is not supported; use rosbag'))

@@ -1,8 +1,11 @@
-"""Where ROS packages lie."""
+"""Where ROS packages lie, and the models and files that they offer to the simulator."""
 
+import os
 from functools import cache
 
 import rospkg
+
+from ..sim.model_search import ModelSearch, path_directories
 
 
 def find_package(name: str) -> str | None:
@@ -24,3 +27,33 @@ def find_package(name: str) -> str | None:
 @cache
 def _packages() -> rospkg.RosPack:
     return rospkg.RosPack()
+
+
+@cache
+def exported_directories(attribute: str) -> tuple[str, ...]:
+    """Return what packages export by <gazebo_ros ATTRIBUTE="..."/>, e.g. gazebo_model_path.
+
+    Reading every manifest takes a while, so it is done once, when first needed.
+    """
+    packages, found = _packages(), []
+    for name in packages.list():
+        try:
+            values = packages.get_manifest(name).get_export('gazebo_ros', attribute)
+        except rospkg.InvalidManifest:
+            continue
+        for value in values:
+            found += path_directories(value.replace('${prefix}', packages.get_path(name)))
+    return tuple(found)
+
+
+def find_model(inner: str) -> str | None:
+    """Return where model://`inner` is, or None.
+
+    It is looked for along GAZEBO_MODEL_PATH, the packages' paths and, as in Gazebo, in the folder
+    where users keep models.
+    """
+    return (
+        ModelSearch(path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')))(inner)
+        or ModelSearch(exported_directories('gazebo_model_path'))(inner)
+        or ModelSearch([os.path.expanduser('~/.gazebo/models')])(inner)
+    )

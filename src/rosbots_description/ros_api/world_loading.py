@@ -1,0 +1,90 @@
+"""From the name of a world, as people write it behind `world_name:=`, to a world that is full."""
+
+import logging
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..sim.errors import NotFoundError
+from ..sim.model_search import find_world, path_directories
+from ..sim.world import World
+from ..sim.world_file import open_world, populate
+from ..sim.world_spec import WorldSpec
+from .packages import exported_directories, find_model, find_package
+
+_PACKAGE = 'rosbots_description'
+
+
+def read_world(name: str) -> WorldSpec:
+    """Find and read a world file; needs neither a ROS master nor a node.
+
+    The name is a path, or stands along GAZEBO_RESOURCE_PATH, among our own worlds, or along what
+    packages export as gazebo_media_path, in this order.
+
+    Raises:
+        SimError: there is no such file, or it holds no world; one sentence says what and where.
+    """
+    return open_world(_find(name), find_model=find_model, find_package=find_package)
+
+
+def fill_world(world: World, spec: WorldSpec) -> None:
+    """Put the models and lamps of a world that was read into one that is empty."""
+    populate(world, spec)
+    world.lights.update({light.name: light for light in spec.lights})
+
+
+def own_worlds() -> list[str]:
+    """Return how the worlds that come with the simulator are called, e.g. 'worlds/empty.world'."""
+    return [f'worlds/{path.name}' for folder in _own_folder()
+            for path in sorted(Path(folder).glob('*.world'))]
+
+
+@contextmanager
+def held_records() -> Iterator[list[logging.LogRecord]]:
+    """Collect what is logged, for `replay` once there is a node to log it."""
+    logger, records = logging.getLogger(_PACKAGE), _Records()
+    propagate, level = logger.propagate, logger.level
+    logger.addHandler(records)
+    logger.propagate = False
+    logger.setLevel(logging.DEBUG)
+    try:
+        yield records.kept
+    finally:
+        logger.setLevel(level)
+        logger.propagate = propagate
+        logger.removeHandler(records)
+
+
+def replay(records: list[logging.LogRecord]) -> None:
+    """Log what was held, at the levels that are shown now."""
+    for record in records:
+        logger = logging.getLogger(record.name)
+        if logger.isEnabledFor(record.levelno):
+            logger.handle(record)
+
+
+class _Records(logging.Handler):
+    """Keeps records."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.kept: list[logging.LogRecord] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep a record."""
+        self.kept.append(record)
+
+
+def _find(name: str) -> Path:
+    places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), *_own_folder()]
+    places += [path for path in exported_directories('gazebo_media_path') if path not in places]
+    try:
+        return find_world(name, places)
+    except NotFoundError as error:
+        raise NotFoundError(f'{error}; always there are: {", ".join(own_worlds())}') from None
+
+
+def _own_folder() -> list[str]:
+    package = find_package(_PACKAGE)
+    return [os.path.join(package, 'worlds')] if package else []

@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""The world of shapes, as `empty_world.launch world_name:=worlds/shapes.world` starts it."""
+
+import sys
+import unittest
+
+import rospy
+import rostest
+from gazebo_msgs.msg import LinkStates, ModelStates
+from gazebo_msgs.srv import GetLightProperties, GetModelProperties, GetWorldProperties
+from simulator import DEADLINE, proxy
+
+MODELS = ['ground_plane', 'box', 'sphere', 'cylinder']
+PLACES = {'box': (0.0, 0.0, 0.5), 'sphere': (0.0, 1.5, 0.5), 'cylinder': (0.0, -1.5, 0.5)}
+STILL = 0.01  # [m]; they stand on the ground, into which contacts let them sink a little
+
+
+class ShapesWorldTest(unittest.TestCase):
+
+    def test_the_models_are_there_in_the_order_of_the_file(self):
+        world = proxy('get_world_properties', GetWorldProperties)()
+        self.assertEqual(world.model_names, MODELS)
+        self.assertEqual(rospy.wait_for_message('/gazebo/model_states', ModelStates, DEADLINE).name,
+                         MODELS)
+
+    def test_the_links_stand_where_the_file_puts_them(self):
+        states = rospy.wait_for_message('/gazebo/link_states', LinkStates, DEADLINE)
+        self.assertEqual(states.name, [f'{model}::link' for model in MODELS])
+        for name, pose in zip(states.name, states.pose, strict=True):
+            x, y, z = PLACES.get(name.removesuffix('::link'), (0.0, 0.0, 0.0))
+            for measured, expected in ((pose.position.x, x), (pose.position.y, y),
+                                       (pose.position.z, z)):
+                self.assertAlmostEqual(measured, expected, delta=STILL, msg=name)
+
+    def test_only_the_ground_is_static(self):
+        describe = proxy('get_model_properties', GetModelProperties)
+        self.assertEqual([describe(model).is_static for model in MODELS],
+                         [True, False, False, False])
+
+    def test_the_sun_can_be_asked_for(self):
+        sun = proxy('get_light_properties', GetLightProperties)('sun')
+        self.assertTrue(sun.success)
+        self.assertAlmostEqual(sun.diffuse.r, 0.8, places=6)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_shapes_world', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'shapes_world', ShapesWorldTest, sys.argv)

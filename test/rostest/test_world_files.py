@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""World files of users: good ones, partly good ones, and ones that are not there."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from gazebo_msgs.srv import (
+    GetModelState,
+    GetPhysicsProperties,
+    GetWorldProperties,
+    SpawnModel,
+)
+from server_process import ServerProcess
+from simulator import DEADLINE, pose, proxy, wait_until
+
+NAME = '__name:=other'  # beside the server that the launch file has started
+WORLD = """<sdf version="1.6"><world name="moon">
+  <physics type="ode">
+    <max_step_size>0.002</max_step_size><real_time_update_rate>500</real_time_update_rate>
+  </physics>
+  <gravity>0 0 -1.62</gravity>
+  <include><uri>model://ground_plane</uri></include>
+  <include><uri>model://nowhere</uri></include>
+  <model name="wall"><static>true</static><pose>3 0 0.5 0 0 0</pose><link name="link">
+    <collision name="c"><geometry><box><size>0.2 4 1</size></box></geometry></collision>
+  </link></model>
+  <model name="weightless"><link name="link"><inertial><mass>-1</mass></inertial></link></model>
+  <plugin name="weather" filename="libweather.so"/>
+</world></sdf>"""
+
+
+def other(service, service_type):
+    rospy.wait_for_service(f'/other/{service}', DEADLINE)
+    return rospy.ServiceProxy(f'/other/{service}', service_type)
+
+
+class WorldFilesTest(unittest.TestCase):
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.world = Path(folder.name, 'moon.world')
+        self.world.write_text(WORLD, encoding='utf-8')
+
+    def test_a_robot_is_spawned_in_the_users_world(self):
+        with ServerProcess(str(self.world), NAME) as server:
+            server.wait_ready()
+            physics = other('get_physics_properties', GetPhysicsProperties)()
+            self.assertEqual((physics.time_step, physics.max_update_rate, physics.gravity.z),
+                             (0.002, 500.0, -1.62))
+            answer = other('spawn_urdf_model', SpawnModel)(
+                'rosbots', rospy.get_param('robot_description'), '/', pose(), '')
+            self.assertTrue(answer.success, answer.status_message)
+            self.assertEqual(other('get_world_properties', GetWorldProperties)().model_names,
+                             ['ground_plane', 'wall', 'rosbots'])
+            state = other('get_model_state', GetModelState)
+            wait_until(lambda: state('rosbots', '').pose.position.z < 0.4, 'the robot falling')
+            code, printed = server.end()
+        self.assertEqual(code, 0)
+        for fault in (f"{self.world}, line 7: 'model://nowhere'", f'{self.world}, line 11: link',
+                      "world plugin 'weather' (libweather.so, line 12) is not run"):
+            self.assertIn(fault, printed)
+
+    def test_a_world_that_is_not_there_ends_with_a_sentence_and_harms_nobody(self):
+        before = proxy('get_world_properties', GetWorldProperties)()
+        for name in ('worlds/mud.world', '/no/such.world'):
+            # under the name of the server that runs, which would have to make way
+            with ServerProcess(name) as server:
+                code, printed = server.wait()
+            self.assertEqual(code, 1)
+            (line,) = printed.splitlines()
+            for words in (name, 'GAZEBO_RESOURCE_PATH', 'worlds/empty.world, worlds/maze.world'):
+                self.assertIn(words, line)
+        after = proxy('get_world_properties', GetWorldProperties)()
+        self.assertEqual(after.model_names, before.model_names)
+        self.assertGreater(after.sim_time, before.sim_time)
+
+    def test_a_broken_world_ends_with_a_sentence(self):
+        self.world.write_text(WORLD[:-20], encoding='utf-8')
+        with ServerProcess(str(self.world), NAME) as server:
+            code, printed = server.wait()
+        self.assertEqual(code, 1)
+        (line,) = printed.splitlines()
+        self.assertIn(f'{self.world}, line ', line)
+
+    def test_perf_shows_where_the_time_went(self):
+        with ServerProcess('--iters', '50', NAME, program='perf') as server:
+            code, printed = server.wait()
+        self.assertEqual(code, 0)
+        self.assertIn('tottime', printed)
+        self.assertIn('pybullet', printed)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_world_files', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'world_files', WorldFilesTest, sys.argv)

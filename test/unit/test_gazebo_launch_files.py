@@ -1,0 +1,85 @@
+"""The launch files of gazebo_ros take the arguments that Gazebo's take, with the same defaults."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+LAUNCH = Path(__file__).resolve().parents[2] / 'companions' / 'gazebo_ros' / 'launch'
+
+_COMMON = {
+    'paused': 'false',
+    'use_sim_time': 'true',
+    'extra_gazebo_args': '',
+    'gui': 'true',
+    'debug': 'false',
+    'physics': 'ode',
+    'output': 'screen',
+}
+_EMPTY = _COMMON | {
+    'recording': 'false',
+    'headless': 'false',
+    'verbose': 'false',
+    'world_name': 'worlds/empty.world',
+    'respawn_gazebo': 'false',
+    'use_clock_frequency': 'false',
+    'pub_clock_frequency': '100',
+    'enable_ros_network': 'true',
+    'server_required': 'false',
+    'gui_required': 'false',
+}
+# Contract 3.4
+ARGUMENTS = {
+    'empty_world': _EMPTY,
+    'elevator_world': _COMMON | {
+        'recording': 'false',
+        'headless': 'false',
+        'verbose': 'true',
+        'world_name': 'worlds/elevator_ros.world',
+    },
+    'range_world': _COMMON | {'verbose': 'true', 'world': 'gazebo_ros_range'},
+    'mud_world': {},
+    'rubble_world': {},
+    'shapes_world': {},
+    'willowgarage_world': {},
+}
+FIXED = {
+    'paused': 'false', 'use_sim_time': 'true', 'gui': 'true', 'headless': 'false',
+    'recording': 'false', 'debug': 'false',
+}
+
+
+def root(name: str) -> ElementTree.Element:
+    return ElementTree.parse(LAUNCH / f'{name}.launch').getroot()
+
+
+def test_every_launch_file_of_gazebo_is_there_and_no_other():
+    assert {path.stem for path in LAUNCH.glob('*')} == set(ARGUMENTS)
+
+
+@pytest.mark.parametrize('name', ARGUMENTS)
+def test_arguments_and_defaults_are_those_of_gazebo(name):
+    found = {arg.get('name'): arg.get('default') for arg in root(name).findall('arg')}
+    assert found == ARGUMENTS[name]
+
+
+@pytest.mark.parametrize('name', [name for name, taken in ARGUMENTS.items() if not taken])
+def test_a_world_without_arguments_hands_on_fixed_ones(name):
+    (include,) = root(name).findall('include')
+    assert include.get('file') == '$(dirname)/empty_world.launch'
+    given = {arg.get('name'): arg.get('value') for arg in include.findall('arg')}
+    assert given == FIXED | {'world_name': f'worlds/{name.removesuffix("_world")}.world'}
+
+
+def test_the_range_world_hands_every_argument_on():
+    (include,) = root('range_world').findall('include')
+    given = {arg.get('name'): arg.get('value') for arg in include.findall('arg')}
+    world = given.pop('world_name')
+    assert world == '$(find gazebo_plugins)/test/test_worlds/$(arg world).world'
+    assert given == {name: f'$(arg {name})' for name in ARGUMENTS['range_world'] if name != 'world'}
+
+
+@pytest.mark.parametrize('name', ['empty_world', 'elevator_world'])
+def test_server_and_window_have_the_names_that_others_rely_on(name):
+    nodes = [(node.get('name'), node.get('pkg')) for node in root(name).findall('node')]
+    assert nodes == [('gazebo', 'gazebo_ros'), ('gazebo_gui', 'gazebo_ros')]

@@ -1,0 +1,129 @@
+"""Where worlds are looked for by name, and what a user reads when one is not there or is wrong."""
+
+import logging
+import os
+
+import pytest
+from support import ROOT
+
+from rosbots_description.ros_api import packages
+from rosbots_description.ros_api.world_loading import held_records, own_worlds, read_world, replay
+from rosbots_description.sim.errors import ModelError, NotFoundError
+
+EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'
+
+
+@pytest.fixture(autouse=True)
+def places(monkeypatch, tmp_path):
+    """Let the search path consist of our package alone; return a function that adds packages."""
+    monkeypatch.delenv('GAZEBO_RESOURCE_PATH', raising=False)
+    monkeypatch.delenv('GAZEBO_MODEL_PATH', raising=False)
+    monkeypatch.chdir(tmp_path)
+
+    def set_packages(*folders):
+        monkeypatch.setenv('ROS_PACKAGE_PATH', os.pathsep.join([str(ROOT), *map(str, folders)]))
+        packages._packages.cache_clear()
+        packages.exported_directories.cache_clear()
+
+    set_packages()
+    yield set_packages
+    monkeypatch.undo()
+    packages._packages.cache_clear()
+    packages.exported_directories.cache_clear()
+
+
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+def exporting(folder, attributes):
+    """Write a package that exports `attributes`, e.g. 'gazebo_media_path="${prefix}"'."""
+    write(folder / 'package.xml', f"""<package format="2">
+      <name>{folder.name}</name><version>1.0.0</version><description>x</description>
+      <maintainer email="a@b.example">a</maintainer><license>BSD</license>
+      <exec_depend>gazebo_ros</exec_depend>
+      <export><gazebo_ros {attributes}/></export>
+    </package>""")
+
+
+@pytest.mark.parametrize('name', ['worlds/empty.world', 'empty.world', 'empty'])
+def test_our_own_worlds_are_found_by_name(name):
+    world = read_world(name)
+    assert [model.name for model, _ in world.models] == ['ground_plane']
+    assert [light.name for light in world.lights] == ['sun']
+
+
+def test_all_our_own_worlds_can_be_read():
+    assert own_worlds() == [f'worlds/{name}.world' for name in ('empty', 'maze', 'room', 'shapes')]
+    for name in own_worlds():
+        assert read_world(name).faults == ()
+
+
+def test_a_path_is_taken_as_given(tmp_path):
+    write(tmp_path / 'mine.world', EMPTY.format('mine'))
+    assert read_world(str(tmp_path / 'mine.world')).name == 'mine'
+    assert read_world('mine.world').name == 'mine'
+
+
+def test_the_resource_path_comes_before_our_own_worlds(tmp_path, monkeypatch):
+    write(tmp_path / 'share' / 'worlds' / 'empty.world', EMPTY.format('theirs'))
+    monkeypatch.setenv('GAZEBO_RESOURCE_PATH', f'/nowhere::{tmp_path}/share')
+    assert read_world('worlds/empty.world').name == 'theirs'
+
+
+def test_packages_export_worlds_and_models(tmp_path, places):
+    folder = tmp_path / 'packages' / 'houses'
+    exporting(folder, 'gazebo_media_path="${prefix}" gazebo_model_path="${prefix}/models"')
+    write(folder / 'worlds' / 'house.world', '<sdf version="1.6"><world name="house"><include>'
+          '<uri>model://door</uri></include></world></sdf>')
+    write(folder / 'models' / 'door' / 'model.sdf', '<sdf version="1.6"><model name="door">'
+          '<static>true</static><link name="leaf"/></model></sdf>')
+    places(folder)
+    world = read_world('worlds/house.world')
+    assert [model.name for model, _ in world.models] == ['door']
+
+
+def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    write(tmp_path / '.gazebo' / 'models' / 'door' / 'model.sdf', '<sdf version="1.6">'
+          '<model name="door"><static>true</static><link name="leaf"/></model></sdf>')
+    assert packages.find_model('door') == str(tmp_path / '.gazebo' / 'models' / 'door')
+
+
+def test_an_unknown_world_is_one_sentence_with_what_there_is():
+    with pytest.raises(NotFoundError) as caught:
+        read_world('worlds/mud.world')
+    sentence = str(caught.value)
+    assert "'worlds/mud.world'" in sentence
+    assert 'GAZEBO_RESOURCE_PATH' in sentence
+    assert 'worlds/shapes.world' in sentence
+    assert '\n' not in sentence
+
+
+@pytest.mark.parametrize(('text', 'said'), [
+    ('<sdf version="1.6"><world name="w"><model', 'line 1'),
+    ('<sdf version="1.6"/>', '<world>'),
+    ('<robot name="r"/>', '<robot>'),
+    ('', 'empty'),
+])
+def test_a_broken_world_is_one_sentence_with_its_file(tmp_path, text, said):
+    path = write(tmp_path / 'broken.world', text)
+    with pytest.raises(ModelError) as caught:
+        read_world(str(path))
+    assert str(path) in str(caught.value)
+    assert said in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+def test_what_is_said_while_reading_is_kept_for_the_node(tmp_path, caplog):
+    path = write(tmp_path / 'w.world', '<sdf version="1.6"><world name="w"><include>'
+                 '<uri>model://nowhere</uri></include></world></sdf>')
+    with held_records() as records:
+        read_world(str(path))
+    assert caplog.records == []
+    replay(records)
+    (record,) = caplog.records
+    assert record.levelno == logging.ERROR
+    assert 'model://nowhere' in record.getMessage()
