@@ -3,12 +3,14 @@
 
 import math
 import sys
+import time
 
 import rospy
 import rostest
+from gazebo_msgs.srv import GetLinkState, GetModelProperties
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from simulator import BOX, COMMANDS, SimulatorTest, pose, wait_until
+from simulator import BOX, COMMANDS, SimulatorTest, pose, proxy, wait_until
 
 LINK = '<link name="{}"><inertial><mass value="1"/>' \
        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{}</link>'
@@ -24,6 +26,14 @@ REFUSED = {
     'missing mesh': (robot(LINK.format('a', MESH.format(
         'package://rosbots_description/meshes/nope.dae'))), ['nope.dae']),
     'unclosed tags': ('<robot name="bad"><link name="a">', ['line']),
+    'mesh file that is not there': (
+        robot(LINK.format('a', MESH.format('file:///nowhere/nope.stl'))), ['/nowhere/nope.stl']),
+    'mesh of a model': (
+        robot(LINK.format('a', MESH.format('model://nowhere/nope.stl'))), ['model://nowhere']),
+    'crossed tags': ('<robot name="bad"><link name="a"></robot></link>', ['line']),
+    'endless comment': (robot('<!-- ', LINK.format('a', '')), ['<!--', '-->']),
+    'no inertial': (robot('<link name="a"/>'), ["'a'", '<inertial>']),
+    'mass of zero': (robot(LINK.format('a', '').replace('value="1"', 'value="0"')), ['mass']),
     'no links': (robot(), ['link']),
     'unexpanded xacro': (
         '<robot name="bad" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:wheel/></robot>',
@@ -43,6 +53,7 @@ CALL_ERRORS = {
     'unknown package': (
         robot(LINK.format('a', MESH.format('package://no_such_pkg/m.dae'))), 'no_such_pkg'),
 }
+AT_ONCE = 0.5  # [s, wall] for a refusal that takes some milliseconds
 UNKNOWN_JOINT = ('<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
                  '<leftJoint>nojoint</leftJoint></plugin></gazebo>')
 
@@ -82,6 +93,36 @@ class BadInputTest(SimulatorTest):
                     self.spawn('bad', xml)
                 self.assertIn(words, str(raised.exception))
         self._assert_neighbour_drives()
+
+    def test_a_failing_spawn_while_paused_answers_at_once_and_holds_up_nobody(self):
+        self.pause()
+        begin = time.monotonic()
+        for xml, words in REFUSED.values():
+            self._assert_refused(self.spawn('bad', xml), *words)
+        self.assertLess(time.monotonic() - begin, AT_ONCE * len(REFUSED))
+        self.unpause()
+        self._assert_neighbour_drives()
+
+    def test_what_gazebo_simulates_in_silence_is_there_as_there(self):
+        massless = ''.join((
+            LINK.format('base', ''), '<link name="ghost"/>',
+            '<joint name="j" type="continuous"><parent link="base"/><child link="ghost"/></joint>'))
+        self.assertTrue(self.spawn('half', robot(massless), pose(x=5.0)).success)
+        properties = proxy('get_model_properties', GetModelProperties)('half')
+        self.assertEqual((properties.body_names, properties.joint_names), (['base'], []))
+        unturnable = BOX.replace('ixx="1" iyy="1" izz="1"', 'ixx="0" iyy="0" izz="0"')
+        self.assertTrue(self.spawn('stiff', unturnable, pose(x=8.0)).success)
+        wait_until(lambda: self.model_state('stiff', '').pose.position.z < 0.502, 'a standing box')
+        self._assert_neighbour_drives()
+
+    def test_a_lumped_link_is_not_found(self):
+        link_state = proxy('get_link_state', GetLinkState)
+        for name in ('base_link', 'neighbour::base_link', 'caster'):
+            response = link_state(name, '')
+            self.assertEqual((response.success, response.status_message), (
+                False, 'GetLinkState: link not found, did you forget to scope the link by model '
+                'name?'))
+        self.assertTrue(link_state('neighbour::base_footprint', '').success)
 
     def test_an_empty_name_and_a_pose_that_is_none(self):
         self._assert_refused(self.spawn('', BOX), 'name')

@@ -13,24 +13,12 @@ from std_srvs.srv import Empty
 SPAWNED = 'SpawnModel: Successfully spawned entity'
 NO_FRAME = ('SpawnModel: reference reference_frame not found, '
             'did you forget to scope the link by model name?')
-OF_GAZEBO = {'/clock', '/gazebo/link_states', '/gazebo/model_states', '/rosout'}
-OURS = {'/gazebo/visual_markers', '/gazebo/view/image_raw'}
-SERVICES = {
-    'spawn_urdf_model', 'delete_model', 'get_model_state', 'get_world_properties',
-    'pause_physics', 'unpause_physics', 'reset_world', 'reset_simulation',
-}
 
 
 class ServicesTest(SimulatorTest):
 
     def _assert_outcome(self, response, success, text):
         self.assertEqual((response.success, response.status_message), (success, text))
-
-    def test_an_empty_world_offers_gazebos_topics_and_one_of_ours(self):
-        self.assertEqual(topics_of(), OF_GAZEBO | OURS)
-        for name in SERVICES - {'spawn_urdf_model', 'delete_model', 'get_model_state'}:
-            rospy.wait_for_service(f'/gazebo/{name}', 1.0)
-        self.assertIs(rospy.get_param('/use_sim_time'), True)
 
     def test_world_properties(self):
         response = self.world()

@@ -1,5 +1,7 @@
 """Time is a count of steps, and hooks run at the steps they ask for."""
 
+from fractions import Fraction
+
 import pytest
 
 from rosbots_description.sim.clock import SimClock
@@ -71,3 +73,15 @@ def test_an_empty_schedule_is_never_due():
     assert schedule.next_due() == 3
     schedule.remove(hook)
     assert schedule.next_due() == NEVER
+
+
+@pytest.mark.parametrize(
+    ('ratio', 'due'),
+    [(Fraction(2), 15), (Fraction(4), 13), (Fraction(1, 5), 60), (Fraction(100), 11)],
+)
+def test_hooks_keep_their_time_when_the_step_size_changes(ratio, due):
+    schedule, idle, busy = Schedule(), Every(NEVER, [], 'idle'), Every(20, [], 'busy')
+    schedule.add(idle)
+    schedule.add(busy)
+    schedule.change_step(10, ratio)
+    assert (busy.due, idle.due) == (due, NEVER)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from rosbots_description.sim import inertia
 from rosbots_description.sim.inertia import (
     STAND_IN_RADIUS,
     is_positive,
@@ -98,3 +99,11 @@ def test_a_tensor_of_no_real_body_is_left_alone():
 def test_a_negative_principal_moment_is_seen():
     assert not is_positive(Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0, ixy=2.0))
     assert is_positive(Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0, ixy=1.0))
+
+
+def test_in_link_axes_the_tensor_is_turned_and_the_centre_stays():
+    turned = Inertial(2.0, Pose((0.1, 0.2, 0.3), from_rpy(0.0, 0.0, math.pi / 2)), 1.0, 2.0, 3.0)
+    flat = inertia.in_link_axes(turned)
+    assert (flat.ixx, flat.iyy, flat.izz) == pytest.approx((2.0, 1.0, 3.0))
+    assert (flat.mass, flat.pose) == (2.0, Pose((0.1, 0.2, 0.3)))
+    assert (flat.ixy, flat.ixz, flat.iyz) == pytest.approx((0.0, 0.0, 0.0))

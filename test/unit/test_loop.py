@@ -67,6 +67,19 @@ def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(start):
     assert world.longest_batch > 1
 
 
+def test_a_faster_rate_counts_at_once_also_after_a_very_slow_one(start):
+    world = CountingWorld(rate=0.01)
+    loop = start(world)
+    end = time.monotonic() + JOIN
+    while world.steps == 0:  # the next one is due in 100 s
+        assert time.monotonic() < end
+        time.sleep(0.001)
+    loop.call(lambda: setattr(world.physics, 'max_update_rate', 1000.0))
+    while world.steps < 50:
+        assert time.monotonic() < end
+        time.sleep(0.001)
+
+
 def test_a_slow_world_is_not_asked_for_the_past(start):
     world = CountingWorld(rate=1000.0, step_time=0.002)
     loop = start(world)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import signal
-import sys
 import threading
 import time
 from collections.abc import Sequence
@@ -12,7 +11,7 @@ from collections.abc import Sequence
 import rosgraph
 import rospy
 
-from .shutdown import end_at_once
+from .process import end_at_once, print_lines_at_once
 
 logger = logging.getLogger(__name__)
 
@@ -37,8 +36,7 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
                        rosgraph.get_master_uri())
         while not rosgraph.is_master_online():
             time.sleep(_RETRY)
-    # Whoever reads the lines through a pipe wants them as they are written.
-    sys.stdout.reconfigure(line_buffering=True)
+    print_lines_at_once()
     rospy.init_node(name, [name, *arguments], anonymous, disable_signals=True)
     end_at_once()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

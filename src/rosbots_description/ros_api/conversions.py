@@ -7,13 +7,13 @@ there already, which is what makes publishing at 1000 Hz cheap.
 import math
 
 from genpy import Time
+from geometry_msgs.msg import Point, Transform, TransformStamped, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
-from geometry_msgs.msg import Transform, TransformStamped
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
 
-from ..sim.pose import Pose, Twist, normalise
+from ..sim.pose import Pose, Twist, Vector, normalise
 from ..sim.readings import FrameTransform, JointStates, Odometry
 
 
@@ -48,6 +48,16 @@ def read_pose(message: PoseMessage) -> Pose:
     if not all(math.isfinite(number) for part in pose for number in part):
         raise ValueError('the pose holds a number that is not finite')
     return Pose(pose.position, normalise(pose.orientation))
+
+
+def read_vector(message: Point | Vector3) -> Vector:
+    """Return a message's three numbers."""
+    return (message.x, message.y, message.z)
+
+
+def read_twist(message: TwistMessage) -> Twist:
+    """Return a message's velocities."""
+    return Twist(read_vector(message.linear), read_vector(message.angular))
 
 
 def fill_odometry(message: OdometryMessage, now_ns: int, odometry: Odometry) -> None:

@@ -114,6 +114,8 @@ class Loop:
         if rate > 0.0:
             if now - self._next_step > MAX_LAG:
                 self._next_step = now
+            # After a change of rate the next step may stand far ahead.
+            self._next_step = min(self._next_step, now + 1.0 / rate)
             batch = min(batch, int((now - self._next_step) * rate + 1.0))
             if now < self._next_step:
                 return 0

@@ -3,6 +3,8 @@
 Parameters
 ----------
     ~enable_ros_network (bool, true): false leaves only /clock, the time parameter and plugins.
+    ~enable_performance_metrics (bool, false): true adds the topic ~performance_metrics.
+    ~extensions (bool, true): false leaves out all topics and services that Gazebo does not have.
     ~pub_clock_frequency (int, 0) [Hz]: how often /clock is published; 0: at every step.
     /use_sim_time is set to true if nobody has set it.
 
@@ -19,20 +21,23 @@ import rosgraph
 import rospy
 
 from ..sim.world import World
-from ..sim.worlds import add_empty_world
+from ..sim.world_spec import WorldSpec
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .handshake import guard_handshakes
 from .log_bridge import connect_logging
 from .loop import Loop
-from .packages import find_package
+from .packages import find_model, find_package
+from .performance import advertise_performance
+from .process import end_at_once, print_lines_at_once
 from .registrar import Registrar
 from .server import Server
-from .services.registry import advertise
-from .shutdown import end_at_once
+from .services.registry import EXTENSIONS, SERVICES, advertise
+from .state_commands import subscribe_states
 from .topics import advertise_clock, advertise_states
 from .view import advertise_view
 from .visuals import advertise_visuals
+from .world_loading import fill_world, held_records, read_world, replay
 
 logger = logging.getLogger(__name__)
 
@@ -47,6 +52,7 @@ SWITCH_INTERVAL = 0.0005
 class Options:
     """What the command line says about a run."""
 
+    world: str  # its file, by path or as it is called along the search path
     paused: bool = False
     steps: int | None = None  # make so many, then end; None: until told to stop
     remarks: tuple[tuple[int, str], ...] = ()  # what to log at start: level and text
@@ -59,8 +65,14 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         options: what to simulate and how.
         ros_arguments: name remappings and parameters as ROS writes them, e.g. `__name:=gazebo`.
 
+    Raises:
+        SimError: the world cannot be read; nothing has been done.
+
     """
+    print_lines_at_once()
     _on_signals(signal.default_int_handler)
+    with held_records() as records:
+        spec = read_world(options.world)
     try:
         _wait_for_master()
         rospy.init_node(
@@ -71,7 +83,7 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         )
         guard_handshakes()
         end_at_once()
-        _simulate(options)
+        _simulate(options, spec, records)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         return 0
     finally:
@@ -79,7 +91,7 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
     return 0
 
 
-def _simulate(options: Options) -> None:
+def _simulate(options: Options, spec: WorldSpec, records: list[logging.LogRecord]) -> None:
     world = World()
     try:
         loop = Loop(world)
@@ -89,28 +101,43 @@ def _simulate(options: Options) -> None:
         sys.setswitchinterval(SWITCH_INTERVAL)
         for level, text in options.remarks:
             logger.log(level, '%s', text)
+        replay(records)
         world.paused = options.paused
-        _connect(Server(world, loop, Registrar(), find_package))
+        _connect(Server(world, loop, Registrar(), find_package, find_model), spec)
         loop.run(options.steps)
     finally:
         world.close()
 
 
-def _connect(server: Server) -> None:
+def _connect(server: Server, spec: WorldSpec) -> None:
     """Offer everything, in the order in which Gazebo does."""
     networked = rospy.get_param('~enable_ros_network', True)
+    extensions = networked and rospy.get_param('~extensions', True)
     logger.info('Finished loading Gazebo ROS API Plugin.')
     advertise_clock(server)
     if networked:
         advertise_states(server)
-        advertise_visuals(server)
-        advertise_view(server)
+        advertise_performance(server)
+        if extensions:
+            advertise_visuals(server)
+            advertise_view(server)
     server.world.listeners.append(Adapters(server))
-    add_empty_world(server.world)
+    fill_world(server.world, spec)
     if not rospy.has_param('/use_sim_time'):
         rospy.set_param('/use_sim_time', True)
     if networked:
-        advertise(server)
+        subscribe_states(server)
+        advertise(server, SERVICES)
+        if extensions:
+            advertise(server, EXTENSIONS)
+        server.registrar.post(lambda: _advertise_reconfigure(server))
+
+
+def _advertise_reconfigure(server: Server) -> None:
+    """Offer dynamic_reconfigure last; loading its library must not keep the world waiting."""
+    from .reconfigure import advertise_reconfigure  # noqa: PLC0415
+
+    advertise_reconfigure(server)
 
 
 def _wait_for_master() -> None:

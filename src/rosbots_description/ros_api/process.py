@@ -1,7 +1,14 @@
-"""Let a rospy node end at once."""
+"""How our programs behave as processes: they print lines at once and end at once."""
+
+import sys
 
 import rospy
 from rospy.impl.registration import get_registration_listeners
+
+
+def print_lines_at_once() -> None:
+    """Write each line when it is complete, also into a pipe or file, where Python would wait."""
+    sys.stdout.reconfigure(line_buffering=True)
 
 
 def end_at_once() -> None:

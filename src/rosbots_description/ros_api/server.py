@@ -4,6 +4,8 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from ..sim.model_search import FindModel
+from ..sim.uris import FindPackage
 from ..sim.world import World
 from .loop import Loop
 from .registrar import Registrar
@@ -16,5 +18,12 @@ class Server:
     world: World
     loop: Loop
     registrar: Registrar
-    find_package: Callable[[str], str | None]
+    find_package: FindPackage
+    find_model: FindModel
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
+    physics_listeners: list[Callable[[], None]] = field(default_factory=list)
+
+    def physics_changed(self) -> None:
+        """Tell those who show the physics settings that a service has changed them."""
+        for listener in self.physics_listeners:
+            listener()

@@ -9,6 +9,7 @@ from .pose import Vector
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 10.0  # [s]; the clock counts nanoseconds
 SLOWEST_RATE = 0.001  # [Hz] beside 0, which means as fast as possible
 MOST_ITERATIONS = 10_000  # of the solver; more would only make a step take for ever
+MOST_CONTACTS = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,8 @@ def check(physics: PhysicsSettings) -> None:
         ('step_size', SHORTEST_STEP, LONGEST_STEP, '[s]'),
         ('max_update_rate', 0.0, math.inf, '[Hz], where 0 is as fast as possible'),
         ('sor_pgs_iters', 0, MOST_ITERATIONS, ''),
+        ('sor_pgs_precon_iters', 0, MOST_ITERATIONS, ''),
+        ('max_contacts', 0, MOST_CONTACTS, ''),
     ):
         value = getattr(physics, name)
         if not least <= value <= most:

@@ -20,6 +20,14 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
     'surface_radius': (0.0,), 'visible': (1.0,), 'initial_position': (0.0,), 'center': (0.0,),
 }
 
+# Read and kept for whoever asks, but nothing here acts on it: parent -> children.
+_KEPT = {
+    'ode': ('mu2', 'fdir1', 'max_vel', 'min_depth'), 'collision': ('max_contacts', 'laser_retro'),
+    'limit': ('effort', 'velocity'), 'scene': ('ambient', 'background', 'shadows'),
+}
+# The same, but the model is not what its author expects.
+_NOT_RUN = {'link': ('sensor', 'light', 'projector')}
+
 
 class Notes:
     """Collects what is to be said about one file; `log` says it, each thing once."""
@@ -33,15 +41,16 @@ class Notes:
     def check(
         self, element: etree._Element, read: Collection[str], idle: Collection[str] = ()
     ) -> None:
-        """Note the children of `element` that nobody reads.
+        """Note the children of `element` that nobody reads, or that are only kept.
 
         Args:
             read: tags that are read.
             idle: tags that change nothing that is simulated here, such as a solver's settings.
         """
+        kept, not_run = _KEPT.get(element.tag, ()), _NOT_RUN.get(element.tag, ())
         for child in element:
-            if child.tag not in read:
-                self.unread(child, idle=child.tag in idle)
+            if child.tag not in read or child.tag in (*kept, *not_run):
+                self.unread(child, idle=child.tag in idle or child.tag in kept)
 
     def unread(self, element: etree._Element, idle: bool = False) -> None:
         """Note an element that is not simulated, unless it asks for nothing."""

@@ -1,3 +1,14 @@
 """The services of the node, grouped by what they are about; importing registers them."""
 
-from . import models, simulation, spawning  # noqa: F401
+from . import (  # noqa: F401
+    joints,
+    lights,
+    link_properties,
+    links,
+    model_setters,
+    models,
+    physics,
+    simulation,
+    spawning,
+    stepping,
+)

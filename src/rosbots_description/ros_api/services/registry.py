@@ -1,7 +1,7 @@
 """The table of services: adding one is one decorated function."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,11 +30,16 @@ class Service:
     registers: bool  # changes which topics there are; the reply waits for that
 
 
-SERVICES: dict[str, Service] = {}
+SERVICES: dict[str, Service] = {}  # those of Gazebo
+EXTENSIONS: dict[str, Service] = {}  # ours
 
 
 def service(
-    name: str, service_type: type, prepare: Answer | None = None, registers: bool = False
+    name: str,
+    service_type: type,
+    prepare: Answer | None = None,
+    registers: bool = False,
+    table: dict[str, Service] = SERVICES,
 ) -> Callable[[Answer], Answer]:
     """Return a decorator that offers `answer(server, request) -> response` as service ~`name`.
 
@@ -45,19 +50,26 @@ def service(
     """
 
     def add(answer: Answer) -> Answer:
-        if name in SERVICES:
-            raise ValueError(f'service {name} is already answered by {SERVICES[name].answer}')
-        SERVICES[name] = Service(name, service_type, answer, prepare, registers)
+        if name in table:
+            raise ValueError(f'service {name} is already answered by {table[name].answer}')
+        table[name] = Service(name, service_type, answer, prepare, registers)
         return answer
 
     return add
 
 
-def advertise(server: Server) -> list[rospy.Service]:
-    """Offer all registered services in the node's private namespace."""
+def refuse(response: Any, text: str) -> Any:
+    """Return the response with success=False and the text, which is logged as well."""
+    logger.error('%s', text)
+    response.success, response.status_message = False, text
+    return response
+
+
+def advertise(server: Server, table: Mapping[str, Service]) -> list[rospy.Service]:
+    """Offer the services of a table in the node's private namespace."""
     return [
         rospy.Service(f'~{entry.name}', entry.type, _handler(server, entry))
-        for entry in SERVICES.values()
+        for entry in table.values()
     ]
 
 
@@ -96,8 +108,7 @@ def respond(server: Server, entry: Service, request: Any) -> Any:
 def _failure(entry: Service, response: Any, sentence: str) -> Any:
     """Return `response` with success=False and the sentence in the words of the service."""
     text = f'{entry.type.__name__}: Failure - {sentence}'
+    if hasattr(response, 'success'):
+        return refuse(response, text)
     logger.error('%s', text)
-    if not hasattr(response, 'success'):
-        raise CallError(text)
-    response.success, response.status_message = False, text
-    return response
+    raise CallError(text)

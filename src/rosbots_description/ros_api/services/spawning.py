@@ -1,6 +1,7 @@
-"""The service that brings models into the world."""
+"""The services that bring models and lamps into the world."""
 
 import logging
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from gazebo_msgs.srv import SpawnModel, SpawnModelRequest, SpawnModelResponse
@@ -8,12 +9,14 @@ from gazebo_msgs.srv import SpawnModel, SpawnModelRequest, SpawnModelResponse
 from ...sim.errors import ModelError, NotFoundError
 from ...sim.markup import root_tag
 from ...sim.pose import Pose, compose
+from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.spec import Mesh, ModelSpec
 from ...sim.urdf import load_urdf
 from ...sim.uris import UnknownPackage
+from ...sim.world_spec import LightSpec
 from ..conversions import read_pose
 from ..server import Server
-from .registry import CallError, service
+from .registry import CallError, refuse, service
 
 logger = logging.getLogger(__name__)
 
@@ -21,6 +24,13 @@ _NO_FRAME = (
     'SpawnModel: reference reference_frame not found, '
     'did you forget to scope the link by model name?'
 )
+
+
+_NO_FORMAT = (
+    'GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, '
+    'or cannot be converted to Gazebo compatible format.'
+)
+_DONE = 'SpawnModel: Successfully spawned entity'
 
 
 @dataclass(frozen=True)
@@ -34,43 +44,89 @@ class _Arrival:
 
 
 def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnModelResponse:
-    """Do what is slow about a spawn: parse, validate, read meshes; simulation goes on."""
+    """Do what is slow about the spawn of a URDF; faults Gazebo's client never sees are told."""
     if root_tag(request.model_xml) != 'robot':
         logger.error('SpawnModel: Failure - entity format is invalid.')
         raise CallError(
             'SpawnModel: Failure - entity format is invalid. '
             'This service takes URDF: XML whose outermost element is <robot>'
         )
-    if not request.model_name:
-        raise ModelError('model_name is empty; give the model a name')
-    pose = _initial_pose(request)
-    name, frame = request.model_name, request.reference_frame
-    refusal = server.loop.call(lambda: _refusal(server, name, frame))
-    if refusal is not None:
-        return refusal
     try:
-        spec, origin = load_urdf(
-            request.model_xml,
-            name,
-            robot_namespace=request.robot_namespace,
-            find_package=server.find_package,
-        )
+        return _arrival(server, request, lambda: _load_urdf(server, request))
     except UnknownPackage as error:
         logger.critical('%s', error)
         raise CallError(f'SpawnModel: Failure - {error}') from None
+
+
+def _read_sdf(
+    server: Server, request: SpawnModelRequest
+) -> _Arrival | LightSpec | SpawnModelResponse:
+    """Do what is slow about the spawn of a URDF, an SDF model or a light."""
+    kind = root_tag(request.model_xml)
+    if kind == 'robot':
+        return _arrival(server, request, lambda: _load_urdf(server, request))
+    if kind not in ('sdf', 'gazebo'):
+        return refuse(SpawnModelResponse(), _NO_FORMAT)
+    light = load_sdf_light(request.model_xml, request.model_name)
+    if light is not None:
+        return light
+    return _arrival(server, request, lambda: load_sdf(
+        request.model_xml,
+        request.model_name,
+        robot_namespace=request.robot_namespace,
+        find_model=server.find_model,
+        find_package=server.find_package,
+    ))
+
+
+def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, Pose]:
+    return load_urdf(
+        request.model_xml,
+        request.model_name,
+        robot_namespace=request.robot_namespace,
+        find_package=server.find_package,
+    )
+
+
+def _arrival(
+    server: Server, request: SpawnModelRequest, load: Callable[[], tuple[ModelSpec, Pose]]
+) -> _Arrival | SpawnModelResponse:
+    """Parse, validate and read meshes, while the simulation goes on."""
+    name, frame = request.model_name, request.reference_frame
+    if not name:
+        raise ModelError('model_name is empty; give the model a name')
+    pose = _initial_pose(request)
+    refusal = server.loop.call(lambda: _refusal(server, name, frame))
+    if refusal is not None:
+        return refusal
+    spec, origin = load()
     _warm_meshes(server, spec)
     return _Arrival(name, spec, compose(pose, origin), frame)
 
 
 @service('spawn_urdf_model', SpawnModel, prepare=_read_urdf, registers=True)
-def spawn_urdf_model(server: Server, arrival: _Arrival) -> SpawnModelResponse:
-    """Put a model that has been read into the world."""
+@service('spawn_sdf_model', SpawnModel, prepare=_read_sdf, registers=True)
+def spawn_model(server: Server, arrival: _Arrival | LightSpec) -> SpawnModelResponse:
+    """Put a model or a lamp that has been read into the world."""
+    if isinstance(arrival, LightSpec):
+        return _spawn_light(server, arrival)
     refusal = _refusal(server, arrival.name, arrival.frame)
     if refusal is not None:  # someone else was quicker
         return refusal
     frame_pose, _ = server.world.frame(arrival.frame)
     server.world.spawn(arrival.spec, arrival.name, compose(frame_pose, arrival.pose))
-    return SpawnModelResponse(True, 'SpawnModel: Successfully spawned entity')
+    return SpawnModelResponse(True, _DONE)
+
+
+def _spawn_light(server: Server, light: LightSpec) -> SpawnModelResponse:
+    """Put a lamp where its description says; as in Gazebo the initial pose does not count."""
+    if not light.name:
+        raise ModelError('model_name is empty; give the light a name')
+    if light.name in server.world.lights:
+        logger.error('SpawnModel: Failure - light name %s already exist.', light.name)
+        return SpawnModelResponse(False, 'SpawnModel: Failure - entity already exists.')
+    server.world.lights[light.name] = light
+    return SpawnModelResponse(True, _DONE)
 
 
 def _initial_pose(request: SpawnModelRequest) -> Pose:

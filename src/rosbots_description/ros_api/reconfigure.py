@@ -1,0 +1,156 @@
+"""Physics settings for dynamic_reconfigure: rqt_reconfigure, dynparam and its Python client.
+
+Publishes:
+    ~parameter_descriptions (dynamic_reconfigure/ConfigDescription, latched)
+    ~parameter_updates (dynamic_reconfigure/Config, latched)
+Services:
+    ~set_parameters (dynamic_reconfigure/Reconfigure)
+Parameters:
+    ~time_step and the others of `PARAMETERS`, written only: presets are replaced by what counts.
+"""
+
+import logging
+from types import SimpleNamespace
+from typing import NamedTuple
+
+from dynamic_reconfigure.encoding import Config, encode_config
+from dynamic_reconfigure.server import Server as ReconfigureServer
+from gazebo_msgs.msg import ODEPhysics
+from gazebo_msgs.srv import (
+    GetPhysicsPropertiesRequest,
+    GetPhysicsPropertiesResponse,
+    SetPhysicsPropertiesRequest,
+)
+from geometry_msgs.msg import Vector3
+
+from .server import Server
+from .services.registry import SERVICES, respond
+
+logger = logging.getLogger(__name__)
+
+_EVERYTHING = 1  # the level of every parameter, as upstream
+
+
+class Parameter(NamedTuple):
+    """A setting as dynamic_reconfigure describes it; its type is that of the default."""
+
+    name: str
+    default: float | int | bool
+    least: float | int | bool
+    most: float | int | bool
+    description: str
+
+
+PARAMETERS = (
+    Parameter('time_step', 0.001, 0.0, 10.0, 'simulated time of one step [s]'),
+    Parameter('max_update_rate', 60.0, 0.0, 1000.0, 'steps per second of wall time [Hz], 0: all'),
+    Parameter('gravity_x', 0.0, -100.0, 100.0, 'gravity along x [m/s^2]'),
+    Parameter('gravity_y', 0.0, -100.0, 100.0, 'gravity along y [m/s^2]'),
+    Parameter('gravity_z', -9.8, -100.0, 100.0, 'gravity along z [m/s^2]'),
+    Parameter('auto_disable_bodies', False, False, True, 'kept, without effect here'),
+    Parameter('sor_pgs_precon_iters', 0, 0, 10000, 'kept, without effect here'),
+    Parameter('sor_pgs_iters', 20, 0, 10000, 'iterations of the solver in each step'),
+    Parameter('sor_pgs_w', 1.3, 0.0, 5.0, 'kept, without effect here'),
+    Parameter('sor_pgs_rms_error_tol', -1.0, -1.0, 10000.0, 'kept, without effect here'),
+    Parameter('cfm', 0.0, 0.0, 10.0, 'kept, without effect here'),
+    Parameter('erp', 0.2, 0.0, 10.0, 'kept, without effect here'),
+    Parameter('contact_surface_layer', 0.001, 0.0, 10.0, 'kept, without effect here [m]'),
+    Parameter('contact_max_correcting_vel', 100.0, 0.0, 1e7, 'kept, without effect here [m/s]'),
+    Parameter('max_contacts', 100, 0, 10_000_000, 'kept, without effect here'),
+)
+_TYPES = {float: 'double', int: 'int', bool: 'bool'}
+
+
+def advertise_reconfigure(server: Server) -> None:
+    """Offer the settings; needs the loop to run, and takes some calls to the ROS master."""
+    reconfigure = PhysicsReconfigure(server)
+    server.physics_listeners.append(lambda: server.registrar.post(reconfigure.follow))
+    logger.info('Physics dynamic reconfigure ready.')
+
+
+class PhysicsReconfigure(ReconfigureServer):
+    """Lets dynamic_reconfigure show and change the physics; its calls come from ROS's threads."""
+
+    def __init__(self, server: Server) -> None:
+        self._server = server
+        self._begun = False
+        super().__init__(_description(), self._reconfigure)
+
+    def follow(self) -> None:
+        """Show settings that a service has changed."""
+        with self.mutex:
+            current = self._current(self.config)
+            if current != self.config:
+                self.config = current
+                self._copy_to_parameter_server()
+                self.update_topic.publish(encode_config(current))
+
+    def _copy_from_parameter_server(self) -> None:
+        """Leave presets alone: as in Gazebo they are replaced by the settings that count."""
+
+    def _reconfigure(self, config: Config, _level: int) -> Config:
+        """Apply what differs from the settings that count and return the latter."""
+        current = self._current(config)
+        if not self._begun:
+            self._begun = True
+            return current
+        wanted = {p.name: type(p.default)(config[p.name]) for p in PARAMETERS}
+        if any(current[name] != value for name, value in wanted.items()):
+            response = self._ask('set_physics_properties', _set_request(wanted))
+            if response.success:
+                current.update(wanted)
+                logger.info('physics dynamics reconfigure update complete')
+        logger.info('physics dynamics reconfigure complete')
+        return current
+
+    def _current(self, config: Config) -> Config:
+        """Return a copy of `config` with the settings that count."""
+        response = self._ask('get_physics_properties', GetPhysicsPropertiesRequest())
+        current = Config({p.name: config[p.name] for p in PARAMETERS})
+        current['groups'] = config['groups']
+        current.update(settings(response))
+        return current
+
+    def _ask(self, name: str, request: object) -> object:
+        return respond(self._server, SERVICES[name], request)
+
+
+def settings(response: GetPhysicsPropertiesResponse) -> dict[str, float | int | bool]:
+    """Return the settings by the names of the parameters."""
+    gravity, ode = response.gravity, response.ode_config
+    return {
+        'time_step': response.time_step,
+        'max_update_rate': response.max_update_rate,
+        'gravity_x': gravity.x,
+        'gravity_y': gravity.y,
+        'gravity_z': gravity.z,
+        **{field: getattr(ode, field) for field in ODEPhysics.__slots__},
+    }
+
+
+def _set_request(wanted: dict[str, float | int | bool]) -> SetPhysicsPropertiesRequest:
+    return SetPhysicsPropertiesRequest(
+        time_step=wanted['time_step'],
+        max_update_rate=wanted['max_update_rate'],
+        gravity=Vector3(wanted['gravity_x'], wanted['gravity_y'], wanted['gravity_z']),
+        ode_config=ODEPhysics(**{field: wanted[field] for field in ODEPhysics.__slots__}),
+    )
+
+
+def _description() -> SimpleNamespace:
+    """Return what dynamic_reconfigure's generator would write into a module."""
+    return SimpleNamespace(
+        defaults={p.name: p.default for p in PARAMETERS},
+        min={p.name: p.least for p in PARAMETERS},
+        max={p.name: p.most for p in PARAMETERS},
+        config_description={
+            'name': 'Default', 'type': '', 'id': 0, 'parent': 0, 'state': True, 'groups': [],
+            'parameters': [
+                {
+                    'name': p.name, 'type': _TYPES[type(p.default)], 'level': _EVERYTHING,
+                    'description': p.description, 'edit_method': '',
+                }
+                for p in PARAMETERS
+            ],
+        },
+    )

@@ -1,0 +1,136 @@
+"""Services about joints: their state, their limits, and pushes on them."""
+
+import contextlib
+from dataclasses import replace
+
+from gazebo_msgs.msg import ODEJointProperties
+from gazebo_msgs.srv import (
+    ApplyJointEffort,
+    ApplyJointEffortRequest,
+    ApplyJointEffortResponse,
+    GetJointProperties,
+    GetJointPropertiesRequest,
+    GetJointPropertiesResponse,
+    JointRequest,
+    JointRequestRequest,
+    JointRequestResponse,
+    SetJointProperties,
+    SetJointPropertiesRequest,
+    SetJointPropertiesResponse,
+)
+
+from ...sim.model import Joint
+from ...sim.spec import JointSpec
+from ...sim.world import World
+from ..server import Server
+from ..validity import RequestError, require_finite
+from .registry import refuse, service
+
+_ENDLESS = 1e16  # a limit of this size means none, as in SDF [rad or m]
+
+
+@service('get_joint_properties', GetJointProperties)
+def get_joint_properties(
+    server: Server, request: GetJointPropertiesRequest
+) -> GetJointPropertiesResponse:
+    """Tell position [rad or m] and rate; type and damping stay empty, as in Gazebo."""
+    response = GetJointPropertiesResponse()
+    joint = server.world.find_joint(request.joint_name)
+    if joint is None and not _is_fixed(server.world, request.joint_name):
+        return refuse(response, 'GetJointProperties: joint not found')
+    position, rate = joint.state() if joint else (0.0, 0.0)
+    response.position, response.rate = [position], [rate]
+    response.success, response.status_message = True, 'GetJointProperties: got properties'
+    return response
+
+
+@service('set_joint_properties', SetJointProperties)
+def set_joint_properties(
+    server: Server, request: SetJointPropertiesRequest
+) -> SetJointPropertiesResponse:
+    """Change limits, damping and motor of a joint; what an empty array stands for stays.
+
+    Of the other fields, which belong to ODE's solver, nothing has a counterpart here.
+    """
+    require_finite(request)
+    joint = server.world.find_joint(request.joint_name)
+    if joint is not None:
+        _change(joint, request.ode_joint_config)
+    elif not _is_fixed(server.world, request.joint_name):
+        return refuse(SetJointPropertiesResponse(), 'SetJointProperties: joint not found')
+    return SetJointPropertiesResponse(True, 'SetJointProperties: properties set')
+
+
+@service('apply_joint_effort', ApplyJointEffort)
+def apply_joint_effort(
+    server: Server, request: ApplyJointEffortRequest
+) -> ApplyJointEffortResponse:
+    """Push a joint [N m or N] from `start_time`, for `duration`; negative: for ever."""
+    require_finite(request)
+    joint = server.world.find_joint(request.joint_name)
+    if joint is not None:
+        start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
+        server.world.jobs.add(joint, lambda: joint.push(request.effort), start, duration)
+    elif not _is_fixed(server.world, request.joint_name):
+        return refuse(ApplyJointEffortResponse(), 'ApplyJointEffort: joint not found')
+    return ApplyJointEffortResponse(True, 'ApplyJointEffort: effort set')
+
+
+@service('clear_joint_forces', JointRequest)
+def clear_joint_forces(server: Server, request: JointRequestRequest) -> JointRequestResponse:
+    """End all pushes on joints of that plain name, in all models."""
+    server.world.jobs.cancel(
+        lambda target: isinstance(target, Joint) and target.name == request.joint_name
+    )
+    return JointRequestResponse()
+
+
+def _is_fixed(world: World, name: str) -> bool:
+    """Tell whether a model has a joint of that plain or scoped name that cannot move."""
+    return any(
+        name in (joint.name, f'{model.name}::{joint.name}')
+        for model in world.models.values()
+        for joint in model.spec.joints
+        if joint.name not in model.joints
+    )
+
+
+def _change(joint: Joint, config: ODEJointProperties) -> None:
+    """Apply what has a counterpart here; of each array only the first axis counts."""
+    velocity, effort = joint.motor
+    if config.vel or config.fmax:
+        joint.set_motor(*config.vel[:1] or [velocity], *config.fmax[:1] or [effort])
+    changes = {}
+    for field, values in (
+        ('damping', config.damping), ('lower', config.loStop), ('upper', config.hiStop)
+    ):
+        with contextlib.suppress(IndexError):
+            changes[field] = values[0]
+    spec = changed_spec(joint.spec, changes)
+    if spec != joint.spec:
+        model = joint.model
+        joints = tuple(spec if other is joint.spec else other for other in model.spec.joints)
+        model.respecify(replace(model.spec, joints=joints))
+
+
+def changed_spec(spec: JointSpec, changes: dict[str, float]) -> JointSpec:
+    """Return the joint with other limits or damping.
+
+    Raises:
+        RequestError: the lower limit would be above the upper one, or damping would drive.
+
+    """
+    limits = {
+        name: None if abs(value) >= _ENDLESS else value
+        for name, value in changes.items()
+        if name != 'damping'
+    }
+    changed = replace(spec, **(changes | limits))
+    if None not in (changed.lower, changed.upper) and changed.lower > changed.upper:
+        raise RequestError(
+            f"loStop {changed.lower:g} of joint '{spec.name}' is above hiStop {changed.upper:g}"
+        )
+    if changed.damping < 0.0:
+        raise RequestError(f"damping of joint '{spec.name}' is {changed.damping:g}; it must not "
+                           'be negative')
+    return changed

@@ -1,0 +1,77 @@
+"""Services about lamps. They shine only in pictures that others make of the world."""
+
+from dataclasses import replace
+
+from gazebo_msgs.srv import (
+    DeleteLight,
+    DeleteLightRequest,
+    DeleteLightResponse,
+    GetLightProperties,
+    GetLightPropertiesRequest,
+    GetLightPropertiesResponse,
+    SetLightProperties,
+    SetLightPropertiesRequest,
+    SetLightPropertiesResponse,
+)
+from std_msgs.msg import ColorRGBA
+
+from ...sim.world_spec import Colour
+from ..conversions import read_pose, read_vector
+from ..server import Server
+from ..validity import require_finite
+from .registry import refuse, service
+
+_ATTENUATION = ('attenuation_constant', 'attenuation_linear', 'attenuation_quadratic')
+
+
+@service('get_light_properties', GetLightProperties)
+def get_light_properties(
+    server: Server, request: GetLightPropertiesRequest
+) -> GetLightPropertiesResponse:
+    """Tell a lamp's colour and how its light fades."""
+    response = GetLightPropertiesResponse()
+    light = server.world.lights.get(request.light_name)
+    if light is None:
+        text = f'getLightProperties: Requested light {request.light_name} not found!'
+        return refuse(response, text)
+    response.diffuse = ColorRGBA(*light.diffuse)
+    for name in _ATTENUATION:
+        setattr(response, name, getattr(light, name))
+    response.success = True
+    return response
+
+
+@service('set_light_properties', SetLightProperties)
+def set_light_properties(
+    server: Server, request: SetLightPropertiesRequest
+) -> SetLightPropertiesResponse:
+    """Change a lamp; every field counts, zeros included."""
+    require_finite(request)
+    lights, name = server.world.lights, request.light_name
+    if name not in lights:
+        text = f'setLightProperties: Requested light {name} not found!'
+        return refuse(SetLightPropertiesResponse(), text)
+    lights[name] = replace(
+        lights[name],
+        cast_shadows=request.cast_shadows,
+        diffuse=_read_colour(request.diffuse),
+        specular=_read_colour(request.specular),
+        direction=read_vector(request.direction),
+        pose=read_pose(request.pose),
+        **{field: getattr(request, field) for field in _ATTENUATION},
+    )
+    return SetLightPropertiesResponse(success=True)
+
+
+@service('delete_light', DeleteLight)
+def delete_light(server: Server, request: DeleteLightRequest) -> DeleteLightResponse:
+    """Take a lamp away; a name nobody has is answered in Gazebo's words, but at once."""
+    name = request.light_name
+    if server.world.lights.pop(name, None) is None:
+        text = f'DeleteLight: Timeout reached while removing light "{name}"'
+        return refuse(DeleteLightResponse(), text)
+    return DeleteLightResponse(True, f'DeleteLight: {name} successfully deleted')
+
+
+def _read_colour(message: ColorRGBA) -> Colour:
+    return (message.r, message.g, message.b, message.a)

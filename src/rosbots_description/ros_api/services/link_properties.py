@@ -1,0 +1,92 @@
+"""Services about what links weigh."""
+
+from dataclasses import replace
+
+from gazebo_msgs.srv import (
+    GetLinkProperties,
+    GetLinkPropertiesRequest,
+    GetLinkPropertiesResponse,
+    SetLinkProperties,
+    SetLinkPropertiesRequest,
+    SetLinkPropertiesResponse,
+)
+from geometry_msgs.msg import Point
+
+from ...sim.inertia import in_link_axes, is_positive, turnable
+from ...sim.model import Link
+from ...sim.pose import Pose
+from ...sim.spec import Inertial
+from ..conversions import read_vector
+from ..server import Server
+from ..validity import RequestError, require_finite
+from .links import NO_LINK, find_link
+from .registry import refuse, service
+
+_MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+# What SDF says of a link that says nothing, which only a static one may do.
+_UNWRITTEN = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
+
+
+@service('get_link_properties', GetLinkProperties)
+def get_link_properties(
+    server: Server, request: GetLinkPropertiesRequest
+) -> GetLinkPropertiesResponse:
+    """Tell mass, centre of mass and inertia about it; all in the axes of the link."""
+    response = GetLinkPropertiesResponse()
+    link = find_link(server.world, request.link_name)
+    if link is None:
+        return refuse(response, f'GetLinkProperties: {NO_LINK}')
+    inertial = in_link_axes(link.spec.inertial or _UNWRITTEN)
+    response.com.position = Point(*inertial.pose.position)
+    response.com.orientation.w = 1.0
+    response.gravity_mode, response.mass = link.spec.gravity, inertial.mass
+    for name in _MOMENTS:
+        setattr(response, name, getattr(inertial, name))
+    response.success, response.status_message = True, 'GetLinkProperties: got properties'
+    return response
+
+
+@service('set_link_properties', SetLinkProperties)
+def set_link_properties(
+    server: Server, request: SetLinkPropertiesRequest
+) -> SetLinkPropertiesResponse:
+    """Change mass, centre of mass, inertia and weight of a link; it goes on moving.
+
+    As in Gazebo the orientation of `com` does not matter: the tensor is in the link's axes.
+    """
+    require_finite(request)
+    link = find_link(server.world, request.link_name)
+    if link is None:
+        return refuse(SetLinkPropertiesResponse(), f'SetLinkProperties: {NO_LINK}')
+    inertial = Inertial(
+        request.mass,
+        Pose(read_vector(request.com.position)),
+        **{name: getattr(request, name) for name in _MOMENTS},
+    )
+    if not link.model.static:
+        inertial = _movable(link, inertial)
+    model = link.model
+    changed = replace(link.spec, inertial=inertial, gravity=request.gravity_mode)
+    links = tuple(changed if spec is link.spec else spec for spec in model.spec.links)
+    model.respecify(replace(model.spec, links=links))
+    return SetLinkPropertiesResponse(True, 'SetLinkProperties: properties set')
+
+
+def _movable(link: Link, inertial: Inertial) -> Inertial:
+    """Return what can be simulated.
+
+    Raises:
+        RequestError: mass or inertia are those of nothing that moves.
+
+    """
+    if inertial.mass <= 0.0:
+        raise RequestError(
+            f"mass is {inertial.mass}; link '{link.scoped_name}' moves, so it must be greater "
+            'than zero [kg]'
+        )
+    if not is_positive(inertial):
+        raise RequestError(
+            f"the inertia tensor for link '{link.scoped_name}' has a negative principal moment; "
+            'give the tensor about the centre of mass [kg m^2]'
+        )
+    return turnable(inertial)

@@ -1,0 +1,147 @@
+"""Services about links: their state, their mass, and pushes on them."""
+
+import logging
+
+from gazebo_msgs.srv import (
+    ApplyBodyWrench,
+    ApplyBodyWrenchRequest,
+    ApplyBodyWrenchResponse,
+    BodyRequest,
+    BodyRequestRequest,
+    BodyRequestResponse,
+    GetLinkState,
+    GetLinkStateRequest,
+    GetLinkStateResponse,
+    SetLinkState,
+    SetLinkStateRequest,
+    SetLinkStateResponse,
+)
+
+from ...sim.model import Link
+from ...sim.pose import IDENTITY, Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from ...sim.world import WORLD_FRAMES, World
+from ..conversions import fill_pose, fill_twist, read_pose, read_twist, read_vector
+from ..server import Server
+from ..validity import require_finite
+from .models import relative_state
+from .registry import refuse, service
+
+logger = logging.getLogger(__name__)
+
+NO_LINK = 'link not found, did you forget to scope the link by model name?'
+_NO_FRAME = (
+    'GetLinkState: reference reference_frame not found, '
+    'did you forget to scope the link by model name?'
+)
+
+
+def find_link(world: World, name: str) -> Link | None:
+    """Return the link that the name finds first; None if it finds something else first."""
+    entity = world.find_entity(name)
+    return entity if isinstance(entity, Link) else None
+
+
+@service('get_link_state', GetLinkState)
+def get_link_state(server: Server, request: GetLinkStateRequest) -> GetLinkStateResponse:
+    """Tell a link's pose and twist relative to an entity or the world."""
+    world, response = server.world, GetLinkStateResponse()
+    link = find_link(world, request.link_name)
+    if link is None:
+        return refuse(response, f'GetLinkState: {NO_LINK}')
+    entity = world.find_entity(request.reference_frame)
+    if entity is None and request.reference_frame not in WORLD_FRAMES:
+        return refuse(response, _NO_FRAME)
+    pose, twist = relative_state(link.state(), world.frame(request.reference_frame))
+    state = response.link_state
+    state.link_name, state.reference_frame = request.link_name, request.reference_frame
+    fill_pose(state.pose, pose)
+    fill_twist(state.twist, twist)
+    response.success, response.status_message = True, 'GetLinkState: got state'
+    return response
+
+
+@service('set_link_state', SetLinkState)
+def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkStateResponse:
+    """Bring a link to a pose and a velocity, given in a link or the world.
+
+    As in Gazebo the frame's velocity is subtracted from the one given, which is not turned.
+    """
+    require_finite(request)
+    state = request.link_state
+    link = find_link(server.world, state.link_name)
+    if link is None:
+        return refuse(SetLinkStateResponse(), 'SetLinkState: link does not exist')
+    frame = _link_frame(server.world, state.reference_frame)
+    if frame is None:
+        return refuse(SetLinkStateResponse(), 'SetLinkState: failed')
+    frame_pose, frame_twist = frame
+    given = read_twist(state.twist)
+    twist = Twist(
+        subtract(given.linear, frame_twist.linear), subtract(given.angular, frame_twist.angular)
+    )
+    pose = compose(frame_pose, read_pose(state.pose))
+    link.model.move_link(link, pose, Twist() if link.model.static else twist)
+    return SetLinkStateResponse(True, 'SetLinkState: success')
+
+
+@service('apply_body_wrench', ApplyBodyWrench)
+def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyBodyWrenchResponse:
+    """Push a link at its centre of mass from `start_time`, for `duration`; negative: for ever."""
+    require_finite(request)
+    world = server.world
+    link = find_link(world, request.body_name)
+    if link is None:
+        return refuse(ApplyBodyWrenchResponse(), 'ApplyBodyWrench: body does not exist')
+    frame = world.find_entity(request.reference_frame)
+    if frame is None and request.reference_frame not in WORLD_FRAMES:
+        return refuse(ApplyBodyWrenchResponse(), 'ApplyBodyWrench: reference_frame not found')
+    force, torque = world_wrench(
+        read_vector(request.wrench.force),
+        read_vector(request.wrench.torque),
+        read_vector(request.reference_point),
+        frame.pose if frame else None,
+        link.pose,
+    )
+    start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
+    world.jobs.add(link, lambda: link.push(force, torque), start, duration)
+    return ApplyBodyWrenchResponse(success=True)
+
+
+@service('clear_body_wrenches', BodyRequest)
+def clear_body_wrenches(server: Server, request: BodyRequestRequest) -> BodyRequestResponse:
+    """End all pushes on the link of that scoped name."""
+    server.world.jobs.cancel(
+        lambda target: isinstance(target, Link) and target.scoped_name == request.body_name
+    )
+    return BodyRequestResponse()
+
+
+def world_wrench(
+    force: Vector, torque: Vector, point: Vector, frame: Pose | None, body: Pose
+) -> tuple[Vector, Vector]:
+    """Return a wrench as force [N] and torque [N m] on a body, in world axes.
+
+    Args:
+        force: in the axes of the frame, acting at `point`.
+        torque: in the axes of the frame.
+        point: in the frame [m]; without a frame, an arm from the body.
+        frame: where the frame stands in the world; None: force and torque are in world axes.
+        body: where the pushed link stands in the world.
+
+    Upstream expresses the wrench in the body's axes and then uses it as if in the world's; this is
+    what its documentation says instead.
+    """
+    torque = add(torque, cross(point, force))
+    if frame is None:
+        return force, torque
+    force = rotate(frame.orientation, force)
+    arm = subtract(frame.position, body.position)
+    return force, add(rotate(frame.orientation, torque), cross(arm, force))
+
+
+def _link_frame(world: World, name: str) -> tuple[Pose, Twist] | None:
+    """Return the state of a link or, by its names, of the world; None for anything else."""
+    entity = world.find_entity(name)
+    if isinstance(entity, Link):
+        return entity.state()
+    return (IDENTITY, Twist()) if entity is None and name in WORLD_FRAMES else None

@@ -1,0 +1,55 @@
+"""Services about the physics of the world: step, pace, gravity and the solver."""
+
+from gazebo_msgs.msg import ODEPhysics
+from gazebo_msgs.srv import (
+    GetPhysicsProperties,
+    GetPhysicsPropertiesRequest,
+    GetPhysicsPropertiesResponse,
+    SetPhysicsProperties,
+    SetPhysicsPropertiesRequest,
+    SetPhysicsPropertiesResponse,
+)
+from geometry_msgs.msg import Vector3
+
+from ...sim.physics import PhysicsSettings, check
+from ..conversions import read_vector
+from ..server import Server
+from .registry import service
+
+
+@service('get_physics_properties', GetPhysicsProperties)
+def get_physics_properties(
+    server: Server, _request: GetPhysicsPropertiesRequest
+) -> GetPhysicsPropertiesResponse:
+    """Tell the settings that count at this moment."""
+    physics = server.world.physics
+    return GetPhysicsPropertiesResponse(
+        time_step=physics.step_size,
+        pause=server.world.paused,
+        max_update_rate=physics.max_update_rate,
+        gravity=Vector3(*physics.gravity),
+        ode_config=ODEPhysics(**{name: getattr(physics, name) for name in ODEPhysics.__slots__}),
+        success=True,
+        status_message='GetPhysicsProperties: got properties',
+    )
+
+
+@service('set_physics_properties', SetPhysicsProperties)
+def set_physics_properties(
+    server: Server, request: SetPhysicsPropertiesRequest
+) -> SetPhysicsPropertiesResponse:
+    """Use other settings from the next step on; every field counts, zeros included.
+
+    The real-time factor that the simulator keeps to, if the machine can, is `max_update_rate`
+    times `time_step`; a rate of 0 asks for as much as there is.
+    """
+    physics = PhysicsSettings(
+        step_size=request.time_step,
+        max_update_rate=request.max_update_rate,
+        gravity=read_vector(request.gravity),
+        **{name: getattr(request.ode_config, name) for name in ODEPhysics.__slots__},
+    )
+    check(physics)
+    server.world.set_physics(physics)
+    server.physics_changed()
+    return SetPhysicsPropertiesResponse(True, 'physics engine updated')

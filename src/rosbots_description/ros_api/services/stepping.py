@@ -1,0 +1,55 @@
+"""Single steps, which Gazebo offers only by its own transport: a service of ours."""
+
+import threading
+from functools import partial
+
+from rosbots_msgs.srv import Step, StepRequest, StepResponse
+
+from ..server import Server
+from .registry import EXTENSIONS, refuse, service
+
+CHUNK = 20  # steps between which other services are served
+
+_BUSY = 'Step: steps for another caller are being made; wait for their end'
+
+_stepping = threading.Lock()  # one caller at a time
+
+
+def _advance(server: Server, request: StepRequest) -> StepResponse:
+    """Make the steps in small portions, so that no other service waits for all of them."""
+    if not _stepping.acquire(blocking=False):
+        return refuse(StepResponse(sim_time=_now(server)), _BUSY)
+    try:
+        made = 0
+        while True:
+            portion = min(CHUNK, request.steps - made)
+            if not server.loop.call(partial(_make, server, portion)):
+                return refuse(StepResponse(sim_time=_now(server)), _refusal(made))
+            made += portion
+            if made == request.steps:
+                return StepResponse(True, f'Step: made {made} steps', _now(server))
+    finally:
+        _stepping.release()
+
+
+@service('step', Step, prepare=_advance, table=EXTENSIONS)
+def step(_server: Server, response: StepResponse) -> StepResponse:
+    """Advance paused time by exactly so many steps; the same steps give the same motion."""
+    return response
+
+
+def _make(server: Server, steps: int) -> bool:
+    """Make steps, on the world's own thread; tell whether time stands for that."""
+    if server.world.paused:
+        server.world.run(steps)
+    return server.world.paused
+
+
+def _refusal(made: int) -> str:
+    if made:
+        return f'Step: somebody unpaused the simulation after {made} steps'
+    return 'Step: the simulation is running; call pause_physics first'
+
+
+def _now(server: Server) -> float:
+    return server.loop.call(lambda: server.world.clock.now)

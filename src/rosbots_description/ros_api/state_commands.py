@@ -1,0 +1,35 @@
+"""The topics that move models and links: as the services of the same names, without an answer.
+
+Subscribes:
+    ~set_link_state (gazebo_msgs/LinkState): see the service ~set_link_state.
+    ~set_model_state (gazebo_msgs/ModelState): see the service ~set_model_state.
+What fails is in the log only.
+"""
+
+from collections.abc import Callable
+
+import rospy
+from gazebo_msgs.msg import LinkState, ModelState
+from gazebo_msgs.srv import SetLinkStateRequest, SetModelStateRequest
+from genpy import Message
+
+from .server import Server
+from .services.registry import SERVICES, respond
+
+QUEUE = 10  # messages that may wait, as upstream
+
+
+def subscribe_states(server: Server) -> None:
+    """Listen to both topics."""
+    for name, message, request in (
+        ('set_link_state', LinkState, SetLinkStateRequest),
+        ('set_model_state', ModelState, SetModelStateRequest),
+    ):
+        rospy.Subscriber(f'~{name}', message, _command(server, name, request), queue_size=QUEUE)
+
+
+def _command(server: Server, name: str, request: type) -> Callable[[Message], None]:
+    def carry_out(message: Message) -> None:
+        respond(server, SERVICES[name], request(message))
+
+    return carry_out

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Every service and topic by name, type and MD5 sum; the ones that differ by parameter."""
+
+import sys
+from threading import Thread
+
+import rospy
+import rosservice
+import rostest
+from gazebo_msgs.msg import PerformanceMetrics
+from network import (
+    OF_ROSOUT,
+    OUR_SERVICES,
+    OUR_TOPICS,
+    PUBLISHED,
+    SERVICES,
+    SUBSCRIBED,
+    longest,
+    services_of,
+    type_and_sum,
+)
+from rosbots_msgs.srv import Step
+from simulator import SimulatorTest, proxy, topics_of, wait_until
+
+METRICS = '/gazebo/performance_metrics'
+ANSWER_TIME = 0.01  # [s] promised of each service while nothing else goes on
+CALLS = 30  # of which the faster quarter counts: other processes want the processor too
+MANY_STEPS = 20000  # with the robot, far more than a moment
+WAIT = 0.25  # [s, wall] that others may wait meanwhile, on a machine that is not alone
+NEVER_CALLED = {'spawn_urdf_model', 'spawn_sdf_model', 'set_physics_properties'}
+
+
+class NetworkTest(SimulatorTest):
+
+    def test_services(self):
+        wait_until(lambda: 'set_parameters' in services_of(), 'dynamic_reconfigure')
+        self.assertEqual(services_of(), set(SERVICES) | OUR_SERVICES)
+        for name, expected in SERVICES.items():
+            with self.subTest(name):
+                self.assertEqual(type_and_sum(name), expected)
+        self.assertEqual(type_and_sum('step'), ('rosbots_msgs/Step', Step._md5sum))
+
+    def test_topics(self):
+        wait_until(lambda: set(PUBLISHED) <= topics_of(), 'dynamic_reconfigure')
+        self.assertEqual(
+            topics_of() - OF_ROSOUT, set(PUBLISHED) | set(SUBSCRIBED) | OUR_TOPICS | {METRICS})
+        # rospy connects only where type and MD5 sum agree.
+        ends = [rospy.Subscriber(name, kind) for name, kind in PUBLISHED.items()]
+        ends += [rospy.Publisher(name, kind, queue_size=1) for name, kind in SUBSCRIBED.items()]
+        self._connections += ends
+        wait_until(lambda: all(end.get_num_connections() for end in ends), 'all connections')
+
+    def test_performance_metrics(self):
+        metrics = self.collect(METRICS, PerformanceMetrics)
+        wait_until(lambda: len(metrics) > 10, 'two seconds of metrics')
+        self.assertAlmostEqual(metrics[-1].real_time_factor, 1.0, delta=0.2)
+        self.assertEqual(metrics[-1].sensors, [])
+        self.assertGreater(metrics[-1].header.stamp.to_sec(), metrics[0].header.stamp.to_sec())
+        self.pause()
+        metrics.clear()
+        wait_until(lambda: len(metrics) > 3 and metrics[-1].real_time_factor == 0.0, 'a stop')
+
+    def test_every_service_answers_at_once(self):
+        late = {}
+        for name in set(SERVICES) - NEVER_CALLED:
+            kind = rosservice.get_service_class_by_name(f'/gazebo/{name}')
+            call = rospy.ServiceProxy(f'/gazebo/{name}', kind, persistent=True)
+            call()
+            times = sorted(longest([call]) for _ in range(CALLS))
+            call.close()
+            if times[CALLS // 4] > ANSWER_TIME:
+                late[name] = times[CALLS // 4]
+        self.assertEqual(late, {})
+
+    def test_step_advances_paused_time_and_lets_others_in(self):
+        step = proxy('step', Step)
+        response = step(10)
+        self.assertFalse(response.success)
+        self.assertIn('pause_physics', response.status_message)
+        self.spawn()
+        self.pause()
+        before = self.world().sim_time
+        for steps in (0, 1, 999):
+            response = step(steps)
+            self.assertTrue(response.success)
+        self.assertAlmostEqual(response.sim_time, before + 1.0, places=9)
+        self.assertEqual(self.world().sim_time, response.sim_time)
+        stepping = Thread(target=step, args=(MANY_STEPS,))
+        stepping.start()
+        wait_until(lambda: self.world().sim_time > before + 1.0, 'the first of them')
+        other = step(1)
+        self.assertFalse(other.success)
+        self.assertIn('another caller', other.status_message)
+        waits = []
+        while stepping.is_alive():
+            waits.append(longest([self.world]))
+        self.assertGreater(len(waits), 10)
+        self.assertLess(max(waits), WAIT)
+        self.assertAlmostEqual(self.world().sim_time, before + 1.0 + MANY_STEPS / 1000, places=9)
+
+    def test_somebody_unpauses_while_steps_are_made(self):
+        step, responses = proxy('step', Step), []
+        self.pause()
+        begin = self.world().sim_time
+        stepping = Thread(target=lambda: responses.append(step(10 * 1000 * 1000)))
+        stepping.start()
+        wait_until(lambda: self.world().sim_time > begin, 'the first steps')
+        self.unpause()
+        stepping.join(5.0)
+        self.assertFalse(responses[0].success)
+        self.assertIn('somebody unpaused', responses[0].status_message)
+
+    def test_the_same_steps_give_the_same_motion(self):
+        step = proxy('step', Step)
+        self.pause()
+        self.spawn()
+        ends = []
+        for _ in range(2):
+            self.reset_simulation()
+            self.assertEqual(step(1500).sim_time, 1.5)
+            ends.append(self.model_state('rosbots', '').pose)
+        self.assertEqual(*ends)
+        self.assertLess(ends[0].position.z, 0.0)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_network', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'network', NetworkTest, sys.argv)

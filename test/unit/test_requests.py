@@ -1,0 +1,121 @@
+"""What services compute from requests: refusals, wrenches, limits, pace."""
+
+import math
+
+import pytest
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import SetModelConfigurationRequest, SpawnModelRequest
+
+from rosbots_description.ros_api.performance import Pace
+from rosbots_description.ros_api.reconfigure import PARAMETERS, settings
+from rosbots_description.ros_api.services.joints import changed_spec
+from rosbots_description.ros_api.services.links import world_wrench
+from rosbots_description.ros_api.services.physics import get_physics_properties
+from rosbots_description.ros_api.validity import RequestError, require_finite
+from rosbots_description.sim.errors import SimError
+from rosbots_description.sim.physics import PhysicsSettings, check
+from rosbots_description.sim.pose import Pose, from_rpy
+from rosbots_description.sim.spec import JointSpec
+
+HINGE = JointSpec('hinge', 'revolute', 'a', 'b', lower=-1.0, upper=1.0)
+QUARTER = from_rpy(0.0, 0.0, math.pi / 2)
+
+
+@pytest.mark.parametrize('number', [math.nan, math.inf, -math.inf])
+def test_a_number_that_is_not_finite_is_named(number):
+    message = ModelState()
+    message.twist.angular.y = number
+    with pytest.raises(RequestError, match=f'twist.angular.y is {number}; it must be a finite'):
+        require_finite(message)
+
+
+def test_a_number_in_a_list_is_named():
+    request = SetModelConfigurationRequest(joint_positions=[0.0, math.nan])
+    with pytest.raises(RequestError, match=r'joint_positions\[1\] is nan'):
+        require_finite(request)
+
+
+def test_texts_and_finite_numbers_pass():
+    require_finite(SpawnModelRequest(model_name='nan', model_xml='inf'))
+
+
+def test_without_a_frame_a_wrench_is_in_world_axes_and_the_point_is_its_arm():
+    body = Pose((5.0, 0.0, 0.0), QUARTER)
+    force, torque = world_wrench((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 2.0, 0.0), None, body)
+    assert force == (1.0, 0.0, 0.0)
+    assert torque == pytest.approx((0.0, 0.0, -1.0))
+
+
+def test_in_a_frame_a_wrench_is_turned_and_acts_where_the_frame_stands():
+    frame, body = Pose((1.0, 0.0, 0.0), QUARTER), Pose((0.0, 0.0, 0.0))
+    force, torque = world_wrench(
+        (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), frame, body)
+    assert force == pytest.approx((0.0, 1.0, 0.0))
+    # Its own torque turned, -2 of the point's arm, +1 of the frame's.
+    assert torque == pytest.approx((0.0, 1.0, -1.0))
+
+
+def test_limits_and_damping_of_a_joint_change_alone():
+    assert changed_spec(HINGE, {'upper': 2.0}).upper == 2.0
+    assert changed_spec(HINGE, {'upper': 2.0}).lower == -1.0
+    assert changed_spec(HINGE, {'damping': 0.5}).damping == 0.5
+    assert changed_spec(HINGE, {}) == HINGE
+    assert changed_spec(HINGE, {'lower': -1e16, 'upper': 1e16}).lower is None
+
+
+@pytest.mark.parametrize(
+    ('changes', 'words'),
+    [
+        ({'lower': 1.5}, 'loStop 1.5'),
+        ({'upper': -2.0}, 'hiStop -2'),
+        ({'damping': -1.0}, 'damping'),
+    ],
+)
+def test_limits_that_cross_and_damping_that_drives_are_refused(changes, words):
+    with pytest.raises(RequestError, match=words):
+        changed_spec(HINGE, changes)
+
+
+def test_pace_is_simulated_per_wall_time_and_survives_a_reset():
+    pace = Pace(10.0, 100.0)
+    assert pace.look(11.0, 102.0) == 0.5
+    assert pace.look(11.0, 103.0) == 0.0
+    assert pace.look(0.1, 104.0) == 0.0
+    assert pace.look(2.1, 105.0) == 2.0
+    assert pace.look(2.2, 105.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ('changes', 'words'),
+    [
+        ({'step_size': 0.0}, 'step_size is 0; it must be from 1e-09 to 10'),
+        ({'step_size': 11.0}, 'step_size is 11'),
+        ({'max_update_rate': -1.0}, 'max_update_rate is -1; .* 0 is as fast as possible'),
+        ({'max_update_rate': 1e-5}, 'at least 0.001'),
+        ({'gravity': (0.0, math.nan, 0.0)}, 'gravity is .* finite'),
+        ({'erp': math.inf}, 'erp is inf'),
+        ({'sor_pgs_iters': 10_001}, 'sor_pgs_iters is 10001'),
+        ({'sor_pgs_precon_iters': 10_001}, 'sor_pgs_precon_iters is 10001'),
+        ({'max_contacts': 4_000_000_000}, 'max_contacts is'),
+    ],
+)
+def test_settings_that_no_world_can_have_are_refused(changes, words):
+    with pytest.raises(SimError, match=words):
+        check(PhysicsSettings(**changes))
+
+
+def test_unusual_settings_are_taken():
+    check(PhysicsSettings())
+    check(PhysicsSettings(step_size=10.0, max_update_rate=0.0, gravity=(0.0, 0.0, 0.0),
+                          sor_pgs_iters=0, max_contacts=0))
+
+
+def test_every_reconfigure_parameter_has_a_value_and_its_type():
+    class Server:
+        class world:  # noqa: N801
+            physics, paused = PhysicsSettings(), False
+
+    live = settings(get_physics_properties(Server, None))
+    assert {name: type(value) for name, value in live.items()} == {
+        p.name: type(p.default) for p in PARAMETERS}
+    assert (live['sor_pgs_iters'], live['gravity_z']) == (50, -9.8)
