@@ -1,6 +1,7 @@
 """Forces and torques give the accelerations of rigid-body mechanics, for as long as asked."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from support import SPAWN_POSE, empty_world, robot_spec
@@ -74,6 +75,18 @@ def test_a_push_lasts_from_its_start_for_its_duration(start, duration, speed):
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), start, duration)
         world.run(1000)
         assert model.twist.linear[0] == pytest.approx(speed, abs=0.0021)
+
+
+def test_a_push_keeps_its_time_when_the_step_size_changes():
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), start=1.0)
+        world.run(500)
+        world.set_physics(replace(world.physics, step_size=0.002))
+        world.run(240)
+        assert model.twist.linear[0] == 0.0
+        world.run(600)
+        assert model.twist.linear[0] == pytest.approx(1.0, abs=0.005)
 
 
 def test_a_cancelled_push_ends():

@@ -209,14 +209,6 @@ def test_a_model_lives_on_without_a_plugin_that_fails(caplog):
     assert "couldn't get wheel hinge joint named left_joint" in caplog.text
 
 
-def test_sensors_that_do_nothing_are_named_in_one_line(caplog):
-    sensor = '<gazebo reference="box"><sensor type="ray" name="scan"/></gazebo>'
-    with empty_world() as world:
-        world.spawn(urdf_spec(box_urdf('1 1 1', 1.0, sensor)), 'robot', Pose())
-    lines = [r.getMessage() for r in caplog.records if 'not simulated' in r.getMessage()]
-    assert lines == ["model 'robot': not simulated: sensor 'scan' of link 'box' (line 1)"]
-
-
 def test_listeners_hear_of_models_coming_and_going():
     class Listener:
         def model_spawned(self, model):

@@ -80,7 +80,9 @@ def registered():
 
 
 @pytest.mark.parametrize(
-    'section', ['Services', 'Topics', 'Parameters', 'Arguments of empty_world.launch', 'Plugins']
+    'section',
+    ['Services', 'Topics', 'Parameters', 'Arguments of empty_world.launch', 'Plugins',
+     'Launch files and programs', 'Paths and packages'],
 )
 def test_each_name_has_one_row_with_a_known_state(section):
     counts = Counter(name for name, _, _ in rows(section))
@@ -105,3 +107,9 @@ def test_every_plugin_has_a_row_that_says_it_is_there():
 def test_every_argument_of_the_launch_file_has_a_row():
     arguments = {arg.get('name') for arg in ElementTree.parse(EMPTY_WORLD).getroot().iter('arg')}
     assert arguments == set(table('Arguments of empty_world.launch'))
+
+
+def test_every_launch_file_and_program_of_gazebo_ros_has_a_row():
+    folder = EMPTY_WORLD.parents[1]
+    files = {path.name for path in [*folder.glob('launch/*.launch'), *folder.glob('scripts/*')]}
+    assert files == set(table('Launch files and programs'))

@@ -36,6 +36,10 @@ _SURFACE_PATHS = {'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': '
                   'surface/contact/ode/max_vel': 'max_vel',
                   'surface/contact/ode/min_depth': 'min_depth', 'laser_retro': 'laser_retro'}
 _PARTS = ('sensor', 'light', 'projector')
+# Read and kept for whoever asks, but nothing here acts on it.
+_KEPT = {'mu2', 'fdir1', 'maxVel', 'minDepth', 'maxContacts', 'laserRetro'}
+_KEPT_PATHS = {'surface/friction/ode/mu2', 'surface/friction/ode/fdir1', 'laser_retro',
+               'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'max_contacts'}
 # Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
 _SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
                 'fudgeFactor', 'springReference', 'canonicalBody'}
@@ -60,6 +64,7 @@ class GazeboTags:
     static: bool = False
     plugins: list[PluginSpec] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # sentences to warn with
+    idle: list[str] = field(default_factory=list)  # elements without effect here
 
 
 def read_gazebo_tags(
@@ -151,12 +156,18 @@ def _read_link_block(
 ) -> None:
     for child in block:
         tag = child.tag
+        if tag in _KEPT:
+            tags.idle.append(_mention(child))
         if tag in _SURFACE_NUMBERS:
             _set_surface(link, _SURFACE_NUMBERS[tag], child)
         elif tag in _LINK_READERS:
             _LINK_READERS[tag](child, link)
+            if tag == 'collision':
+                kept = [child.find(path) for path in sorted(_KEPT_PATHS)]
+                tags.idle += [_mention(part) for part in kept if part is not None]
         elif tag in _PARTS:
             link.sensors.append(to_element(child))
+            unread.append(_mention(child))
         elif tag == 'material':
             _read_script(child, link, tags)
         elif tag == 'visual':
@@ -263,8 +274,8 @@ def _read_joint_block(
                 if truth(child):
                     # Where both are given, preserveFixedJoint wins, whichever comes first.
                     tags.kept_joints.setdefault(joint, REVOLUTE)
-            case tag if tag not in _SOLVER_TAGS:
-                unread.append(_mention(child))
+            case tag:
+                (tags.idle if tag in _SOLVER_TAGS else unread).append(_mention(child))
 
 
 def _mention(element: etree._Element) -> str:

@@ -69,6 +69,9 @@ def load_urdf(
     pose = _robot_origin(robot)
     for note in [*notes, *_lumping_notes(lumped)]:
         logger.warning("model '%s' (%s): %s", name, source, note.removeprefix(f'{source}, '))
+    if tags.idle:
+        idle = ', '.join(dict.fromkeys(tags.idle))
+        logger.debug("model '%s' (%s): without effect here: %s", name, source, idle)
     return spec, pose
 
 

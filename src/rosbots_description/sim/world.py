@@ -115,7 +115,6 @@ class World:
         self.models[name] = model
         for plugin in spec.plugins:
             self._load_plugin(model, plugin)
-        _name_idle_parts(model)
         for listener in self.listeners:
             listener.model_spawned(model)
         return model
@@ -220,14 +219,3 @@ class World:
     def _tell_reset(self) -> None:
         for listener in self.listeners:
             listener.world_reset()
-
-
-def _name_idle_parts(model: Model) -> None:
-    """Say in one line which sensors, and the like, of a model do nothing."""
-    idle = [
-        f"{part.tag} '{part.attributes.get('name', '')}' of link '{link.name}' (line {part.line})"
-        for link in model.links.values()
-        for part in link.spec.sensors
-    ]
-    if idle:
-        logger.warning("model '%s': not simulated: %s", model.name, ', '.join(idle))

@@ -1,0 +1,66 @@
+"""doc/gazebo_compatibility.md says of each child of a URDF's <gazebo> what is done with it."""
+
+import logging
+
+import pytest
+from support import ROOT
+
+from rosbots_description.sim import gazebo_tags
+from rosbots_description.sim.urdf import load_urdf
+
+MISSING = 'not supported'
+INERTIAL = ('<inertial><mass value="1"/>'
+            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
+SHAPES = ''.join(f'<{tag}><geometry><sphere radius="1"/></geometry></{tag}>'
+                 for tag in ('collision', 'visual'))
+ROBOT = f'''<robot name="r"><link name="a">{INERTIAL}{SHAPES}</link><link name="b">{INERTIAL}</link>
+<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'''
+VALUES = dict.fromkeys(('diffuse', 'ambient'), '1 0 0 1') \
+    | dict.fromkeys(('material', 'name'), 'Gazebo/Red') | {'fdir1': '1 0 0', 'gravity': '0'} \
+    | dict.fromkeys(('static', 'selfCollide', 'self_collide', 'preserveFixedJoint',
+                     'disableFixedJointLumping'), '1')
+
+
+def rows():
+    """Return (name, state, remark) of each row of the table below its heading."""
+    text = (ROOT / 'doc' / 'gazebo_compatibility.md').read_text(encoding='utf-8')
+    lines = text.split('\n## URDF gazebo elements\n')[1].split('\n## ')[0].splitlines()
+    cells = [line.strip('|').split('|') for line in lines if line.startswith('| `')]
+    return [(name.strip(' `'), state.strip(), how.strip()) for name, state, how in cells]
+
+
+ROWS = rows()
+
+
+def robot(path):
+    """Return the ROBOT with the element of a row in a <gazebo> block, as a model."""
+    owner, *tags = path.split('/')
+    reference = {'link': ' reference="a"', 'joint': ' reference="j"', 'model': ''}[owner]
+    text = VALUES.get(tags[-1], '2')
+    for tag in reversed(tags):
+        filename = ' filename="lib.so"' if tag == 'plugin' else ''
+        text = f'<{tag}{filename}>{text}</{tag}>'
+    return load_urdf(f'{ROBOT}<gazebo{reference}>{text}</gazebo></robot>', 'm')[0]
+
+
+@pytest.mark.parametrize('name, state, how', ROWS)
+def test_a_gazebo_element_does_what_its_row_says(name, state, how, caplog):
+    plain = load_urdf(f'{ROBOT}</robot>', 'm')[0]
+    with caplog.at_level(logging.DEBUG):
+        changed = robot(name) != plain
+    said = {record.getMessage(): record.levelno for record in caplog.records}
+    if state != MISSING:
+        assert changed
+        assert said == {}
+        return
+    (sentence,) = said
+    assert f"<{name.rpartition('/')[2]}>" in sentence
+    assert (said[sentence] == logging.DEBUG) == ('level debug' in how)
+
+
+def test_every_gazebo_element_that_is_known_has_a_row():
+    tags = {*gazebo_tags._SURFACE_NUMBERS, *gazebo_tags._LINK_READERS, *gazebo_tags._PARTS}
+    known = {f'link/{tag}' for tag in tags - {'collision'}} \
+        | {f'link/collision/{path}' for path in gazebo_tags._SURFACE_PATHS} \
+        | {f'joint/{tag}' for tag in gazebo_tags._JOINT_TAGS}
+    assert known <= {name for name, _, _ in ROWS}
