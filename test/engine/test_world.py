@@ -12,7 +12,7 @@ from support import SETTLED, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf
 from rosbots_description.sim.errors import ModelError, NotFoundError
 from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.schedule import Hook
-from rosbots_description.sim.spec import Element, PluginSpec
+from rosbots_description.sim.spec import Element, Inertial, LinkSpec, ModelSpec, PluginSpec
 
 MEGABYTE = 2**20
 LEAK_ALLOWED = 20 * MEGABYTE
@@ -177,6 +177,14 @@ def test_entities_are_found_by_plain_and_scoped_names_in_world_order():
         assert world.find_entity('base_link') is None  # lumped
         collision = world.find_entity('wheel_left_link_collision')
         assert collision.state()[0].position[1] == pytest.approx(0.5125, abs=1e-3)
+
+
+def test_links_of_inner_models_are_found_by_each_of_their_names():
+    body = LinkSpec('inner::body', inertial=Inertial(1.0, Pose(), 0.1, 0.1, 0.1))
+    with empty_world() as world:
+        link = world.spawn(ModelSpec('outer', (body,)), 'outer', Pose()).links['inner::body']
+        for name in ('outer::inner::body', 'inner::body', 'body'):
+            assert world.find_entity(name) is link
 
 
 @pytest.mark.parametrize('name', ['', 'world', 'map', '/map'])

@@ -20,6 +20,8 @@ class Link:
         self.spec = spec
         self.name = spec.name
         self.scoped_name = f'{model.name}::{spec.name}'
+        # A link of a model within the model is called `inner::link` here and `link` in its own.
+        self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
         self.collisions = {c.name: Collision(self, c) for c in spec.collisions}
 
     @property
@@ -49,6 +51,7 @@ class Collision:
         self.spec = spec
         self.name = spec.name
         self.scoped_name = f'{link.scoped_name}::{spec.name}'
+        self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
 
     @property
     def pose(self) -> Pose:

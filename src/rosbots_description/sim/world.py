@@ -164,10 +164,10 @@ class World:
             if name == model.name:
                 return model
             for link in model.links.values():
-                if name in (link.name, link.scoped_name):
+                if name in link.names:
                     return link
                 for collision in link.collisions.values():
-                    if name in (collision.name, collision.scoped_name):
+                    if name in collision.names:
                         return collision
         return None
 
