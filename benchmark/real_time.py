@@ -2,12 +2,13 @@
 """Measure the whole server on the wire, at its default rate, with a robot that drives.
 
 odom, tf, joint_states and model_states are subscribed. Printed: real-time factor (to be 1.00 +-
-0.01), messages per simulated second, the server's share of a core and its memory, and how long
-start and spawn take.
+0.01), messages per simulated second, the server's share of a core and its memory, how long start
+and spawn take, and how long services take to answer.
 """
 
 import os
 import socket
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -17,6 +18,7 @@ from pathlib import Path
 
 import rosgraph
 import rospy
+import rosservice
 from gazebo_msgs.msg import ModelStates
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -26,6 +28,11 @@ from tf2_msgs.msg import TFMessage
 from rosbots_description.cli.launched import Launched
 
 SECONDS = 10.0  # [s, wall]
+CALLS = 50  # of each service
+SLOWEST = 5  # services to be named
+# What an empty request would change for what comes after.
+NOT_CALLED = {'spawn_urdf_model', 'spawn_sdf_model', 'set_physics_properties', 'pause_physics',
+              'reset_world', 'reset_simulation', 'step'}
 TOPICS = {
     '/odom': Odometry,
     '/tf': TFMessage,
@@ -77,6 +84,26 @@ def measure() -> None:
     print(f'memory                {pages * os.sysconf("SC_PAGE_SIZE") / 1e6:.0f} MB')
 
 
+def measure_services() -> None:
+    """Print how long services of an idle world take to answer; each is to stay below 10 ms."""
+    times = {}
+    for name in rosservice.get_service_list(node='/gazebo'):
+        if name.rsplit('/', 1)[1] in NOT_CALLED:
+            continue
+        service_class = rosservice.get_service_class_by_name(name)
+        call = rospy.ServiceProxy(name, service_class, persistent=True)
+        call()
+        taken = []
+        for _ in range(CALLS):
+            begin = time.perf_counter()
+            call()
+            taken.append(time.perf_counter() - begin)
+        call.close()
+        times[statistics.median(taken)] = name
+    for median in sorted(times, reverse=True)[:SLOWEST]:
+        print(f'{times[median]:37} answers in {1000 * median:.2f} ms (median)')
+
+
 def main() -> int:
     """Start everything on a master of its own, measure, end it; return the exit code."""
     with socket.socket() as probe:
@@ -101,6 +128,7 @@ def main() -> int:
                     return 1
             print(f'spawn.launch          {time.monotonic() - begin:.2f} s in all')
             measure()
+            measure_services()
             rospy.signal_shutdown('measured')
     return 0
 

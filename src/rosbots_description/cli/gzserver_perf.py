@@ -13,11 +13,9 @@ LINES = 40  # of the table
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run gzserver; print where the thread that simulates spent its time when it ends.
+    """Run gzserver, print where the simulating thread spent its time, return the exit code.
 
     The simulation is slower meanwhile. Threads that answer ROS are not in the table.
-
-    :return: the server's exit code.
     """
     profile = cProfile.Profile()
     try:

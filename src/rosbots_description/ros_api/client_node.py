@@ -26,9 +26,13 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
     in the midst of whatever the main thread does, and where that holds a lock (of /rosout, say)
     it takes 5 s. Hence rospy.on_shutdown functions run beside the main thread.
 
-    :param arguments: the command line without the program's name, for ROS remappings.
-    :param anonymous: make the name unique, unless the command line gives one with __name.
-    :raises KeyboardInterrupt: Ctrl-C while waiting.
+    Args:
+        name: of the node.
+        arguments: the command line without the program's name, for ROS remappings.
+        anonymous: make the name unique, unless the command line gives one with __name.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C while waiting.
     """
     if not rosgraph.is_master_online():
         # Before the node exists logging has no handler but its last resort, standard error.

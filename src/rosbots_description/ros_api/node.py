@@ -1,13 +1,11 @@
 """The node /gazebo: a world, the loop that owns it, and everything that connects it to ROS.
 
-Parameters
-----------
+Parameters:
     ~enable_ros_network (bool, true): false leaves only /clock, the time parameter and plugins.
     ~enable_performance_metrics (bool, false): true adds the topic ~performance_metrics.
     ~extensions (bool, true): false leaves out all topics and services that Gazebo does not have.
     ~pub_clock_frequency (int, 0) [Hz]: how often /clock is published; 0: at every step.
     /use_sim_time is set to true if nobody has set it.
-
 """
 
 import logging
