@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Everything works from the install space too, without a look at the source tree."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from gazebo_msgs.srv import GetModelState
+from simulator import wait_until
+
+BUILD = Path(__file__).resolve().parents[2] / '.ws' / 'build'
+PATIENCE = 60.0  # [s, wall] for installing, and for a start on a busy machine
+OURS = ('ROS_PACKAGE_PATH', 'PYTHONPATH', 'CMAKE_PREFIX_PATH', 'LD_LIBRARY_PATH')
+
+
+class InstallSpaceTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.root = Path(tempfile.mkdtemp())
+        subprocess.run(
+            ['make', '-C', str(BUILD), 'install'], env={**os.environ, 'DESTDIR': str(cls.root)},
+            stdout=subprocess.DEVNULL, check=True, timeout=PATIENCE)
+        (cls.setup,) = cls.root.rglob('install/setup.bash')
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.root)
+
+    def start(self, command):
+        """Run a command in an environment that knows the install space and nothing of ours."""
+        environment = {name: value for name, value in os.environ.items() if name not in OURS}
+        return subprocess.Popen(
+            ['bash', '-c', f'. "{self.setup}" && exec {command}'], env=environment, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+
+    def output(self, command):
+        printed, _ = self.start(command).communicate(timeout=PATIENCE)
+        return printed.strip()
+
+    def test_packages_and_modules_come_from_there(self):
+        for package in ('rosbots_description', 'gazebo_ros', 'gazebo_msgs', 'xacro'):
+            self.assertTrue(self.output(f'rospack find {package}').startswith(str(self.root)))
+        code = 'import rosbots_description, gazebo_ros.gazebo_interface as g; ' \
+            'print(rosbots_description.__file__, g.__file__)'
+        for path in self.output(f'python3 -c "{code}"').split():
+            self.assertTrue(path.startswith(str(self.root)), path)
+
+    def test_the_robot_drives_there(self):
+        launched = self.start('roslaunch rosbots_description simulation.launch gui:=false')
+        try:
+            rospy.wait_for_service('/gazebo/get_model_state', PATIENCE)
+            state = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
+            wait_until(lambda: state('rosbots', '').pose.position.z < -0.11, 'the robot', PATIENCE)
+        finally:
+            os.killpg(launched.pid, signal.SIGINT)
+            printed, _ = launched.communicate(timeout=PATIENCE)
+        self.assertIn('Successfully spawned entity', printed)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_install_space', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'install_space', InstallSpaceTest, sys.argv)
