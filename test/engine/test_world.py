@@ -4,15 +4,26 @@ import hashlib
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from support import SETTLED, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
 from rosbots_description.sim.errors import ModelError, NotFoundError
+from rosbots_description.sim.plugins.diff_drive import DiffDrive
 from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.schedule import Hook
-from rosbots_description.sim.spec import Element, Inertial, LinkSpec, ModelSpec, PluginSpec
+from rosbots_description.sim.spec import (
+    Box,
+    Collision,
+    Element,
+    Inertial,
+    LinkSpec,
+    Mesh,
+    ModelSpec,
+    PluginSpec,
+)
 
 MEGABYTE = 2**20
 LEAK_ALLOWED = 20 * MEGABYTE
@@ -215,6 +226,61 @@ def test_a_model_lives_on_without_a_plugin_that_fails(caplog):
         assert model.plugins == []
         world.run(10)
     assert "couldn't get wheel hinge joint named left_joint" in caplog.text
+
+
+def test_a_plugin_that_fails_leaves_the_wheels_alone():
+    spec = robot_spec()
+    (drive,) = spec.plugins
+    tags = tuple(
+        replace(tag, text='nowhere') if tag.tag == 'rightJoint' else tag
+        for tag in drive.element.children
+    )
+    broken = replace(drive, element=replace(drive.element, children=tags))
+    with empty_world() as world:
+        model = world.spawn(replace(spec, plugins=(broken,)), 'rosbots', SPAWN_POSE)
+        assert model.plugins == []
+        assert model.body.motors['wheel_left_joint'] == (0.0, 0.0)
+
+
+def test_a_spawn_that_breaks_leaves_nothing_behind(monkeypatch):
+    def break_down(plugin):
+        raise RuntimeError('a fault of ours')
+
+    with empty_world() as world:
+        monkeypatch.setattr(DiffDrive, 'load', break_down)
+        with pytest.raises(RuntimeError):
+            world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        monkeypatch.undo()
+        assert list(world.models) == ['ground_plane']
+        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(SETTLED)
+        world.delete('rosbots')
+
+
+def test_a_body_that_cannot_be_made_whole_is_not_made_at_all():
+    good, bad = (
+        LinkSpec(name, Pose((0.0, 0.0, height)), collisions=(Collision('c', shape),))
+        for name, height, shape in (
+            ('good', 0.5, Box((1.0, 1.0, 1.0))),
+            ('bad', 5.0, Mesh('/no/such/mesh.obj')),
+        )
+    )
+    ball = urdf_spec(box_urdf('0.2 0.2 0.2', 1.0))
+    with empty_world() as world:
+        with pytest.raises(ModelError):
+            world.spawn(ModelSpec('wall', (good, bad), static=True), 'wall', Pose())
+        box = world.spawn(ball, 'box', Pose((0.0, 0.0, 2.0)))
+        world.run(1500)
+        assert box.pose.position[2] == pytest.approx(0.1, abs=0.01)  # nothing unseen in its way
+
+
+def test_reset_world_brings_static_models_home_too():
+    static = box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>')
+    with empty_world() as world:
+        wall = world.spawn(urdf_spec(static), 'wall', Pose((1.0, 0.0, 0.5)))
+        wall.set_pose(Pose((7.0, 0.0, 0.5)))
+        world.reset_world()
+        assert wall.pose.position == pytest.approx((1.0, 0.0, 0.5))
 
 
 def test_listeners_hear_of_models_coming_and_going():

@@ -45,7 +45,7 @@ class Wheel:
     def set_motor(self, velocity, effort):
         self.velocity, self.effort = velocity, effort
 
-    def load(self):
+    def normal_force(self):
         return self.weight
 
 
@@ -284,6 +284,11 @@ def test_the_namespace_is_the_models_name_unless_given(tag, namespace):
 def test_a_missing_joint_is_named_together_with_those_there_are():
     with pytest.raises(PluginError, match=r'hinge joint named wheel.*its joints: left, right'):
         make(leftJoint='wheel')
+
+
+def test_a_rate_that_is_hardly_one_is_refused():
+    with pytest.raises(PluginError, match='updateRate'):
+        make(updateRate='1e-300')
 
 
 @pytest.mark.parametrize('text', ['wide', 'nan', '0', '-1'])

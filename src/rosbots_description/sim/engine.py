@@ -119,9 +119,13 @@ class Engine:
     def add(self, spec: ModelSpec, pose: Pose) -> Body:
         """Put a model into the world, its frame at `pose`, all joints at zero."""
         body = Body()
-        for tree in kinematic_trees(spec):
-            self._add_tree(body, tree, pose)
-        self._exclude_collisions_within(body, spec)
+        try:
+            for tree in kinematic_trees(spec):
+                self._add_tree(body, tree, pose)
+            self._exclude_collisions_within(body, spec)
+        except BaseException:
+            self.remove(body)  # nothing half made stays behind unseen
+            raise
         return body
 
     def remove(self, body: Body) -> None:
@@ -137,8 +141,8 @@ class Engine:
         """
         roots = {link: self.link_state(body, link) for link in body.roots}
         joints = {name: self.joint_state(body, name) for name in body.joints}
-        self.remove(body)
         new = self.add(spec, IDENTITY)
+        self.remove(body)
         self.set_root_poses(new, {link: pose for link, (pose, _) in roots.items()})
         for link, (_, twist) in roots.items():
             self.set_root_twist(new, link, twist)
@@ -172,7 +176,7 @@ class Engine:
     def set_root_poses(self, body: Body, poses: dict[str, Pose]) -> None:
         """Put the frames of root links at these poses; the links they carry come along.
 
-        PyBullet keeps the velocities.
+        Velocities stay; PyBullet would zero them.
         """
         for link, pose in poses.items():
             part = body.parts[link]
@@ -223,7 +227,7 @@ class Engine:
         number, index = body.joints[joint]
         return pybullet.getJointState(number, index, self._client)[3]
 
-    def load(self, body: Body, link: str) -> float:
+    def normal_force(self, body: Body, link: str) -> float:
         """Return the sum of the normal forces on a link in the last step [N]."""
         part = body.parts[link]
         contacts = pybullet.getContactPoints(
@@ -280,7 +284,7 @@ class Engine:
         ]
         stands = tree.fixed_base and len(tree.links) == 1
         text = describe_tree(tree, coms, self._surface_file if stands else self._mesh_file)
-        number = self._load(text, tree, compose(model_pose, tree.links[0].pose))
+        number = self._load_urdf(text, tree, compose(model_pose, tree.links[0].pose))
         body.bodies.append(number)
         body.roots.append(tree.links[0].name)
         index_of = self._indices(number)
@@ -303,7 +307,7 @@ class Engine:
             if not link.gravity and not (tree.fixed_base and i == 0):
                 self._weightless.setdefault(number, []).append((part.index, inertials[i].mass))
 
-    def _load(self, text: str, tree: Tree, pose: Pose) -> int:
+    def _load_urdf(self, text: str, tree: Tree, pose: Pose) -> int:
         flags = pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE
         if sum(link.self_collide for link in tree.links) > 1:
             # Quadruples the cost of a step, so only where asked for.

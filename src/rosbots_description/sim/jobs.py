@@ -37,7 +37,8 @@ class Jobs(Hook):
             target: the link or joint that is pushed.
             push: done once per step.
             start_ns: when to begin [ns, simulated]; a past time means now.
-            duration_ns: how long [ns]; negative: for ever, zero: not at all, as in Gazebo.
+            duration_ns: how long [ns], both ends included; negative: for ever. A push from now on
+                begins with the next step, so that zero means not at all, as in Gazebo.
         """
         start_ns = max(start_ns, self._clock.now_ns)
         end_ns = None if duration_ns < 0 else start_ns + duration_ns

@@ -101,9 +101,9 @@ class Joint:
         """Push during the next step by `effort` [N m or N], beside the motor."""
         self.model.engine.push_joint(self.model.body, self.name, effort)
 
-    def load(self) -> float:
+    def normal_force(self) -> float:
         """Return the sum of the normal forces on the child link in the last step [N]."""
-        return self.model.engine.load(self.model.body, self.spec.child)
+        return self.model.engine.normal_force(self.model.body, self.spec.child)
 
     def set_motor(self, velocity: float, effort: float) -> None:
         """Drive towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""

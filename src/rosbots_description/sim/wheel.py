@@ -27,21 +27,22 @@ class Wheel:
     """
 
     def __init__(self, joint: 'Joint', torque: float) -> None:
-        """Take over the joint.
+        """Describe the wheel; `release` takes over its motor.
 
         Args:
+            joint: what turns.
             torque: the most the motor gives [N m].
         """
         self.joint = joint
         self.name = joint.name
         self.radius = _radius(self._link())
         self._torque = torque
-        self.release()
+        self._creep = 0.0  # hub speed minus tyre speed [rad/s]
+        self._lead = 0.0  # how far the hub has turned more than the tyre [rad]
 
     def release(self) -> None:
         """Forget speed and way; the motor holds the wheel."""
-        self._creep = 0.0  # hub speed minus tyre speed [rad/s]
-        self._lead = 0.0  # how far the hub has turned more than the tyre [rad]
+        self._creep = self._lead = 0.0
         self.joint.set_motor(0.0, self._torque)
 
     @property
@@ -79,7 +80,7 @@ class Wheel:
 
     def _creep_share(self) -> float:
         """Return the share of the hub's speed that creep takes now; negative while braking."""
-        load = self.joint.load() if self.radius else 0.0
+        load = self.joint.normal_force() if self.radius else 0.0
         if load <= 0.0:
             return 0.0
         speed, effort = self.joint.velocity, self.joint.effort

@@ -113,8 +113,12 @@ class World:
             raise ModelError(f"a model named '{name}' is in the world already")
         model = Model(name, spec, self.engine, pose)
         self.models[name] = model
-        for plugin in spec.plugins:
-            self._load_plugin(model, plugin)
+        try:
+            for plugin in spec.plugins:
+                self._load_plugin(model, plugin)
+        except BaseException:
+            self._remove(model)  # nobody has been told of it
+            raise
         for listener in self.listeners:
             listener.model_spawned(model)
         return model
@@ -130,25 +134,31 @@ class World:
             raise NotFoundError(f"there is no model named '{name}'")
         for listener in self.listeners:
             listener.model_deleted(model)
+        self._remove(model)
+
+    def _remove(self, model: Model) -> None:
         self.jobs.cancel(lambda target: target.model is model)
         for plugin in reversed(model.plugins):
             self.schedule.remove(plugin)
             plugin.unload()
         self.engine.remove(model.body)
-        del self.models[name]
+        del self.models[model.name]
 
     def reset_world(self) -> None:
         """Bring every model back to its spawn pose, at rest; joints stay, time goes on."""
         for model in self.models.values():
+            model.set_pose(model.initial_pose)
             if not model.static:
-                model.set_pose(model.initial_pose)
                 model.set_twist(Twist())
         for plugin in self._plugins():
             plugin.reset()
         self._tell_reset()
 
     def reset_simulation(self) -> None:
-        """Begin again: time zero, every model as it was spawned, and the same motion as then."""
+        """Begin again at time zero: every model where it was spawned, and the same motion as then.
+
+        Properties that were set meanwhile, such as masses and joint limits, stay.
+        """
         self.clock.reset()
         self.jobs.cancel(lambda target: True)
         self.engine.reset()

@@ -19,6 +19,7 @@ from .registry import register
 logger = logging.getLogger(__name__)
 
 ENCODER, WORLD = 'encoder', 'world'
+SLOWEST_RATE = 1e-3  # [Hz] updates rarer than that are a mistake
 REACHED = 0.01  # [m/s] rim speed this close to the target ends a ramp
 TOLERATED = 0.02  # share by which a wheel may differ from its description without a warning
 
@@ -79,6 +80,11 @@ def read_config(params: Params) -> DiffDriveConfig:
     ):
         if value <= 0.0:
             raise PluginError(f'{params.prefix}<{tag}> is {value:g} m; it must be above 0')
+    if 0.0 < config.update_rate < SLOWEST_RATE:
+        raise PluginError(
+            f'{params.prefix}<updateRate> is {config.update_rate:g} Hz; it must be at least '
+            f'{SLOWEST_RATE:g}, or 0 for every step'
+        )
     return config
 
 
@@ -228,7 +234,7 @@ class DiffDrive(ModelPlugin):
         self._encoder_twist = (math.hypot(dx, dy) / elapsed, turn / elapsed)
 
     def _namespace(self) -> str:
-        """Return the tag's text; the model's name where it is absent or empty (contract 4.0)."""
+        """Return the tag's text; the model's name where it is absent or empty."""
         child = self.spec.element.child('robotNamespace')
         return (child.text.strip() if child is not None else '') or self.model.name
 
@@ -241,12 +247,13 @@ class DiffDrive(ModelPlugin):
             ) from None
 
     def _warn_unread(self) -> None:
-        unread = ', '.join(f'<{tag}>' for tag in self.params.unread())
+        unread = self.params.unread()
         if unread:
             logger.warning(
-                '%snot read by this plugin: %s (the motor limit is <wheelTorque>)',
+                '%snot read by this plugin: %s%s',
                 self.log_prefix,
-                unread,
+                ', '.join(f'<{tag}>' for tag in unread),
+                ' (the motor limit is <wheelTorque>)' if 'torque' in unread else '',
             )
 
     def _warn_geometry(self) -> None:
