@@ -185,6 +185,60 @@ def test_a_box_spawned_inside_the_ground_comes_out_without_a_jump(depth):
         assert box.pose.position[2] == pytest.approx(0.25, abs=0.002)
 
 
+@pytest.mark.parametrize('kp', ['1e5', '1e6', '1e9'])
+def test_a_contact_spring_does_not_shoot_what_is_spawned_inside_the_ground(kp):
+    block = f'<gazebo reference="box"><kp>{kp}</kp><kd>100</kd><maxVel>0.1</maxVel></gazebo>'
+    with empty_world() as world:
+        spec = urdf_spec(box_urdf('0.5 0.5 0.5', 2.0, block))
+        box = world.spawn(spec, 'box', Pose((0.0, 0.0, 0.15)))
+        highest = 0.0
+        for _ in range(100):
+            world.run(20)
+            highest = max(highest, box.pose.position[2])
+        assert highest < 0.4
+        assert box.pose.position[2] == pytest.approx(0.25, abs=0.002)
+
+
+def test_what_the_world_holds_cannot_be_set_in_motion():
+    spec = urdf_spec(ARM.format(type='continuous', motion=''))
+    with empty_world() as world:
+        model = world.spawn(spec, 'arm', Pose())
+        model.set_twist(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
+        world.run(300)
+        assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 2.0))
+
+
+def test_a_motor_asked_for_an_endless_speed_leaves_the_world_whole():
+    with empty_world() as world:
+        witness = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5.0, 0.0, 0.5)))
+        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(SECOND)
+        model.joint('wheel_left_joint').set_motor(math.inf, 5.0)
+        world.run(SECOND)
+        assert all(map(math.isfinite, model.pose.position))
+        assert witness.pose.position == pytest.approx((5.0, 0.0, 0.5), abs=0.01)
+
+
+def test_a_model_whose_motion_is_no_number_any_more_does_not_take_the_others_along(caplog):
+    with empty_world() as world:
+        witness = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'witness', Pose((5, 0, 0.5)))
+        mover = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'mover', Pose((-5, 0, 0.5)))
+        world.run(100)
+        mover.set_twist(Twist((0.2, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        lost = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        lost.set_twist(Twist((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        world.run(2 * SECOND)
+        assert witness.pose.position == pytest.approx((5.0, 0.0, 0.5), abs=0.06)
+        assert lost.pose.position[2] == pytest.approx(-0.12, abs=0.01)
+        world.delete('rosbots')
+        again = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(2 * SECOND)
+        assert again.pose.position[2] == pytest.approx(-0.12, abs=0.01)
+    lines = [r.getMessage() for r in caplog.records if 'was lost' in r.getMessage()]
+    assert len(lines) == 1
+    assert lines[0].startswith("model 'rosbots' was lost")
+
+
 def test_two_boxes_in_one_place_part_gently():
     spec = urdf_spec(box_urdf('0.5 0.5 0.5', 1.0))
     with empty_world() as world:

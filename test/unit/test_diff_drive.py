@@ -211,6 +211,18 @@ def test_encoder_odometry_starts_at_zero_and_follows_the_wheels():
     assert pose.position[2] == 0.0
 
 
+def test_encoder_odometry_begins_again_at_zero_after_a_reset_however_late():
+    plugin = make(odometrySource='encoder', wheelAcceleration='0')
+    odometry = collect(plugin.odometry)
+    plugin.command(0.5, 0.5)
+    run(plugin, 100_000)
+    plugin.reset()
+    odometry.clear()
+    run(plugin, PERIOD_STEPS + 1)
+    assert math.hypot(*odometry[0].pose.position[:2]) <= 0.5 * 0.012
+    assert abs(odometry[0].pose.orientation[2]) < 0.005
+
+
 def test_encoder_speed_is_positive_also_when_driving_backwards():
     plugin = make(odometrySource='encoder', wheelAcceleration='0')
     odometry = collect(plugin.odometry)

@@ -6,8 +6,8 @@ cap on joint speed) are switched off, so that bodies move as rigid-body mechanic
 """
 
 import os
-from dataclasses import dataclass
 
+from .body import Body, Motion, Part
 from .bullet_description import (
     RIDER_MASS,
     MeshFile,
@@ -19,7 +19,7 @@ from .bullet_description import (
 )
 from .inertia import principal_axes
 from .physics import PhysicsSettings
-from .pose import IDENTITY, Pose, Twist, Vector, add, compose, cross, inverse, rotate, subtract
+from .pose import Pose, Twist, Vector, add, compose, cross, inverse, rotate, subtract
 from .silence import silent
 from .spec import FIXED, Collision, Cylinder, Inertial, JointSpec, LinkSpec, ModelSpec
 
@@ -33,36 +33,12 @@ _SCRUB = 1 / 8
 # that is spawned half sunk 20 m high, this 0.1 m; Gazebo limits the speed, which PyBullet cannot.
 _PUSH_OUT = 10.0
 _MASSLESS = Inertial(0.0)
-_ANY_SPEED = 1e9  # [rad/s or m/s] PyBullet would stop every joint at 100
+_ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
 
 
 with silent():  # it announces its build time
     import pybullet
-
-
-@dataclass(frozen=True)
-class _Part:
-    """Where a link lives in PyBullet, and the way from its centre of mass to its frame.
-
-    An index of -1 is the base of the body.
-    """
-
-    body: int
-    index: int
-    origin_in_com: Pose
-    com_in_origin: Pose
-
-
-class Body:
-    """A model in the engine. Links and joints are addressed by their names."""
-
-    def __init__(self) -> None:
-        self.parts: dict[str, _Part] = {}
-        self.joints: dict[str, tuple[int, int]] = {}
-        self.roots: list[str] = []  # links that the engine moves as bases
-        self.bodies: list[int] = []
-        self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
 
 
 class Engine:
@@ -96,7 +72,7 @@ class Engine:
             fixedTimeStep=physics.step_size,
             numSolverIterations=max(1, round(physics.sor_pgs_iters * _ITERATIONS)),
             numSubSteps=0,
-            contactERP=min(0.2, _PUSH_OUT * physics.step_size),
+            contactERP=_overlap_share(physics.step_size),
             enableFileCaching=0,  # else a second model under a file name gets the first one's text
             physicsClientId=self._client,
         )
@@ -134,22 +110,22 @@ class Engine:
             self._weightless.pop(number, None)
             pybullet.removeBody(number, self._client)
 
-    def replace(self, body: Body, spec: ModelSpec) -> Body:
-        """Let a model go on as another description of the same links and joints.
+    def motion(self, body: Body) -> Motion:
+        """Return where a model is and how it moves, all of it."""
+        return Motion(
+            {link: self.link_state(body, link) for link in body.roots},
+            {name: self.joint_state(body, name) for name in body.joints},
+            dict(body.motors),
+        )
 
-        Poses, velocities, joint states and motors stay. The old `body` is gone.
-        """
-        roots = {link: self.link_state(body, link) for link in body.roots}
-        joints = {name: self.joint_state(body, name) for name in body.joints}
-        new = self.add(spec, IDENTITY)
-        self.remove(body)
-        self.set_root_poses(new, {link: pose for link, (pose, _) in roots.items()})
-        for link, (_, twist) in roots.items():
-            self.set_root_twist(new, link, twist)
-        for name, (position, velocity) in joints.items():
-            pybullet.resetJointState(*new.joints[name], position, velocity, self._client)
-            self.set_joint_motor(new, name, *body.motors[name])
-        return new
+    def set_motion(self, body: Body, motion: Motion) -> None:
+        """Let a model be where another one of the same links and joints was, moving as it did."""
+        self.set_root_poses(body, {link: pose for link, (pose, _) in motion.roots.items()})
+        for link, (_, twist) in motion.roots.items():
+            self.set_root_twist(body, link, twist)
+        for name, state in motion.joints.items():
+            pybullet.resetJointState(*body.joints[name], *state, self._client)
+            self.set_joint_motor(body, name, *motion.motors[name])
 
     def link_pose(self, body: Body, link: str) -> Pose:
         """Return where the link's frame stands in the world."""
@@ -194,7 +170,12 @@ class Engine:
             pybullet.resetJointState(number, index, position, 0.0, self._client)
 
     def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
-        """Let a root link move with this velocity of its origin, in world axes; joints go on."""
+        """Let a root link move with this velocity of its origin, in world axes; joints go on.
+
+        A root that the world holds stays at rest.
+        """
+        if link in body.bolted:
+            return
         part = body.parts[link]
         com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
         linear = add(twist.linear, cross(twist.angular, com))
@@ -242,6 +223,7 @@ class Engine:
 
     def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
+        velocity = max(-_ANY_SPEED, min(_ANY_SPEED, velocity))
         body.motors[joint] = (velocity, effort)
         pybullet.setJointMotorControl2(
             *body.joints[joint],
@@ -251,7 +233,7 @@ class Engine:
             physicsClientId=self._client,
         )
 
-    def _link_state(self, part: _Part) -> tuple:
+    def _link_state(self, part: Part) -> tuple:
         return pybullet.getLinkState(
             part.body,
             part.index,
@@ -282,11 +264,12 @@ class Engine:
             Pose(inertial.pose.position, orientation)
             for inertial, orientation in zip(inertials, axes, strict=True)
         ]
-        stands = tree.fixed_base and len(tree.links) == 1
-        text = describe_tree(tree, coms, self._surface_file if stands else self._mesh_file)
+        text = describe_tree(tree, coms, self._surface_file if tree.stands else self._mesh_file)
         number = self._load_urdf(text, tree, compose(model_pose, tree.links[0].pose))
         body.bodies.append(number)
         body.roots.append(tree.links[0].name)
+        if tree.fixed_base:
+            body.bolted.add(tree.links[0].name)
         index_of = self._indices(number)
         # In a call of its own: together with an inertia PyBullet gives that inertia to the base.
         pybullet.changeDynamics(
@@ -298,7 +281,7 @@ class Engine:
             physicsClientId=self._client,
         )
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
-            part = _Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
+            part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
             body.parts[link.name] = part
             self._set_dynamics(part, index_of, i, link, moments[i], joint)
             if joint is not None and joint.type != FIXED:
@@ -335,7 +318,7 @@ class Engine:
 
     def _set_dynamics(
         self,
-        part: _Part,
+        part: Part,
         index_of: dict[str, int],
         i: int,
         link: LinkSpec,
@@ -387,10 +370,19 @@ class Engine:
             physicsClientId=self._client,
         )
         if surface.kp < _STIFFEST:
+            # As a spring that gives way by force / kp at rest, and is damped so much that it parts
+            # bodies no faster than other contacts do; a kd of a user's could shoot them away.
+            step = self._physics.step_size
+            least = step * surface.kp * (1.0 / _overlap_share(step) - 1.0)
             pybullet.changeDynamics(
                 number,
                 index,
                 contactStiffness=surface.kp,
-                contactDamping=surface.kd,
+                contactDamping=max(surface.kd, least),
                 physicsClientId=self._client,
             )
+
+
+def _overlap_share(step_size: float) -> float:
+    """Return the share of an overlap that contacts take away in a step of that size [s]."""
+    return min(0.2, _PUSH_OUT * step_size)

@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from .engine import Body, Engine
+from .body import Body
+from .engine import Engine
 from .errors import NotFoundError
 from .pose import Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from .spec import Collision as CollisionSpec
@@ -98,7 +99,13 @@ class Joint:
         return self.model.body.motors[self.name]
 
     def push(self, effort: float) -> None:
-        """Push during the next step by `effort` [N m or N], beside the motor."""
+        """Push during the next step by `effort` [N m or N], beside the motor.
+
+        Not more than the joint's effort limit, each time, as in Gazebo.
+        """
+        limit = self.spec.effort
+        if limit is not None and limit >= 0.0:
+            effort = max(-limit, min(limit, effort))
         self.model.engine.push_joint(self.model.body, self.name, effort)
 
     def normal_force(self) -> float:
@@ -181,7 +188,10 @@ class Model:
 
     def respecify(self, spec: ModelSpec) -> None:
         """Go on as another description of the same links and joints; the motion stays."""
-        self.body = self.engine.replace(self.body, spec)
+        motion, old = self.engine.motion(self.body), self.body
+        self.body = self.engine.add(spec, self.initial_pose)
+        self.engine.remove(old)
+        self.engine.set_motion(self.body, motion)
         self.spec = spec
         for link in spec.links:
             self.links[link.name].spec = link

@@ -45,6 +45,10 @@ class Wheel:
         self._creep = self._lead = 0.0
         self.joint.set_motor(0.0, self._torque)
 
+    def rest(self) -> None:
+        """Take note that the wheel stands still; how far it has turned, and the motor, stay."""
+        self._creep = 0.0
+
     @property
     def position(self) -> float:
         """Return how far the hub has turned [rad]."""

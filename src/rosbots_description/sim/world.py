@@ -10,6 +10,7 @@ from typing import Protocol
 from .clock import SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
+from .guard import Guard
 from .jobs import Jobs
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
@@ -64,6 +65,8 @@ class World:
         self.listeners: list[Listener] = []
         self.paused = False
         self.meshes = MeshStore(mesh_cache)
+        self._guard = Guard(self)
+        self.schedule.add(self._guard)
         self.engine = Engine(
             self.physics,
             lambda mesh: str(self.meshes.collision_hull(mesh.path, mesh.scale)),
@@ -160,6 +163,7 @@ class World:
         Properties that were set meanwhile, such as masses and joint limits, stay.
         """
         self.clock.reset()
+        self._guard.restart()
         self.jobs.cancel(lambda target: True)
         self.engine.reset()
         for model in self.models.values():
@@ -167,6 +171,27 @@ class World:
         for plugin in self._plugins():
             plugin.restart()
         self._tell_reset()
+
+    def mend(self, lost: list[Model]) -> None:
+        """Build the engine anew; `lost` models begin again at their spawn pose, others go on."""
+        motions = {
+            model.name: self.engine.motion(model.body)
+            for model in self.models.values()
+            if model not in lost
+        }
+        self.engine.reset()
+        for model in self.models.values():
+            model.body = self.engine.add(model.spec, model.initial_pose)
+            if model.name in motions:
+                self.engine.set_motion(model.body, motions[model.name])
+        for model in lost:
+            for plugin in model.plugins:
+                plugin.restart()
+            logger.error(
+                "model '%s' was lost: its pose or velocity was no longer a number of this world. "
+                'It is back where it was spawned; a command, force or property was too large',
+                model.name,
+            )
 
     def find_entity(self, name: str) -> Entity | None:
         """Return the first entity with that scoped or plain name, depth first in world order."""

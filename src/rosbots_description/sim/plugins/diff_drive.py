@@ -132,6 +132,8 @@ class DiffDrive(ModelPlugin):
         # Rim speeds [m/s], left and right, that the ramp has come to. As upstream's, they are
         # never brought in line with the wheels.
         self._setpoint = [0.0, 0.0]
+        # The first encoder step spans all of the time so far, as upstream's does.
+        self._encoder_ns = 0
         self.reset()
         for wheel in self._wheels:
             wheel.release()
@@ -141,8 +143,8 @@ class DiffDrive(ModelPlugin):
         self._command = (0.0, 0.0)
         self._encoder_pose = (0.0, 0.0, 0.0)  # x [m], y [m], yaw [rad]
         self._encoder_twist = (0.0, 0.0)  # forward [m/s], yaw rate [rad/s]
-        # The first encoder step spans all of the time so far, as upstream's does.
-        self._encoder_ns = 0
+        for wheel in self._wheels:
+            wheel.rest()
         self._last_ns = self.world.clock.now_ns
         self._set_due()
 

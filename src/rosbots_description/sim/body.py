@@ -1,0 +1,39 @@
+"""What the engine remembers of a model, and how a model moves, as plain values."""
+
+from dataclasses import dataclass
+
+from .pose import Pose, Twist
+
+
+@dataclass(frozen=True)
+class Part:
+    """Where a link lives in PyBullet, and the way from its centre of mass to its frame.
+
+    An index of -1 is the base of the body.
+    """
+
+    body: int
+    index: int
+    origin_in_com: Pose
+    com_in_origin: Pose
+
+
+class Body:
+    """A model in the engine. Links and joints are addressed by their names."""
+
+    def __init__(self) -> None:
+        self.parts: dict[str, Part] = {}
+        self.joints: dict[str, tuple[int, int]] = {}
+        self.roots: list[str] = []  # links that the engine moves as bases
+        self.bolted: set[str] = set()  # roots that the world holds
+        self.bodies: list[int] = []
+        self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Where a model is and how it moves: roots, joints, and what its motors are asked for."""
+
+    roots: dict[str, tuple[Pose, Twist]]
+    joints: dict[str, tuple[float, float]]
+    motors: dict[str, tuple[float, float]]

@@ -1,0 +1,47 @@
+"""A last line of defence: what no longer moves by finite numbers is taken out of harm's way."""
+
+import math
+from typing import TYPE_CHECKING
+
+from .schedule import Hook
+
+if TYPE_CHECKING:
+    from .model import Model
+    from .world import World
+
+PERIOD = 100  # steps between two looks: soon enough that nobody falls far through a broken ground
+LARGEST = 1e9  # [m, m/s or rad/s] nothing in a world goes that far or fast on purpose
+
+
+class Guard(Hook):
+    """Looks at all models now and then and lets the world be mended when one is lost.
+
+    Numbers that are not finite spread inside the engine: other models fall through the ground, even
+    after the cause is deleted. So the engine is built anew, the others going on as they were.
+    """
+
+    def __init__(self, world: 'World') -> None:
+        self._world = world
+        self._set_due()
+
+    def update(self) -> None:
+        """Mend the world if a model is lost."""
+        lost = [model for model in self._world.models.values() if _is_lost(model)]
+        if lost:
+            self._world.mend(lost)
+        self._set_due()
+
+    def restart(self) -> None:
+        """Count from the present step on; time has jumped."""
+        self._set_due()
+
+    def _set_due(self) -> None:
+        self.due = self._world.clock.steps + PERIOD
+
+
+def _is_lost(model: 'Model') -> bool:
+    if model.static:
+        return False
+    (position, orientation), (linear, angular) = model.state()
+    numbers = (*position, *orientation, *linear, *angular)
+    return not all(math.isfinite(number) and abs(number) < LARGEST for number in numbers)
