@@ -14,6 +14,7 @@ from rosbots_description.sim.errors import ModelError, NotFoundError
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
 from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.schedule import Hook
+from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.spec import (
     Box,
     Collision,
@@ -196,6 +197,31 @@ def test_links_of_inner_models_are_found_by_each_of_their_names():
         link = world.spawn(ModelSpec('outer', (body,)), 'outer', Pose()).links['inner::body']
         for name in ('outer::inner::body', 'inner::body', 'body'):
             assert world.find_entity(name) is link
+
+
+NESTED = """<sdf version="1.6"><model name="outer">
+  <link name="base"><inertial><mass>1</mass></inertial></link>
+  <model name="arm"><pose>1 0 0 0 0 0</pose>
+    <link name="upper"><pose>0 0 0.5 0 0 0</pose><inertial><mass>1</mass></inertial></link>
+    <model name="hand"><pose>0 0 1 0 0 0</pose>
+      <link name="palm"><inertial><mass>1</mass></inertial></link></model>
+  </model></model></sdf>"""
+
+
+def test_models_within_a_model_have_names_and_frames_of_their_own():
+    spec, _ = load_sdf(NESTED, 'robot', source='test', find_model=lambda _: None)
+    with empty_world() as world:
+        world.spawn(spec, 'robot', Pose((0.0, 0.0, 5.0)))
+        for name in ('robot::arm', 'arm'):
+            arm = world.find_model(name)
+            assert arm.scoped_name == 'robot::arm'
+            assert arm.parent_name == 'robot'
+        assert arm.state()[0].position == pytest.approx((1.0, 0.0, 5.0))
+        assert world.frame('hand')[0].position == pytest.approx((1.0, 0.0, 6.0))
+        assert world.find_model('hand').parent_name == 'arm'
+        assert [link.name for link in arm.spec.links] == ['upper', 'hand::palm']
+        arm.set_pose(Pose((2.0, 0.0, 7.0)))
+        assert arm.state()[0].position == pytest.approx((2.0, 0.0, 7.0))
 
 
 @pytest.mark.parametrize('name', ['', 'world', 'map', '/map'])

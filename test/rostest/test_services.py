@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Outcomes and texts of the services, as gazebo_ros has them (contract 2.3, measured 5)."""
+"""Outcomes and texts of the services, as gazebo_ros 2.9.2 has them."""
 
 import math
 import sys
@@ -70,6 +70,9 @@ class ServicesTest(SimulatorTest):
         self.assertEqual(response.pose.position.y, 2.0)
         self.assertEqual(response.header.stamp.to_sec(), self.world().sim_time)
         self.assertEqual(response.header.frame_id, '')
+        # Each model's look-ups are counted by themselves, and only those that find it.
+        self.model_state(GROUND, '')
+        self.model_state('nope', '')
         relative = self.model_state('box', 'ground_plane::link')
         self.assertEqual(relative.header.seq, response.header.seq + 1)
         self.assertEqual(relative.header.frame_id, 'ground_plane::link')

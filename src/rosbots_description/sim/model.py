@@ -126,6 +126,7 @@ class Model:
 
     def __init__(self, name: str, spec: ModelSpec, engine: Engine, pose: Pose) -> None:
         self.name = self.scoped_name = name
+        self.parent_name = ''  # only models within others have one
         self.spec = spec
         self.static = spec.static
         self.engine = engine

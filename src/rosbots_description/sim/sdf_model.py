@@ -42,6 +42,7 @@ class ModelParts:
     links: list[LinkSpec] = field(default_factory=list)
     joints: list[tuple[JointSpec, etree._Element]] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
+    inner: dict[str, Pose] = field(default_factory=dict)  # models within, where their frames stand
 
 
 def read_model(
@@ -130,7 +131,9 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     links = parts.links
     if not parts.static:
         links = _movable(parts, links, {joint.child for joint in joints})
-    spec = ModelSpec(name, tuple(links), joints, tuple(parts.plugins), parts.static)
+    spec = ModelSpec(
+        name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner
+    )
     for tree in kinematic_trees(spec):
         # Every surface of its own rides on its link by a joint of the engine's.
         count = sum(max(1, len(rider_surfaces(link))) for link in tree.links) - 1
@@ -166,6 +169,8 @@ def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:
 def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
     """Add an inner model, which stands at `pose`, to the outer one."""
     prefix = f'{inner.name}::'
+    parts.inner[inner.name] = pose
+    parts.inner |= {prefix + name: compose(pose, place) for name, place in inner.inner.items()}
     names = {link.name for link in inner.links} | {joint.name for joint, _ in inner.joints}
     bolted = inner.static and not parts.static
     parts.links += [

@@ -28,6 +28,12 @@ _KEPT = {
 # The same, but the model is not what its author expects.
 _NOT_RUN = {'link': ('sensor', 'light', 'projector')}
 
+# Parts that do something by being there, whatever stands in them.
+_PARTS = {part for parts in _NOT_RUN.values() for part in parts}
+# Containers that saved worlds write without anything in them.
+_EMPTY = {'surface', 'friction', 'ode', 'bullet', 'torsional', 'bounce', 'contact', 'limit',
+          'dynamics', 'physics', 'geometry', 'script', 'wind', 'gui', 'audio', 'meta'}
+
 
 class Notes:
     """Collects what is to be said about one file; `log` says it, each thing once."""
@@ -74,6 +80,8 @@ class Notes:
 
 
 def _is_neutral(element: etree._Element) -> bool:
+    if element.tag in _PARTS:
+        return False
     if len(element):
         return all(_is_neutral(child) for child in element)
     text = scalar(element).lower()
@@ -81,7 +89,7 @@ def _is_neutral(element: etree._Element) -> bool:
         text = {'true': '1', 'false': '0'}.get(text, text)
         neutral = _NEUTRAL[element.tag]
         return parse_numbers(text, len(neutral)) == neutral
-    return not text and not element.get('filename')
+    return not text and not element.attrib and element.tag in _EMPTY
 
 
 def _path(element: etree._Element) -> str:

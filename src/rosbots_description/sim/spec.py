@@ -58,7 +58,7 @@ Geometry = Box | Sphere | Cylinder | Plane | Mesh
 
 @dataclass(frozen=True)
 class Surface:
-    """How a collision touches others; defaults are those of SDF (contract 4.16)."""
+    """How a collision touches others; defaults are those of SDF (sdformat 9)."""
 
     mu: float = 1.0  # friction coefficient along the first direction
     mu2: float = 1.0  # along the second direction
@@ -192,7 +192,8 @@ class ModelSpec:
     """A whole model, ready to be simulated.
 
     Links stand in the order of the description after lumping; the first one is canonical. Joints
-    connect them into one or more trees.
+    connect them into one or more trees. The links and joints of a model within this one are called
+    `inner::name`.
     """
 
     name: str
@@ -201,6 +202,7 @@ class ModelSpec:
     plugins: tuple[PluginSpec, ...] = ()
     static: bool = False
     lumped: Mapping[str, str] = field(default_factory=dict)  # link that disappeared -> its heir
+    inner: Mapping[str, Pose] = field(default_factory=dict)  # model within -> pose of its frame
 
     def link(self, name: str) -> LinkSpec | None:
         """Return the link of that name, or None."""

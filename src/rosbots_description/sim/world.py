@@ -11,6 +11,7 @@ from .clock import SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
 from .guard import Guard
+from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
@@ -25,7 +26,7 @@ from .world_spec import LightSpec
 logger = logging.getLogger(__name__)
 
 WORLD_FRAMES = ('', 'world', 'map', '/map')
-Entity = Model | Link | Collision
+Entity = Model | InnerModel | Link | Collision
 
 
 class Listener(Protocol):
@@ -204,12 +205,15 @@ class World:
                 for collision in link.collisions.values():
                     if name in collision.names:
                         return collision
+            for inner in inner_models(model) if model.spec.inner else ():
+                if name in inner.names:
+                    return inner
         return None
 
-    def find_model(self, name: str) -> Model | None:
+    def find_model(self, name: str) -> Model | InnerModel | None:
         """Return the model that the name finds first; None if it finds something else first."""
         entity = self.find_entity(name)
-        return entity if isinstance(entity, Model) else None
+        return entity if isinstance(entity, Model | InnerModel) else None
 
     def find_joint(self, name: str) -> Joint | None:
         """Return the joint with that plain or scoped name in the first model that has it."""

@@ -32,10 +32,16 @@ def delete_model(server: Server, request: DeleteModelRequest) -> DeleteModelResp
     return DeleteModelResponse(True, 'DeleteModel: successfully deleted model')
 
 
+class _CountedState(GetModelStateResponse):
+    """A response whose header.seq is ours; rospy would put the number of the call there."""
+
+    _has_header = False
+
+
 @service('get_model_state', GetModelState)
 def get_model_state(server: Server, request: GetModelStateRequest) -> GetModelStateResponse:
     """Tell a model's pose and twist relative to an entity or the world."""
-    response = GetModelStateResponse()
+    response = _CountedState()
     model = server.world.find_model(request.model_name)
     if model is None:
         logger.error('GetModelState: model [%s] does not exist', request.model_name)
