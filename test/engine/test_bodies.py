@@ -5,6 +5,7 @@ import math
 import pytest
 from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
+from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.pose import Pose, Twist, from_rpy, to_rpy
 from rosbots_description.sim.spec import Inertial, LinkSpec, ModelSpec
 
@@ -124,6 +125,32 @@ def test_a_static_model_hangs_in_the_air():
         model = world.spawn(spec, 'box', Pose((0.0, 0.0, 3.0)))
         world.run(SECOND)
         assert model.pose.position == (0.0, 0.0, 3.0)
+
+
+MESH_LINK = """<link name="{name}"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><mesh filename="{file}"/></geometry></collision></link>"""
+BOLT = '<link name="world"/><joint name="j" type="{}"><parent link="world"/><child link="a"/>{}'
+LIMIT = '<axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'
+
+
+@pytest.mark.parametrize(('extra', 'exact'), [
+    ('', False),
+    ('<gazebo><static>true</static></gazebo>', True),
+    (BOLT.format('fixed', '</joint>'), True),
+    (BOLT.format('revolute', LIMIT), False),
+])
+def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, extra, exact):
+    mesh = tmp_path / 'm.obj'
+    mesh.write_text('v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n')
+    spec = urdf_spec(MESH_LINK.format(name='a', file=mesh) + extra)
+    with empty_world() as world:
+        world.spawn(spec, 'thing', Pose((0.0, 0.0, 2.0)))
+        (file,) = world.meshes.directory.iterdir()
+        ((needed, surface),) = mesh_needs(spec)
+        assert surface == exact
+        convert = world.meshes.collision_surface if exact else world.meshes.collision_hull
+        assert convert(needed.path, needed.scale) == str(file)
 
 
 def test_a_link_without_gravity_floats():

@@ -1,4 +1,4 @@
-"""The names, types and MD5 sums on the wire, as gazebo_ros has them (contract 1 and 2)."""
+"""The names, types and MD5 sums on the wire, as gazebo_ros 2.9.2 has them."""
 
 import time
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bad input is answered with the contract's text or a sentence, and nobody else notices."""
+"""Bad input is answered with Gazebo's text or a sentence, and nobody else notices."""
 
 import math
 import sys

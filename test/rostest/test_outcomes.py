@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every outcome and text of the services of contract 2.3, and what the successes change."""
+"""Every outcome and text of the services, as gazebo_ros has them, and what the successes change."""
 
 import math
 import sys

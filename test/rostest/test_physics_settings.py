@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Step, pace, gravity and solver: by service and by dynamic_reconfigure (contract 2.3, 2.5)."""
+"""Step, pace, gravity and solver: by service and by dynamic_reconfigure."""
 
 import math
 import sys
@@ -18,7 +18,7 @@ from simulator import BOX, SimulatorTest, pose, proxy, wait_until
 
 LIVE = {'time_step': 0.001, 'max_update_rate': 1000.0, 'gravity_z': -9.8, 'sor_pgs_iters': 50,
         'sor_pgs_w': 1.3, 'erp': 0.2, 'max_contacts': 20, 'contact_max_correcting_vel': 100.0}
-# name: type, default, least, most (contract 2.5), in the order of the description
+# name: type, default, least, most (gazebo_ros/cfg/Physics.cfg), in the order of the description
 DESCRIBED = {
     'time_step': ('double', 0.001, 0.0, 10.0),
     'max_update_rate': ('double', 60.0, 0.0, 1000.0),

@@ -105,6 +105,13 @@ class ProcessTest(unittest.TestCase):
         server.communicate(timeout=DEADLINE)
         self.assertEqual(server.returncode, 0)
 
+    def test_verbose_shows_debug_messages(self):
+        for options, shown in (((), False), (('--verbose',), True)):
+            server = self._start('gzserver', *options, '--iters', '50', 'worlds/shapes.world')
+            printed, _ = server.communicate(timeout=DEADLINE)
+            self.assertEqual('[DEBUG] [' in printed, shown, printed)
+            self.assertIn('Finished loading', printed)
+
     def test_a_second_server_takes_over(self):
         first = self._server()
         proxy('spawn_urdf_model', SpawnModel)('box', BOX, '/', pose(), '')

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Wrenches and efforts give the accelerations of rigid-body mechanics (contract 2.7)."""
+"""Wrenches and efforts give the accelerations of rigid-body mechanics."""
 
 import math
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Topics, services and parameters are exactly Gazebo's (measured 2)."""
+"""Topics, services and parameters are exactly Gazebo's."""
 
 import sys
 

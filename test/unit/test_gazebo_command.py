@@ -1,5 +1,7 @@
 """The executable gazebo: server and window live and end together."""
 
+import os
+import signal
 import sys
 import time
 
@@ -48,3 +50,19 @@ def test_without_a_display_the_server_runs_on(folder, monkeypatch):
     (folder / 'gzserver').write_text('import time; time.sleep(0.5); raise SystemExit(5)')
     (folder / 'gzclient').write_text('')
     assert gazebo.main([]) == 5
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_right_after_the_start_leaves_nobody_behind(folder, monkeypatch, number):
+    def told_before_the_first_look():
+        deadline = time.monotonic() + 20.0
+        while not (folder / 'gzserver.arguments').exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        os.kill(os.getpid(), number)
+        return True
+
+    monkeypatch.setattr(gazebo, 'display_works', told_before_the_first_look)
+    for name in ('gzserver', 'gzclient'):
+        (folder / name).write_text(RUN_UNTIL_CTRL_C.format(code=7))
+    assert gazebo.main([]) == 7

@@ -28,7 +28,7 @@ _EMPTY = _COMMON | {
     'server_required': 'false',
     'gui_required': 'false',
 }
-# Contract 3.4
+# The launch files of gazebo_ros 2.9.2: each argument with its default.
 ARGUMENTS = {
     'empty_world': _EMPTY,
     'elevator_world': _COMMON | {

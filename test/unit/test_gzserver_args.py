@@ -4,8 +4,14 @@ import logging
 import os
 import subprocess
 import sys
+from pathlib import Path
+
+import pytest
 
 from rosbots_description.cli.gzserver import main, parser, remarks, split_remappings
+from rosbots_description.ros_api import node
+
+REQUIREMENTS = Path(__file__).resolve().parents[2] / 'requirements.txt'
 
 
 def _read(line):
@@ -56,9 +62,15 @@ def test_a_world_that_is_not_there_ends_with_one_sentence(capsys):
     assert "'worlds/mud.world'" in line
 
 
-def test_a_missing_engine_is_one_sentence():
+REQUIRED = [line for line in REQUIREMENTS.read_text().splitlines()
+            if line.startswith(('pybullet', 'pycollada', 'trimesh'))]
+
+
+@pytest.mark.parametrize('requirement', REQUIRED)
+def test_a_missing_module_is_one_sentence(requirement):
+    module = requirement.split('==')[0].replace('pycollada', 'collada')
     program = (
-        "import sys; sys.modules['pybullet'] = None; "
+        f"import sys; sys.modules['{module}'] = None; "
         'from rosbots_description.cli.gzserver import main; sys.exit(main([]))'
     )
     ended = subprocess.run(
@@ -67,4 +79,12 @@ def test_a_missing_engine_is_one_sentence():
         capture_output=True, text=True, timeout=30, check=False)
     assert ended.returncode == 1
     (line,) = ended.stderr.splitlines()
-    assert 'pip install pybullet==3.2.7' in line
+    assert line.endswith(f'pip install {requirement}')
+
+
+def test_verbose_reaches_the_node(monkeypatch):
+    given = []
+    monkeypatch.setattr(node, 'run', lambda options, _remappings: given.append(options) or 0)
+    main(['--verbose'])
+    main([])
+    assert [options.verbose for options in given] == [True, False]

@@ -98,6 +98,19 @@ def test_makes_no_step_while_paused_but_serves(start):
     _wait_for(lambda: world.steps > 0)
 
 
+@pytest.mark.parametrize('pause', [0.75 * MAX_LAG, 2.0 * MAX_LAG])
+def test_a_pause_is_not_made_up_for(start, pause):
+    world = CountingWorld(rate=1000.0)
+    loop = start(world)
+    loop.call(lambda: setattr(world, 'paused', True))
+    time.sleep(pause)
+    begin, before = time.monotonic(), world.steps
+    loop.call(lambda: setattr(world, 'paused', False))
+    _wait_for(lambda: world.steps > before)
+    made = loop.call(lambda: world.steps) - before
+    assert made <= 1000.0 * (time.monotonic() - begin) + 5
+
+
 def test_ends_after_the_steps_asked_for():
     world = CountingWorld(rate=0.0)
     Loop(world).run(steps=1234)
@@ -144,13 +157,51 @@ def test_periodic_tasks_run_also_while_paused(start, paused):
     world.paused = paused
     loop = Loop(world)
     runs = []
+    begin = time.monotonic()
     loop.every(0.01, lambda: runs.append(time.monotonic()))
     thread = threading.Thread(target=loop.run)
     thread.start()
     _wait_for(lambda: len(runs) >= 5)
     loop.stop()
     thread.join(JOIN)
-    assert runs[4] - runs[0] >= 0.04
+    assert runs[0] - begin >= 0.01
+    assert runs[4] - begin >= 0.05
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """Give the loop a wall clock that only moves when the test says so."""
+    clock = SimpleNamespace(now=100.0, monotonic=lambda: clock.now)
+    monkeypatch.setattr('rosbots_description.ros_api.loop.time', clock)
+    return clock
+
+
+def _run_beside(clock, task, period):
+    """Let a loop run 1000 steps of 1 ms, and a task each period; return when it began."""
+    world, begun = CountingWorld(rate=0.0), []
+    world.run = lambda steps: setattr(clock, 'now', clock.now + 0.001 * steps)
+    loop = Loop(world)
+    loop.every(period, lambda: (begun.append(clock.now), task(len(begun))))
+    loop.run(steps=1000)
+    return begun
+
+
+def test_a_periodic_task_that_takes_time_keeps_its_pace(clock):
+    begun = _run_beside(clock, lambda _: setattr(clock, 'now', clock.now + 0.005), 0.01)
+    begun = begun[50:]  # by then the loop knows what a step costs
+    assert len(begun) > 100
+    assert begun[-1] - begun[0] == pytest.approx(0.01 * (len(begun) - 1), abs=0.005)
+
+
+def test_runs_that_a_periodic_task_missed_are_left_out(clock):
+    def task(number):
+        if number == 3:
+            clock.now += 0.5
+
+    begun = _run_beside(clock, task, 0.01)
+    gaps = [after - before for before, after in zip(begun, begun[1:], strict=False)]
+    assert max(gaps) >= 0.5
+    assert min(gaps) >= 0.005
 
 
 @pytest.mark.parametrize('paused', [False, True])

@@ -4,6 +4,10 @@ import logging
 import math
 import os
 import struct
+import tempfile
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -282,3 +286,27 @@ def test_a_cache_that_goes_away_is_replaced_by_a_temporary_one(write, tmp_path, 
     (tmp_path / 'cache').rmdir()
     assert os.path.isfile(store.collision_hull(write('m.obj', TRIANGLE)))
     assert 'a temporary one is used' in caplog.text
+
+
+def test_threads_that_lose_the_cache_together_share_a_temporary_one(write, tmp_path, monkeypatch):
+    path, store = write('m.obj', TRIANGLE), MeshStore(tmp_path / 'cache')
+    (tmp_path / 'cache').rmdir()
+    mkstemp = tempfile.mkstemp
+
+    def slow_mkstemp(**where):
+        time.sleep(0.02)  # lets the other threads begin to write, if they may
+        return mkstemp(**where)
+
+    monkeypatch.setattr(tempfile, 'mkstemp', slow_mkstemp)
+    ready = threading.Barrier(8)
+
+    def convert(number):
+        ready.wait(5.0)
+        return store.collision_hull(path, (float(number), 1.0, 1.0))
+
+    with ThreadPoolExecutor(8) as threads:
+        files = list(threads.map(convert, range(1, 9)))
+    assert {os.path.dirname(file) for file in files} == {str(store.directory)}
+    assert all(map(os.path.isfile, files))
+    store.close()
+    assert not store.directory.exists()

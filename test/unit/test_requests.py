@@ -1,21 +1,27 @@
 """What services compute from requests: refusals, wrenches, limits, pace."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
-from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import SetModelConfigurationRequest, SpawnModelRequest
+from gazebo_msgs.msg import ModelState, ODEJointProperties
+from gazebo_msgs.srv import (
+    SetJointPropertiesRequest,
+    SetModelConfigurationRequest,
+    SpawnModelRequest,
+)
 
 from rosbots_description.ros_api.performance import Pace
 from rosbots_description.ros_api.reconfigure import PARAMETERS, settings
-from rosbots_description.ros_api.services.joints import changed_spec
+from rosbots_description.ros_api.services.joints import changed_spec, set_joint_properties
 from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties
+from rosbots_description.ros_api.topics import clock_frequency
 from rosbots_description.ros_api.validity import RequestError, require_finite
 from rosbots_description.sim.errors import SimError
 from rosbots_description.sim.physics import PhysicsSettings, check
 from rosbots_description.sim.pose import Pose, from_rpy
-from rosbots_description.sim.spec import JointSpec
+from rosbots_description.sim.spec import JointSpec, ModelSpec
 
 HINGE = JointSpec('hinge', 'revolute', 'a', 'b', lower=-1.0, upper=1.0)
 QUARTER = from_rpy(0.0, 0.0, math.pi / 2)
@@ -74,6 +80,62 @@ def test_limits_and_damping_of_a_joint_change_alone():
 def test_limits_that_cross_and_damping_that_drives_are_refused(changes, words):
     with pytest.raises(RequestError, match=words):
         changed_spec(HINGE, changes)
+
+
+class FakeJoint:
+    """A joint that only keeps what is set."""
+
+    def __init__(self):
+        self.spec, self.motor = HINGE, (1.0, 2.0)
+        self.model = SimpleNamespace(spec=ModelSpec('m', (), (HINGE,)), respecify=self.respecify)
+
+    def set_motor(self, velocity, effort):
+        self.motor = velocity, effort
+
+    def respecify(self, spec):
+        (self.spec,) = spec.joints
+
+
+def _set_joint(**fields):
+    joint = FakeJoint()
+    server = SimpleNamespace(world=SimpleNamespace(find_joint=lambda _: joint))
+    request = SetJointPropertiesRequest('hinge', ODEJointProperties(**fields))
+    try:
+        set_joint_properties(server, request)
+    except RequestError as error:
+        return joint, str(error)
+    return joint, ''
+
+
+def test_of_motor_and_limits_what_is_given_counts():
+    assert _set_joint(vel=[3.0])[0].motor == (3.0, 2.0)
+    assert _set_joint(fmax=[4.0, 5.0])[0].motor == (1.0, 4.0)
+    joint, _ = _set_joint(vel=[3.0], hiStop=[1.5])
+    assert (joint.motor, joint.spec.upper) == ((3.0, 2.0), 1.5)
+
+
+@pytest.mark.parametrize(('fields', 'words'), [
+    ({'fmax': [-1.0], 'damping': [0.5]},
+     "fmax of joint 'hinge' is -1; it must not be negative [N m or N]"),
+    ({'vel': [3.0], 'damping': [-1.0]}, 'damping'),
+    ({'fmax': [3.0], 'loStop': [2.0]}, 'loStop 2'),
+])
+def test_a_refused_change_of_a_joint_changes_nothing(fields, words):
+    joint, sentence = _set_joint(**fields)
+    assert words in sentence
+    assert (joint.motor, joint.spec) == ((1.0, 2.0), HINGE)
+
+
+@pytest.mark.parametrize(('value', 'frequency'), [(0, 0), (100, 100), (100.0, 100), ('50', 50)])
+def test_the_clocks_frequency_is_a_whole_number(value, frequency, caplog):
+    assert clock_frequency(value) == frequency
+    assert not caplog.text
+
+
+@pytest.mark.parametrize('value', ['abc', 0.5, math.nan, math.inf, [1], None])
+def test_another_frequency_of_the_clock_is_named_and_not_used(value, caplog):
+    assert clock_frequency(value) == 0
+    assert f'~pub_clock_frequency is {value!r}; it must be a whole number [Hz]' in caplog.text
 
 
 def test_pace_is_simulated_per_wall_time_and_survives_a_reset():

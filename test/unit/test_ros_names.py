@@ -1,4 +1,4 @@
-"""Names of topics and frames in a plugin's namespace (contract 0.5 and 4.0)."""
+"""Names of topics and frames in a plugin's namespace."""
 
 import pytest
 

@@ -52,8 +52,23 @@ def test_a_fault_is_a_failure_with_its_sentence(answer, prepare):
 
 
 def test_a_fault_of_a_service_without_success_is_an_error_of_the_call():
-    with pytest.raises(CallError, match='Empty: Failure - link a is missing'):
-        respond(SERVER, Service('s', Empty, _fail, None, registers=False), None)
+    with pytest.raises(CallError, match='^reset_world: Failure - link a is missing'):
+        respond(SERVER, Service('reset_world', Empty, _fail, None, registers=False), None)
+
+
+def test_a_service_off_the_loop_is_answered_on_the_callers_thread():
+    busy = SimpleNamespace(loop=SimpleNamespace(call=_fail))
+    entry = Service('s', DeleteModel, lambda _server, value: DeleteModelResponse(True, value),
+                    None, registers=False, on_loop=False)
+    assert respond(busy, entry, 'text').status_message == 'text'
+
+
+@pytest.mark.parametrize('told', [True, False])
+def test_a_master_that_was_not_told_in_time_is_complained_of(told, caplog):
+    server = SimpleNamespace(loop=SERVER.loop, registrar=SimpleNamespace(wait=lambda _: told))
+    entry = Service('s', DeleteModel, lambda *_: DONE, None, registers=True)
+    assert respond(server, entry, None) is DONE
+    assert ('was not told of all topics within 5 s' in caplog.text) != told
 
 
 def test_a_refused_call_is_an_error_of_the_call():

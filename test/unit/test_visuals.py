@@ -6,7 +6,7 @@ import pytest
 from visualization_msgs.msg import Marker
 
 from rosbots_description.ros_api.markers import PLANE_DEPTH, visual_marker
-from rosbots_description.ros_api.visuals import REFRESH, View
+from rosbots_description.ros_api.visuals import REFRESH, ShownMarkers
 from rosbots_description.sim.pose import IDENTITY, Pose
 from rosbots_description.sim.spec import (
     Box,
@@ -57,19 +57,19 @@ def test_a_mesh_without_material_keeps_its_own_colours():
 
 def test_a_plane_has_a_colour_at_every_corner_and_lies_below_the_grid():
     world = SimpleNamespace(models={'ground': _model('ground', Visual('v', Plane()))})
-    _, marker = View(world).look()
+    _, marker = ShownMarkers(world).look()
     assert len(marker.colors) == len(marker.points) == 6
     assert marker.pose.position.z == -PLANE_DEPTH
 
 
 def test_the_first_look_shows_all_and_the_next_nothing(world):
-    view = View(world)
+    view = ShownMarkers(world)
     assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
     assert view.look() == []
 
 
 def test_what_moved_is_shown_where_it_is(world):
-    view = View(world)
+    view = ShownMarkers(world)
     view.look()
     world.models['box'].links['link'].pose = Pose((1.0, 2.0, 3.0))
     (marker,) = view.look()
@@ -77,7 +77,7 @@ def test_what_moved_is_shown_where_it_is(world):
 
 
 def test_what_went_is_removed_and_what_came_is_added(world):
-    view = View(world)
+    view = ShownMarkers(world)
     view.look()
     del world.models['box']
     (gone,) = view.look()
@@ -85,7 +85,7 @@ def test_what_went_is_removed_and_what_came_is_added(world):
 
 
 def test_a_new_model_of_an_old_name_takes_its_place(world):
-    view = View(world)
+    view = ShownMarkers(world)
     view.look()
     world.models['box'] = _model('box', Visual('v', Sphere(1.0)))
     gone, came = view.look()
@@ -94,7 +94,7 @@ def test_a_new_model_of_an_old_name_takes_its_place(world):
 
 
 def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
-    view = View(world)
+    view = ShownMarkers(world)
     shown = [len(view.look()) for _ in range(REFRESH + 1)]
     assert shown == [2] + [0] * (REFRESH - 1) + [1]
     view.begin()

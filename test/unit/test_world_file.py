@@ -198,9 +198,11 @@ def _inverse(q):
 
 
 @pytest.mark.parametrize('body, part', [
-    ('<physics><max_step_size>0</max_step_size></physics>', 'greater than zero'),
-    ('<physics><ode><solver><iters>1e20</iters></solver></ode></physics>', 'at most 100000'),
-    ('<physics><real_time_update_rate>-5</real_time_update_rate></physics>', 'or more [Hz]'),
+    ('<physics><max_step_size>0</max_step_size></physics>',
+     'line 1: <max_step_size> is wrong: step_size is 0; it must be from 1e-09 to 10 [s]'),
+    ('<physics><ode><solver><iters>50000</iters></solver></ode></physics>', 'from 0 to 10000'),
+    ('<physics><real_time_update_rate>-5</real_time_update_rate></physics>', 'from 0 to inf [Hz]'),
+    ('<physics><real_time_update_rate>1e-7</real_time_update_rate></physics>', 'at least 0.001'),
     ('<physics><max_step_size>fast</max_step_size></physics>', 'it takes one finite number'),
     ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
     ('<light type="laser" name="l"/>', "light type 'laser' is unknown"),

@@ -26,20 +26,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     folder = Path(sys.argv[0]).absolute().parent
+    # Noted rather than raised, so that no child started just then is left behind. roslaunch and
+    # kill send to us alone; a terminal's Ctrl-C goes to the children as well.
+    told: list[int] = []
+    _on_signals(lambda number, _frame: told.append(number))
     server = subprocess.Popen([sys.executable, folder / 'gzserver', *arguments])
-    client = subprocess.Popen([sys.executable, folder / 'gzclient',
-                               *(word for word in arguments if word == '--verbose')])
-    headless = not display_works()  # the client says so and ends at once; the server stays
-    # roslaunch and kill send to us alone; a terminal's Ctrl-C goes to the children as well.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        while server.poll() is None and (headless or client.poll() is None):
+        client = subprocess.Popen([sys.executable, folder / 'gzclient',
+                                   *(word for word in arguments if word == '--verbose')])
+        headless = not display_works()  # the client says so and ends at once; the server stays
+        while not told and server.poll() is None and (headless or client.poll() is None):
             time.sleep(_POLL)
-    except KeyboardInterrupt:
-        pass  # both are asked to end below
-    for child in (client, server):
-        _end(child)
+        _on_signals(signal.default_int_handler)  # whoever asks again does not want to wait
+        _end(client)
+    finally:
+        _end(server)
     return server.returncode
+
+
+def _on_signals(react: signal.Handlers) -> None:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, react)
 
 
 def _end(child: subprocess.Popen) -> None:

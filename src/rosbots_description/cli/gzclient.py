@@ -17,7 +17,7 @@ def parser() -> argparse.ArgumentParser:
     """Return the parser of gzclient's options."""
     made = argparse.ArgumentParser(
         prog='gzclient', description='Look at the simulated world, through RViz.')
-    made.add_argument('--verbose', action='store_true', help='accepted; RViz logs as it does')
+    made.add_argument('--verbose', action='store_true', help='accepted; no effect')
     made.add_argument('-g', '--gui-plugin', action='append', metavar='FILE', default=[],
                       help='accepted; there is nothing to plug into')
     return made

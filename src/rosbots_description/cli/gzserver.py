@@ -10,6 +10,12 @@ from ..sim.errors import SimError
 
 EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'
+# What to install for a module that is missing, as requirements.txt has it.
+_INSTALLED_BY = {
+    'pybullet': 'pybullet==3.2.7',
+    'trimesh': 'trimesh==5.2.0',
+    'collada': 'pycollada==0.9.3',
+}
 
 
 def parser() -> argparse.ArgumentParser:
@@ -27,7 +33,7 @@ def parser() -> argparse.ArgumentParser:
         help='accepted for compatibility; the engine is always PyBullet')
     add('--seed', type=int, metavar='NUMBER', help='accepted; nothing here is random')
     add('--iters', type=_count, metavar='NUMBER', help='end after so many steps')
-    add('--verbose', action='store_true', help='accepted; what matters is logged anyway')
+    add('--verbose', action='store_true', help='log debug messages too')
     add('-r', '--record', action='store_true', help='not supported')
     add('--lockstep', action='store_true', help='accepted; steps and sensors always go together')
     add('-s', '--server-plugin', action='append', metavar='FILE', default=[],
@@ -62,16 +68,19 @@ def _main(arguments: Sequence[str]) -> int:
     own, remappings = split_remappings(arguments)
     given, unknown = parser().parse_known_args(own)
     try:
+        import collada  # noqa: F401, PLC0415  else only the first mesh would miss it
+
         from ..ros_api import node  # noqa: PLC0415  needs what may be missing
     except ModuleNotFoundError as error:
-        if error.name != 'pybullet':
+        if error.name not in _INSTALLED_BY:
             raise
         sys.stderr.write(
-            f'gzserver: the physics engine is missing; install it for {sys.executable} with: '
-            'pip install pybullet==3.2.7\n'
+            f'gzserver: the Python module {error.name} is missing; install it for '
+            f'{sys.executable} with: pip install {_INSTALLED_BY[error.name]}\n'
         )
         return 1
-    options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown))
+    options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
+                           given.verbose)
     try:
         return node.run(options, remappings)
     except SimError as error:

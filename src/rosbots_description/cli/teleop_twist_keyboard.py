@@ -53,27 +53,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
               'launch-prefix="xterm -e".', file=sys.stderr)
         return 1
     # Late, so that the message above needs no ROS.
-    import rospy
-
-    from rosbots_description.ros_api.client_node import start_node
+    from rosbots_description.ros_api.client_node import is_running, own_parameters, start_node
     from rosbots_description.ros_api.velocity_publisher import VelocityPublisher
     try:
         start_node('teleop_twist_keyboard', arguments)
-        settings = Settings(**{name: rospy.get_param(f'~{name}', default)
-                               for name, default in vars(Settings()).items()})
+        settings = Settings(**own_parameters(vars(Settings())))
     except KeyboardInterrupt:
         return 0
     except ValueError as error:
         print(f'teleop_twist_keyboard: {error}', file=sys.stderr)
         return 1
     publisher = VelocityPublisher(settings.stamped, settings.frame_id, settings.repeat_rate)
-
-    def go_on():
-        return not rospy.is_shutdown()
-
     try:
-        if _wait_for_subscriber(publisher, go_on):
-            _drive(settings, publisher, sys.stdin.fileno(), go_on)
+        if _wait_for_subscriber(publisher, is_running):
+            _drive(settings, publisher, sys.stdin.fileno(), is_running)
         else:
             print('Ended before anybody listened to the commands.')
     finally:

@@ -6,7 +6,8 @@ import logging
 import signal
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import rosgraph
 import rospy
@@ -45,6 +46,16 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
     end_at_once()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _shut_down)
+
+
+def own_parameters(defaults: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the node's private parameters of these names; where one is not set, its default."""
+    return {name: rospy.get_param(f'~{name}', default) for name, default in defaults.items()}
+
+
+def is_running() -> bool:
+    """Tell whether the node was not told to end yet."""
+    return not rospy.is_shutdown()
 
 
 def _shut_down(number: int, _frame) -> None:

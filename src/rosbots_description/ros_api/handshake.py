@@ -8,13 +8,18 @@ and whose port is now ours, would make every topic and service of the simulator 
 import logging
 import socket
 import struct
+import time
 
 from rospy.impl import tcpros_base
 
 logger = logging.getLogger(__name__)
 
-PATIENCE = 1.0  # how long a new connection may be silent [s, wall]
-LONGEST_HEADER = 1 << 20  # [bytes]; text of another protocol reads as far more
+PATIENCE = 1.0  # how long a new connection may take to send its header [s, wall]
+# Of a header [bytes]. It waits in the socket's buffer as a whole, so it must fit in there; those of
+# real clients hold a message definition at most. Text of another protocol reads as far more.
+LONGEST_HEADER = 1 << 15
+_LENGTH = struct.Struct('<I')  # what a header begins with: how many bytes follow
+_PAUSE = 0.001  # between two looks at a header that comes in pieces [s, wall]
 
 
 def guard_handshakes() -> None:
@@ -37,11 +42,24 @@ def guard_handshakes() -> None:
 
 
 def speaks_tcpros(connection: socket.socket, patience: float = PATIENCE) -> bool:
-    """Tell whether the connection begins with the length of a header; nothing is consumed."""
-    connection.settimeout(patience)
-    try:
-        start = connection.recv(4, socket.MSG_PEEK | socket.MSG_WAITALL)
-    except OSError:
-        return False
-    connection.settimeout(None)
-    return len(start) == 4 and struct.unpack('<I', start)[0] <= LONGEST_HEADER
+    """Tell whether a whole header arrives within `patience` [s, wall]; nothing is consumed."""
+    deadline = time.monotonic() + patience
+    wanted = _LENGTH.size
+    while True:
+        connection.settimeout(max(_PAUSE, deadline - time.monotonic()))
+        try:
+            # With a timeout Python's recv returns what is there, whatever MSG_WAITALL says.
+            there = connection.recv(wanted, socket.MSG_PEEK)
+        except OSError:
+            return False
+        if len(there) >= _LENGTH.size:
+            (length,) = _LENGTH.unpack_from(there)
+            if length > LONGEST_HEADER:
+                return False
+            wanted = _LENGTH.size + length
+            if len(there) == wanted:
+                connection.settimeout(None)
+                return True
+        if not there or time.monotonic() >= deadline:
+            return False
+        time.sleep(_PAUSE)

@@ -98,13 +98,21 @@ class Loop:
     def _serve(self) -> None:
         """Carry out everything in the queue."""
         while not self._commands.empty():
-            _guard(self._commands.get())
+            self._do(self._commands.get())
+
+    def _do(self, command: Callable[[], None]) -> None:
+        if self._world.paused:
+            self._next_step = time.monotonic()  # no pause is made up for, however short
+        _guard(command)
 
     def _run_tasks(self) -> None:
         for task in self._tasks:
-            if time.monotonic() >= task.next_run:
+            now = time.monotonic()
+            if now >= task.next_run:
                 _guard(task.run)
-                task.next_run = time.monotonic() + task.period
+                task.next_run += task.period
+                if task.next_run <= now:  # more than a period late: what was missed is left out
+                    task.next_run = now + task.period
 
     def _advance(self, left: int | None) -> int:
         """Make the steps that are due, at most for `BATCH`; return how many."""
@@ -139,7 +147,7 @@ class Loop:
                 command = self._commands.get()
         except Empty:
             return
-        _guard(command)
+        self._do(command)
 
 
 class _Task:
@@ -148,7 +156,7 @@ class _Task:
     def __init__(self, period: float, run: Callable[[], None]) -> None:
         self.period = period
         self.run = run
-        self.next_run = 0.0
+        self.next_run = time.monotonic() + period
 
 
 def _carry_out(future: Future, command: Callable[[], Any]) -> None:

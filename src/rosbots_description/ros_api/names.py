@@ -14,7 +14,7 @@ def topic_name(namespace: str, topic: str) -> str:
 
 
 def frame_name(prefix: str, frame: str) -> str:
-    """Return `frame` with a tf prefix; a frame with a leading slash takes none (contract 0.5)."""
+    """Return `frame` with a tf prefix, as tf::resolve does; a leading slash takes none."""
     if frame.startswith('/'):
         return frame[1:]
     prefix = prefix.lstrip('/')

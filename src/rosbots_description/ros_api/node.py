@@ -23,7 +23,7 @@ from ..sim.world_spec import WorldSpec
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .handshake import guard_handshakes
-from .log_bridge import connect_logging
+from .log_bridge import connect_logging, set_level
 from .loop import Loop
 from .packages import find_model, find_package
 from .performance import advertise_performance
@@ -54,6 +54,7 @@ class Options:
     paused: bool = False
     steps: int | None = None  # make so many, then end; None: until told to stop
     remarks: tuple[tuple[int, str], ...] = ()  # what to log at start: level and text
+    verbose: bool = False  # log debug messages too
 
 
 def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
@@ -64,7 +65,8 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         ros_arguments: name remappings and parameters as ROS writes them, e.g. `__name:=gazebo`.
 
     Raises:
-        SimError: the world cannot be read; nothing has been done.
+        SimError: the world cannot be read, and nothing has been done; or a model of it cannot be
+            brought in, and the node has been shut down again.
 
     """
     print_lines_at_once()
@@ -96,6 +98,8 @@ def _simulate(options: Options, spec: WorldSpec, records: list[logging.LogRecord
         _on_signals(lambda _signal, _frame: loop.stop())
         rospy.on_shutdown(loop.stop)  # another node took the name over
         connect_logging(lambda: world.clock.now_ns)
+        if options.verbose:
+            set_level('debug')
         sys.setswitchinterval(SWITCH_INTERVAL)
         for level, text in options.remarks:
             logger.log(level, '%s', text)

@@ -73,14 +73,13 @@ class PhysicsReconfigure(ReconfigureServer):
 
     def __init__(self, server: Server) -> None:
         self._server = server
-        self._begun = False
         super().__init__(_description(), self._reconfigure)
 
     def follow(self) -> None:
         """Show settings that a service has changed."""
         with self.mutex:
             current = self._current(self.config)
-            if current != self.config:
+            if current is not None and current != self.config:
                 self.config = current
                 self._copy_to_parameter_server()
                 self.update_topic.publish(encode_config(current))
@@ -89,23 +88,32 @@ class PhysicsReconfigure(ReconfigureServer):
         """Leave presets alone: as in Gazebo they are replaced by the settings that count."""
 
     def _reconfigure(self, config: Config, _level: int) -> Config:
-        """Apply what differs from the settings that count and return the latter."""
+        """Apply what differs from what was shown last; return the settings that count then.
+
+        What the caller left alone is never written back: it may have been shown before a service
+        changed it, or be the library's default, which the world has never had.
+        """
         current = self._current(config)
-        if not self._begun:
-            self._begun = True
-            return current
-        wanted = {p.name: type(p.default)(config[p.name]) for p in PARAMETERS}
-        if any(current[name] != value for name, value in wanted.items()):
-            response = self._ask('set_physics_properties', _set_request(wanted))
+        if current is None:
+            return self.config
+        asked = {
+            p.name: type(p.default)(config[p.name])
+            for p in PARAMETERS
+            if config[p.name] != self.config[p.name]
+        }
+        if any(current[name] != value for name, value in asked.items()):
+            response = self._ask('set_physics_properties', _set_request({**current, **asked}))
             if response.success:
-                current.update(wanted)
+                current.update(asked)
                 logger.info('physics dynamics reconfigure update complete')
         logger.info('physics dynamics reconfigure complete')
         return current
 
-    def _current(self, config: Config) -> Config:
-        """Return a copy of `config` with the settings that count."""
+    def _current(self, config: Config) -> Config | None:
+        """Return a copy of `config` with the settings that count; None if they cannot be had."""
         response = self._ask('get_physics_properties', GetPhysicsPropertiesRequest())
+        if not response.success:
+            return None
         current = Config({p.name: config[p.name] for p in PARAMETERS})
         current['groups'] = config['groups']
         current.update(settings(response))

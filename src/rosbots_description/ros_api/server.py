@@ -1,9 +1,11 @@
 """What services, topics and adapters work with."""
 
+import threading
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from ..sim.meshes import MeshStore
 from ..sim.model_search import FindModel
 from ..sim.uris import FindPackage
 from ..sim.world import World
@@ -22,6 +24,12 @@ class Server:
     find_model: FindModel
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)
+    stepping: threading.Lock = field(default_factory=threading.Lock)  # one caller of step at a time
+
+    @property
+    def meshes(self) -> MeshStore:
+        """The world's mesh files, the one part of it that any thread may use."""
+        return self.world.meshes
 
     def physics_changed(self) -> None:
         """Tell those who show the physics settings that a service has changed them."""

@@ -6,6 +6,7 @@ Publishes:
     ~model_states (gazebo_msgs/ModelStates): every step while subscribed.
 """
 
+import logging
 from collections.abc import Iterable
 
 import rospy
@@ -19,6 +20,8 @@ from ..sim.model import Link, Model
 from ..sim.schedule import NEVER, Hook
 from .conversions import fill_pose, fill_twist, stamp
 from .server import Server
+
+logger = logging.getLogger(__name__)
 
 QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
 
@@ -125,14 +128,19 @@ class StatesTopic(Topic):
 
 
 class LinkStatesTopic(StatesTopic):
-    """Every link of every model, by scoped name."""
+    """Every link of every model, by scoped name; as in Gazebo not those of models within."""
 
     def __init__(self, server: Server) -> None:
         super().__init__(server, '~link_states', LinkStates())
 
     def entities(self) -> Iterable[Link]:
         """Return all links, model by model in world order."""
-        return (link for model in self._world.models.values() for link in model.links.values())
+        return (
+            link
+            for model in self._world.models.values()
+            for link in model.links.values()
+            if '::' not in link.name
+        )
 
 
 class ModelStatesTopic(StatesTopic):
@@ -148,7 +156,19 @@ class ModelStatesTopic(StatesTopic):
 
 def advertise_clock(server: Server) -> None:
     """Publish /clock, the first thing in every step."""
-    _add(server, ClockTopic(server, int(rospy.get_param('~pub_clock_frequency', 0))))
+    _add(server, ClockTopic(server, clock_frequency(rospy.get_param('~pub_clock_frequency', 0))))
+
+
+def clock_frequency(value: object) -> int:
+    """Return the parameter's value [Hz]; 0, every step, if it is no whole number, with an error."""
+    try:
+        frequency = int(value)
+        if frequency == float(value):
+            return frequency
+    except (TypeError, ValueError, OverflowError):
+        pass
+    logger.error('~pub_clock_frequency is %r; it must be a whole number [Hz]. 0 is used', value)
+    return 0
 
 
 def advertise_states(server: Server) -> None:

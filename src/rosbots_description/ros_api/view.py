@@ -5,8 +5,12 @@ Publishes:
         wall time, also while paused. Each picture takes about 0.1 s, so it is for looking, not for
         sensing.
 Parameters:
-    ~view/eye, ~view/target (lists of three numbers) [m]: from where to where the camera looks.
+    ~view/eye, ~view/target (lists of three numbers) [m]: from where to where the camera looks;
+        read again with each picture, and what is read counts from the next one on.
 """
+
+import logging
+import math
 
 import rospy
 from sensor_msgs.msg import Image
@@ -14,7 +18,11 @@ from sensor_msgs.msg import Image
 from ..sim.pose import Vector
 from ..sim.view import EYE, TARGET, View
 from .conversions import stamp
+from .registrar import Registrar
 from .server import Server
+from .validity import RequestError
+
+logger = logging.getLogger(__name__)
 
 RATE = 2.0  # pictures per second [Hz, wall]
 
@@ -23,12 +31,15 @@ def advertise_view(server: Server) -> None:
     """Offer pictures; nothing is drawn while nobody looks."""
     publisher = rospy.Publisher('~view/image_raw', Image, queue_size=1)
     view = View(server.world)
+    camera = Camera()
+    camera.read()
 
     def show() -> None:
         if publisher.get_num_connections() == 0:
             view.close()
             return
-        pixels = view.picture(_point('~view/eye', EYE), _point('~view/target', TARGET))
+        camera.read_soon(server.registrar)
+        pixels = view.picture(*camera.sight)
         height, width, _ = pixels.shape
         image = Image(height=height, width=width, encoding='rgb8', step=3 * width)
         image.header.frame_id = 'world'
@@ -39,14 +50,53 @@ def advertise_view(server: Server) -> None:
     server.loop.every(1.0 / RATE, show)
 
 
-def _point(parameter: str, default: Vector) -> Vector:
-    """Return a parameter's three numbers [m]; the default, with a warning, if it has others."""
-    value = rospy.get_param(parameter, default)
-    try:
-        x, y, z = (float(number) for number in value)
-    except (TypeError, ValueError):
-        rospy.logwarn_throttle(
-            10.0, '%s is %r; it takes three numbers in metres', rospy.resolve_name(parameter), value
-        )
-        return default
+class Camera:
+    """Keeps what the parameters said last, so that no picture waits for the ROS master."""
+
+    def __init__(self) -> None:
+        self.sight: tuple[Vector, Vector] = (EYE, TARGET)  # eye and target [m, world]
+        self._asked = False
+        self._complaint = ''  # said once, not with every picture
+
+    def read_soon(self, registrar: Registrar) -> None:
+        """Let the registrar's thread read the parameters, unless it is about to."""
+        if not self._asked:
+            self._asked = True
+            registrar.post(self.read)
+
+    def read(self) -> None:
+        """Ask the ROS master, on a thread that may wait; bad values are told and not used."""
+        try:
+            values = [rospy.get_param('~view/eye', EYE), rospy.get_param('~view/target', TARGET)]
+            self.sight = line_of_sight(*values)
+        except RequestError as error:
+            if str(error) != self._complaint:
+                self._complaint = str(error)
+                logger.warning('parameters of ~view: %s', error)
+        else:
+            self._complaint = ''
+        finally:
+            self._asked = False
+
+
+def line_of_sight(eye: object, target: object) -> tuple[Vector, Vector]:
+    """Return eye and target [m] as parameters give them.
+
+    Raises:
+        RequestError: one is not a list of three finite numbers, or both are the same point.
+
+    """
+    sight = _point('eye', eye), _point('target', target)
+    if sight[0] == sight[1]:
+        raise RequestError(f'eye and target are both {list(sight[0])}; they must differ')
+    return sight
+
+
+def _point(name: str, value: object) -> Vector:
+    numbers = value if isinstance(value, list | tuple) else ()
+    if len(numbers) != 3 or not all(
+        isinstance(number, int | float) and math.isfinite(number) for number in numbers
+    ):
+        raise RequestError(f'{name} is {value!r}; it must be a list of three finite numbers [m]')
+    x, y, z = map(float, numbers)
     return (x, y, z)

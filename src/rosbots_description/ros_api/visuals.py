@@ -45,7 +45,7 @@ class LinkView:
         return self.markers
 
 
-class View:
+class ShownMarkers:
     """What has been shown of a world; each look tells what is new."""
 
     def __init__(self, world: World) -> None:
@@ -82,7 +82,7 @@ class View:
 class _Viewers(rospy.SubscribeListener):
     """Lets everything be shown again when someone begins to look."""
 
-    def __init__(self, server: Server, view: View) -> None:
+    def __init__(self, server: Server, view: ShownMarkers) -> None:
         self._server = server
         self._view = view
 
@@ -93,7 +93,7 @@ class _Viewers(rospy.SubscribeListener):
 
 def advertise_visuals(server: Server) -> None:
     """Offer the markers and keep them up to date by wall time, so also while paused."""
-    view = View(server.world)
+    view = ShownMarkers(server.world)
     publisher = rospy.Publisher(
         '~visual_markers', MarkerArray, _Viewers(server, view), latch=True, queue_size=10
     )

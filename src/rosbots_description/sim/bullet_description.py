@@ -6,7 +6,7 @@ placeholder here: PyBullet zeroes tensors it finds impossible, so the engine set
 afterwards.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -42,6 +42,11 @@ class Tree(NamedTuple):
     links: list[LinkSpec]
     joints: list[JointSpec | None]
     fixed_base: bool  # the root never moves
+
+    @property
+    def stands(self) -> bool:
+        """Whether nothing in it moves; its meshes are then exact surfaces, else convex hulls."""
+        return self.fixed_base and len(self.links) == 1
 
 
 def describe_tree(tree: Tree, inertial_poses: Sequence[Pose], mesh_file: MeshFile) -> str:
@@ -208,3 +213,12 @@ def kinematic_trees(spec: ModelSpec) -> list[Tree]:
             tree.links.extend(children)
             tree.joints.extend(above[child.name] for child in children)
     return trees
+
+
+def mesh_needs(spec: ModelSpec) -> Iterator[tuple[Mesh, bool]]:
+    """Yield each mesh that can be touched, and whether its exact surface is used, not its hull."""
+    for tree in kinematic_trees(spec):
+        for link in tree.links:
+            for collision in link.collisions:
+                if isinstance(collision.geometry, Mesh):
+                    yield collision.geometry, tree.stands

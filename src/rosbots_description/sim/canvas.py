@@ -8,7 +8,7 @@ import numpy as np
 from .engine import pybullet
 from .pose import Pose, Vector
 
-_SUN = (2.0, -1.0, 4.0)  # where the light comes from
+_SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,6 @@
-"""The physics engine: the only module that knows PyBullet. Specs and names in, plain values out.
+"""The physics engine: specs and names in, plain values out.
+
+This module and canvas.py alone know PyBullet, and only this one imports it.
 
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
 frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a

@@ -1,5 +1,6 @@
-"""The <gazebo> blocks of a URDF (contract 4.16): surfaces, looks, flags, sensors, plugins.
+"""The <gazebo> blocks of a URDF: surfaces, looks, flags, sensors, plugins.
 
+The tags and defaults are those of sdformat 9 (parser_urdf.cc).
 Numbers may stand as text or in an attribute `value`. What is wrong as a number is an error; what
 is not simulated is named once. Different from Gazebo on purpose: the surface of a link also
 reaches those of its collisions that have names of their own.
@@ -118,7 +119,7 @@ def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
 def inject_namespace(root: etree._Element, robot_namespace: str) -> None:
     """Give each <plugin>, at any depth, a <robotNamespace> unless it has one, in place.
 
-    An empty `robot_namespace` changes nothing (contract 2.6, step 6).
+    An empty `robot_namespace` changes nothing (gazebo_ros_pkgs 2.9.2).
     """
     if not robot_namespace:
         return

@@ -1,4 +1,4 @@
-"""Merge links that fixed joints hold together, as sdformat 9 does for Gazebo (contract 4.16).
+"""Merge links that fixed joints hold together, as sdformat 9 does for Gazebo (parser_urdf.cc).
 
 The child's mass, shapes and joints go to the nearest ancestor that moves on its own, its heir.
 Shapes get the names by which Gazebo's users know them:

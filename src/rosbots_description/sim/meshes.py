@@ -10,6 +10,7 @@ import logging
 import math
 import os
 import tempfile
+import threading
 from functools import lru_cache
 from pathlib import Path
 
@@ -31,7 +32,7 @@ _VERSION = '1'  # of the files' layout; a change makes the old ones be left alon
 
 
 class MeshStore:
-    """Keeps the engine's mesh files in a directory.
+    """Keeps the engine's mesh files in a directory. Any thread may ask for files.
 
     Args:
         cache_dir: made if missing. Without one, or where it cannot be written, a private
@@ -40,6 +41,7 @@ class MeshStore:
 
     def __init__(self, cache_dir: str | os.PathLike | None = None) -> None:
         self._temporary: tempfile.TemporaryDirectory | None = None
+        self._lock = threading.Lock()  # for the directory; files are converted without it
         self._directory = self._prepare(cache_dir)
 
     @property
@@ -68,8 +70,9 @@ class MeshStore:
 
     def close(self) -> None:
         """Remove the temporary directory, if there is one."""
-        if self._temporary is not None:
-            self._temporary.cleanup()
+        with self._lock:
+            if self._temporary is not None:
+                self._temporary.cleanup()
 
     def _prepare(self, cache_dir: str | os.PathLike | None) -> Path:
         if cache_dir is not None:
@@ -94,14 +97,20 @@ class MeshStore:
         mesh = read_mesh(path)
         key = hashlib.sha256(repr((_VERSION, kind, mesh.digest, *map(float, scale))).encode())
         name = f'{kind}_{key.hexdigest()[:32]}.obj'
-        if not (self._directory / name).is_file():
-            vertices, faces = mesh.triangles()
-            vertices = vertices * np.asarray(scale)
-            if kind == 'hull':
-                vertices, faces = _hull(vertices[np.unique(faces)])
-            elif np.prod(np.sign(scale)) < 0.0:
-                faces = faces[:, ::-1]  # a mirror turns the triangles inside out
-            text = _obj(vertices, faces)
+        file = self._directory / name
+        if file.is_file():
+            return str(file)
+        vertices, faces = mesh.triangles()
+        vertices = vertices * np.asarray(scale)
+        if kind == 'hull':
+            vertices, faces = _hull(vertices[np.unique(faces)])
+        elif np.prod(np.sign(scale)) < 0.0:
+            faces = faces[:, ::-1]  # a mirror turns the triangles inside out
+        return self._keep(name, _obj(vertices, faces))
+
+    def _keep(self, name: str, text: str) -> str:
+        """Write a file, if need be into a temporary directory; return its path."""
+        with self._lock:
             try:
                 self._write(name, text)
             except OSError as error:
@@ -113,7 +122,7 @@ class MeshStore:
                 )
                 self._use_temporary()
                 self._write(name, text)
-        return str(self._directory / name)
+            return str(self._directory / name)
 
     def _write(self, name: str, text: str) -> None:
         """Write a file so that no other process ever sees a part of it."""

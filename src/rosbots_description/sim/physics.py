@@ -16,8 +16,9 @@ MOST_CONTACTS = 10_000_000
 class PhysicsSettings:
     """Step, rate and gravity, and the ODE fields of gazebo_msgs/ODEPhysics.
 
-    The defaults are those of an empty world in Gazebo 11 (contract 2.5). Of the ODE fields the
-    engine applies `sor_pgs_iters`; the others have no counterpart in PyBullet and are kept.
+    The defaults are those that gazebo_ros 2.9.2 answers in an empty world of Gazebo 11. Of the
+    ODE fields the engine applies `sor_pgs_iters`; the others have no counterpart in PyBullet and
+    are kept.
     """
 
     step_size: float = 0.001  # simulated time of one step [s]

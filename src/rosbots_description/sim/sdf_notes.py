@@ -23,7 +23,7 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
 # Read and kept for whoever asks, but nothing here acts on it: parent -> children.
 _KEPT = {
     'ode': ('mu2', 'fdir1', 'max_vel', 'min_depth'), 'collision': ('max_contacts', 'laser_retro'),
-    'limit': ('effort', 'velocity'), 'scene': ('ambient', 'background', 'shadows'),
+    'limit': ('velocity',), 'scene': ('ambient', 'background', 'shadows'),
 }
 # The same, but the model is not what its author expects.
 _NOT_RUN = {'link': ('sensor', 'light', 'projector')}

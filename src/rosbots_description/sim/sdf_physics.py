@@ -4,8 +4,9 @@ from dataclasses import fields
 
 from lxml import etree
 
+from .errors import SimError
 from .markup_values import fault, scalar, tag_of
-from .physics import PhysicsSettings
+from .physics import PhysicsSettings, check
 from .sdf_document import SdfDocument
 from .sdf_values import number_of, numbers_of
 
@@ -28,8 +29,6 @@ _READ = ('max_step_size', 'real_time_update_rate', 'update_rate', 'gravity', 'ma
 _IDLE = ('real_time_factor', 'bullet', 'simbody', 'dart')
 _ODE_IDLE = ('type', 'min_step_size', 'use_dynamic_moi_rescaling', 'friction_model',
              'thread_position_correction', 'island_threads')
-_SHORTEST, _LONGEST = 1e-9, 1.0  # steps; the clock counts nanoseconds [s]
-_MOST_PASSES = 100_000  # of the solver
 
 
 def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSettings:
@@ -52,13 +51,9 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
         for path in _PATHS.get(field.name, ()):
             element = chosen.find(path)
             if element is not None and scalar(element) and field.name not in settings:
-                settings[field.name] = _value(chosen, path, getattr(plain, field.name))
-    _require(chosen, settings, 'step_size', lambda value: _SHORTEST <= value <= _LONGEST,
-             f'greater than zero and at most {_LONGEST:g} [s]')
-    _require(chosen, settings, 'max_update_rate', lambda value: value >= 0.0,
-             'zero (as fast as possible) or more [Hz]')
-    _require(chosen, settings, 'sor_pgs_iters', lambda value: 0 < value <= _MOST_PASSES,
-             f'greater than zero and at most {_MOST_PASSES}')
+                value = _value(chosen, path, getattr(plain, field.name))
+                _check_setting(element, field.name, value)
+                settings[field.name] = value
     return PhysicsSettings(**settings)
 
 
@@ -86,9 +81,9 @@ def _value(physics: etree._Element, path: str, default: object) -> object:
     return round(number) if isinstance(default, int) else number
 
 
-def _require(physics: etree._Element, settings: dict, name: str, holds, cure: str) -> None:
-    if name in settings and not holds(settings[name]):
-        element = next(
-            physics.find(path) for path in _PATHS[name] if physics.find(path) is not None
-        )
-        raise fault(element, f'<{tag_of(element)}> is {scalar(element)}; it must be {cure}')
+def _check_setting(element: etree._Element, name: str, value: object) -> None:
+    """Refuse what no world can have, as the services do, and say where it stands."""
+    try:
+        check(PhysicsSettings(**{name: value}))
+    except SimError as error:
+        raise fault(element, f'<{tag_of(element)}> is wrong: {error}') from None

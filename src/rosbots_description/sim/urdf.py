@@ -1,4 +1,4 @@
-"""From the text of a URDF to a `ModelSpec`, by the rules that Gazebo applies (contract 4.16)."""
+"""From the text of a URDF to a `ModelSpec`, by the rules of sdformat 9 (parser_urdf.cc)."""
 
 import logging
 from dataclasses import replace

@@ -30,7 +30,7 @@ class UnknownPackage(ModelError):  # noqa: N818 (short, as it is used as a kind 
 def substitute_packages(text: str, find_package: FindPackage) -> str:
     """Return `text` with each package://NAME replaced by the directory of that package.
 
-    A bare absolute path results, with no file:// before it (contract 2.6, step 3).
+    A bare absolute path results, with no file:// before it (gazebo_ros_pkgs 2.9.2).
 
     Raises:
         UnknownPackage: a package is not to be found.

@@ -1,4 +1,4 @@
-"""The worlds that come with the simulator."""
+"""The models every world can count on: ground_plane and sun, built in."""
 
 from .pose import IDENTITY, Pose
 from .spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual

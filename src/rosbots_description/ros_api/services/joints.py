@@ -97,9 +97,7 @@ def _is_fixed(world: World, name: str) -> bool:
 
 def _change(joint: Joint, config: ODEJointProperties) -> None:
     """Apply what has a counterpart here; of each array only the first axis counts."""
-    velocity, effort = joint.motor
-    if config.vel or config.fmax:
-        joint.set_motor(*config.vel[:1] or [velocity], *config.fmax[:1] or [effort])
+    velocity, effort = changed_motor(joint.spec.name, joint.motor, config)
     changes = {}
     for field, values in (
         ('damping', config.damping), ('lower', config.loStop), ('upper', config.hiStop)
@@ -107,10 +105,31 @@ def _change(joint: Joint, config: ODEJointProperties) -> None:
         with contextlib.suppress(IndexError):
             changes[field] = values[0]
     spec = changed_spec(joint.spec, changes)
+    # Nothing above changes the joint, so a request that is refused leaves all as it was.
+    if (velocity, effort) != joint.motor:
+        joint.set_motor(velocity, effort)
     if spec != joint.spec:
         model = joint.model
         joints = tuple(spec if other is joint.spec else other for other in model.spec.joints)
         model.respecify(replace(model.spec, joints=joints))
+
+
+def changed_motor(
+    name: str, motor: tuple[float, float], config: ODEJointProperties
+) -> tuple[float, float]:
+    """Return the target velocity [rad/s or m/s] and greatest effort [N m or N] asked for.
+
+    Raises:
+        RequestError: the greatest effort is negative.
+
+    """
+    velocity = config.vel[0] if config.vel else motor[0]
+    effort = config.fmax[0] if config.fmax else motor[1]
+    if effort < 0.0:
+        raise RequestError(
+            f"fmax of joint '{name}' is {effort:g}; it must not be negative [N m or N]"
+        )
+    return velocity, effort
 
 
 def changed_spec(spec: JointSpec, changes: dict[str, float]) -> JointSpec:

@@ -1,6 +1,4 @@
-"""Services about links: their state, their mass, and pushes on them."""
-
-import logging
+"""Services about links: their state, and pushes on them."""
 
 from gazebo_msgs.srv import (
     ApplyBodyWrench,
@@ -17,16 +15,15 @@ from gazebo_msgs.srv import (
     SetLinkStateResponse,
 )
 
+from ...sim.errors import NotFoundError
 from ...sim.model import Link
 from ...sim.pose import IDENTITY, Pose, Twist, Vector, add, compose, cross, rotate, subtract
-from ...sim.world import WORLD_FRAMES, World
+from ...sim.world import WORLD_FRAMES, Entity, World
 from ..conversions import fill_pose, fill_twist, read_pose, read_twist, read_vector
 from ..server import Server
 from ..validity import require_finite
 from .models import relative_state
 from .registry import refuse, service
-
-logger = logging.getLogger(__name__)
 
 NO_LINK = 'link not found, did you forget to scope the link by model name?'
 _NO_FRAME = (
@@ -48,10 +45,11 @@ def get_link_state(server: Server, request: GetLinkStateRequest) -> GetLinkState
     link = find_link(world, request.link_name)
     if link is None:
         return refuse(response, f'GetLinkState: {NO_LINK}')
-    entity = world.find_entity(request.reference_frame)
-    if entity is None and request.reference_frame not in WORLD_FRAMES:
+    try:
+        frame = world.frame(request.reference_frame)
+    except NotFoundError:
         return refuse(response, _NO_FRAME)
-    pose, twist = relative_state(link.state(), world.frame(request.reference_frame))
+    pose, twist = relative_state(link.state(), frame)
     state = response.link_state
     state.link_name, state.reference_frame = request.link_name, request.reference_frame
     fill_pose(state.pose, pose)
@@ -71,10 +69,13 @@ def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkState
     link = find_link(server.world, state.link_name)
     if link is None:
         return refuse(SetLinkStateResponse(), 'SetLinkState: link does not exist')
-    frame = _link_frame(server.world, state.reference_frame)
-    if frame is None:
+    try:
+        frame = _frame_entity(server.world, state.reference_frame)
+    except NotFoundError:
         return refuse(SetLinkStateResponse(), 'SetLinkState: failed')
-    frame_pose, frame_twist = frame
+    if not isinstance(frame, Link | None):
+        return refuse(SetLinkStateResponse(), 'SetLinkState: failed')
+    frame_pose, frame_twist = frame.state() if frame else (IDENTITY, Twist())
     given = read_twist(state.twist)
     twist = Twist(
         subtract(given.linear, frame_twist.linear), subtract(given.angular, frame_twist.angular)
@@ -92,8 +93,9 @@ def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyB
     link = find_link(world, request.body_name)
     if link is None:
         return refuse(ApplyBodyWrenchResponse(), 'ApplyBodyWrench: body does not exist')
-    frame = world.find_entity(request.reference_frame)
-    if frame is None and request.reference_frame not in WORLD_FRAMES:
+    try:
+        frame = _frame_entity(world, request.reference_frame)
+    except NotFoundError:
         return refuse(ApplyBodyWrenchResponse(), 'ApplyBodyWrench: reference_frame not found')
     force, torque = world_wrench(
         read_vector(request.wrench.force),
@@ -139,9 +141,14 @@ def world_wrench(
     return force, add(rotate(frame.orientation, torque), cross(arm, force))
 
 
-def _link_frame(world: World, name: str) -> tuple[Pose, Twist] | None:
-    """Return the state of a link or, by its names, of the world; None for anything else."""
+def _frame_entity(world: World, name: str) -> Entity | None:
+    """Return the entity that a reference frame names; None for the world, by one of its names.
+
+    Raises:
+        NotFoundError: nothing in the world has that name.
+
+    """
     entity = world.find_entity(name)
-    if isinstance(entity, Link):
-        return entity.state()
-    return (IDENTITY, Twist()) if entity is None and name in WORLD_FRAMES else None
+    if entity is None and name not in WORLD_FRAMES:
+        raise NotFoundError(f"there is no model, link or collision named '{name}'")
+    return entity

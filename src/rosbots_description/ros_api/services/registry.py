@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import rospy
@@ -14,6 +15,8 @@ logger = logging.getLogger(__name__)
 
 Answer = Callable[[Server, Any], Any]
 
+REGISTRATION = 5.0  # how long a reply waits for the ROS master to know of topics [s, wall]
+
 
 class CallError(SimError):
     """A request that Gazebo answers with an error of the call itself, not with success=False."""
@@ -21,13 +24,14 @@ class CallError(SimError):
 
 @dataclass(frozen=True)
 class Service:
-    """How a service is answered: `prepare` on the caller's thread, then `answer` on the loop's."""
+    """How a service is answered: `prepare` on the caller's thread, then `answer`."""
 
     name: str  # without the node's name
     type: type
     answer: Answer
     prepare: Answer | None
     registers: bool  # changes which topics there are; the reply waits for that
+    on_loop: bool = True  # whether `answer` runs on the loop's thread or on the caller's
 
 
 SERVICES: dict[str, Service] = {}  # those of Gazebo
@@ -39,11 +43,13 @@ def service(
     service_type: type,
     prepare: Answer | None = None,
     registers: bool = False,
+    on_loop: bool = True,
     table: dict[str, Service] = SERVICES,
 ) -> Callable[[Answer], Answer]:
     """Return a decorator that offers `answer(server, request) -> response` as service ~`name`.
 
-    The function runs on the thread that owns the world. Slow work that does not need the world
+    The function runs on the thread that owns the world; with `on_loop=False` on the caller's, where
+    it may touch the world only by `server.loop.call`. Slow work that does not need the world
     goes into `prepare(server, request)`, whose result is what `answer` gets as its request; a
     response it returns is sent at once. Either may raise `SimError`, which becomes success=False
     with its sentence, or `CallError`, which becomes an error of the call.
@@ -52,7 +58,7 @@ def service(
     def add(answer: Answer) -> Answer:
         if name in table:
             raise ValueError(f'service {name} is already answered by {table[name].answer}')
-        table[name] = Service(name, service_type, answer, prepare, registers)
+        table[name] = Service(name, service_type, answer, prepare, registers, on_loop)
         return answer
 
     return add
@@ -95,20 +101,25 @@ def respond(server: Server, entry: Service, request: Any) -> Any:
         prepared = entry.prepare(server, request) if entry.prepare else request
         if isinstance(prepared, response_class):
             return prepared
-        response = server.loop.call(lambda: entry.answer(server, prepared))
+        answer = partial(entry.answer, server, prepared)
+        response = server.loop.call(answer) if entry.on_loop else answer()
     except CallError:
         raise
     except SimError as error:
         return _failure(entry, response_class(), str(error))
-    if entry.registers:
-        server.registrar.wait(deadline=5.0)
+    if entry.registers and not server.registrar.wait(REGISTRATION):
+        logger.warning(
+            '%s: the ROS master was not told of all topics within %g s; it will be later',
+            entry.name, REGISTRATION,
+        )
     return response
 
 
 def _failure(entry: Service, response: Any, sentence: str) -> Any:
     """Return `response` with success=False and the sentence in the words of the service."""
-    text = f'{entry.type.__name__}: Failure - {sentence}'
     if hasattr(response, 'success'):
-        return refuse(response, text)
+        return refuse(response, f'{entry.type.__name__}: Failure - {sentence}')
+    # The type is shared by several services then, as std_srvs/Empty is.
+    text = f'{entry.name}: Failure - {sentence}'
     logger.error('%s', text)
     raise CallError(text)

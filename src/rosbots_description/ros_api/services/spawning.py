@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 from gazebo_msgs.srv import SpawnModel, SpawnModelRequest, SpawnModelResponse
 
+from ...sim.bullet_description import mesh_needs
 from ...sim.errors import ModelError, NotFoundError
 from ...sim.markup import root_tag
 from ...sim.pose import Pose, compose
 from ...sim.sdf import load_sdf, load_sdf_light
-from ...sim.spec import Mesh, ModelSpec
+from ...sim.spec import ModelSpec
 from ...sim.urdf import load_urdf
 from ...sim.uris import UnknownPackage
 from ...sim.world_spec import LightSpec
@@ -69,7 +70,8 @@ def _read_sdf(
         return refuse(SpawnModelResponse(), _NO_FORMAT)
     light = load_sdf_light(request.model_xml, request.model_name)
     if light is not None:
-        return light
+        # The frame must be there although, as in Gazebo, a lamp stands where its description says.
+        return server.loop.call(lambda: _frame_refusal(server, request.reference_frame)) or light
     return _arrival(server, request, lambda: load_sdf(
         request.model_xml,
         request.model_name,
@@ -140,20 +142,23 @@ def _initial_pose(request: SpawnModelRequest) -> Pose:
 
 def _refusal(server: Server, name: str, frame: str) -> SpawnModelResponse | None:
     """Return Gazebo's answer to a frame that is not there or a name that is; else None."""
+    refusal = _frame_refusal(server, frame)
+    if refusal is None and name in server.world.models:
+        logger.error('SpawnModel: Failure - model name %s already exist.', name)
+        refusal = SpawnModelResponse(False, 'SpawnModel: Failure - entity already exists.')
+    return refusal
+
+
+def _frame_refusal(server: Server, frame: str) -> SpawnModelResponse | None:
     try:
         server.world.frame(frame)
     except NotFoundError:
         return SpawnModelResponse(False, _NO_FRAME)
-    if name in server.world.models:
-        logger.error('SpawnModel: Failure - model name %s already exist.', name)
-        return SpawnModelResponse(False, 'SpawnModel: Failure - entity already exists.')
     return None
 
 
 def _warm_meshes(server: Server, spec: ModelSpec) -> None:
     """Convert the meshes that will touch, so that the world finds them ready."""
-    for link in spec.links:
-        for collision in link.collisions:
-            if isinstance(collision.geometry, Mesh):
-                mesh = collision.geometry
-                server.world.meshes.collision_hull(mesh.path, mesh.scale)
+    for mesh, exact in mesh_needs(spec):
+        convert = server.meshes.collision_surface if exact else server.meshes.collision_hull
+        convert(mesh.path, mesh.scale)

@@ -1,6 +1,5 @@
 """Single steps, which Gazebo offers only by its own transport: a service of ours."""
 
-import threading
 from functools import partial
 
 from rosbots_msgs.srv import Step, StepRequest, StepResponse
@@ -12,12 +11,14 @@ CHUNK = 20  # steps between which other services are served
 
 _BUSY = 'Step: steps for another caller are being made; wait for their end'
 
-_stepping = threading.Lock()  # one caller at a time
 
+@service('step', Step, on_loop=False, table=EXTENSIONS)
+def step(server: Server, request: StepRequest) -> StepResponse:
+    """Advance paused time by exactly so many steps; the same steps give the same motion.
 
-def _advance(server: Server, request: StepRequest) -> StepResponse:
-    """Make the steps in small portions, so that no other service waits for all of them."""
-    if not _stepping.acquire(blocking=False):
+    They are made in small portions, so that no other service waits for all of them.
+    """
+    if not server.stepping.acquire(blocking=False):
         return refuse(StepResponse(sim_time=_now(server)), _BUSY)
     try:
         made = 0
@@ -29,13 +30,7 @@ def _advance(server: Server, request: StepRequest) -> StepResponse:
             if made == request.steps:
                 return StepResponse(True, f'Step: made {made} steps', _now(server))
     finally:
-        _stepping.release()
-
-
-@service('step', Step, prepare=_advance, table=EXTENSIONS)
-def step(_server: Server, response: StepResponse) -> StepResponse:
-    """Advance paused time by exactly so many steps; the same steps give the same motion."""
-    return response
+        server.stepping.release()
 
 
 def _make(server: Server, steps: int) -> bool:

@@ -1,0 +1,100 @@
+"""Settings by dynamic_reconfigure: what is written to the world, and when nothing is."""
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from dynamic_reconfigure.encoding import Config
+
+from rosbots_description.ros_api import reconfigure
+from rosbots_description.ros_api.loop import LoopError
+from rosbots_description.ros_api.reconfigure import PARAMETERS, PhysicsReconfigure
+from rosbots_description.sim.physics import PhysicsSettings
+
+
+class FakeServer:
+    """A world that keeps its settings, on a loop that can be too busy to answer."""
+
+    def __init__(self):
+        self.busy = False
+        self.world = SimpleNamespace(
+            physics=PhysicsSettings(), paused=False, set_physics=self._set_physics)
+        self.loop = SimpleNamespace(call=self._call)
+        self.changes = 0
+
+    def physics_changed(self):
+        self.changes += 1
+
+    def _set_physics(self, physics):
+        self.world.physics = physics
+
+    def _call(self, command):
+        if self.busy:
+            raise LoopError('the simulator was busy')
+        return command()
+
+
+@pytest.fixture
+def server():
+    return FakeServer()
+
+
+@pytest.fixture
+def connect(monkeypatch):
+    """Return what makes a PhysicsReconfigure as the library does, without a ROS master."""
+
+    def begin(self, _description, callback):
+        self.mutex = threading.Lock()
+        self.config = Config({p.name: p.default for p in PARAMETERS})
+        self.config['groups'] = {}
+        self.config = callback(self.config, -1)
+        self.update_topic = SimpleNamespace(publish=lambda _: pytest.fail('nothing to be told'))
+
+    monkeypatch.setattr(reconfigure.ReconfigureServer, '__init__', begin)
+    return PhysicsReconfigure
+
+
+def _ask(settings, **changes):
+    """Change settings as the library does for a request that names only those."""
+    config = Config(dict(settings.config))
+    config.update(changes)
+    settings.config = settings._reconfigure(config, -1)
+    return settings.config
+
+
+def test_begins_with_what_counts(server, connect):
+    settings = connect(server)
+    assert settings.config['max_update_rate'] == 1000.0
+    assert server.changes == 0
+
+
+def test_only_what_was_asked_for_is_written(server, connect):
+    settings = connect(server)
+    server.world.physics = PhysicsSettings(erp=0.5)  # by a service, not shown yet
+    shown = _ask(settings, time_step=0.002)
+    assert server.world.physics == PhysicsSettings(erp=0.5, step_size=0.002)
+    assert (shown['time_step'], shown['erp']) == (0.002, 0.5)
+
+
+def test_what_is_refused_is_not_shown(server, connect):
+    settings = connect(server)
+    assert _ask(settings, time_step=0.0)['time_step'] == 0.001
+    assert server.changes == 0
+
+
+def test_a_busy_simulator_changes_nothing_that_is_shown(server, connect):
+    settings = connect(server)
+    before = Config(dict(settings.config))
+    server.busy = True
+    settings.follow()
+    assert settings.config == before
+    assert _ask(settings, time_step=0.002) == before
+
+
+def test_defaults_shown_by_a_busy_start_never_reach_the_world(server, connect):
+    server.busy = True
+    settings = connect(server)
+    server.busy = False
+    shown = _ask(settings, gravity_z=-1.0)
+    assert server.world.physics == PhysicsSettings(gravity=(0.0, 0.0, -1.0))
+    assert shown['max_update_rate'] == 1000.0
