@@ -1,8 +1,8 @@
 """Mesh files for the physics engine: clean, reduced, written once and used again.
 
 Collisions of moving bodies are convex hulls, those of standing ones exact surfaces. Both are
-written as plain .obj files named by what they hold, so that respawning, and the next run, finds
-them ready.
+written as plain .obj files named by what they hold, so that respawning finds them ready, and the
+next run too if it is given the same directory.
 """
 
 import hashlib
