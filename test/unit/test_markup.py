@@ -81,7 +81,16 @@ def test_an_entity_bomb_is_refused():
         f'<!ENTITY e{i + 1} "{10 * entity.format(i)}">' for i in range(12)
     )
     bomb = f'<!DOCTYPE r [<!ENTITY e0 "x">{levels}]><robot a="&e12;">&e12;</robot>'
-    complaint(bomb)
+    assert 'DOCTYPE' in complaint(bomb)
+
+
+def test_a_document_type_behind_comments_is_refused_and_one_in_a_comment_is_not():
+    assert 'DOCTYPE' in complaint('<!-- a --> <?b c?>\n<!DOCTYPE r><robot/>')
+    assert parse('<!-- <!DOCTYPE r> --><robot/>', 'bot.urdf').tag == 'robot'
+
+
+def test_a_long_row_of_comments_is_read_in_no_time():
+    assert parse('<!-- -->' * 100_000 + '<robot/>', 'bot.urdf').tag == 'robot'
 
 
 def test_a_file_is_never_read_through_an_entity(tmp_path):

@@ -17,6 +17,9 @@ MAX_ELEMENTS = 100_000
 _DECLARATION = re.compile(r'\s*<\?xml\b[^>]*\?>')
 _XACRO_EXPRESSION = re.compile(r'\$\{[^}]*\}|\$\([^)]*\)')
 _UNDEFINED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
+# A document type can only come before the first element, after comments and instructions. Atomic
+# groups, so that a long row of comments takes no longer than reading it.
+_DOCTYPE = re.compile(rb'(?>\s*+(?><!--.*?-->|<\?.*?\?>))*+\s*+<!DOCTYPE', re.DOTALL)
 _XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
 
 
@@ -31,9 +34,9 @@ def parse(text: str | bytes, source: str) -> etree._Element:
             DTD (and so perhaps entities that multiply), or is xacro nobody expanded.
     """
     document = _decode(text, source)
-    root = _parse_document(document, source)
-    if root.getroottree().docinfo.doctype:
+    if _DOCTYPE.match(document):  # before the parser sees an entity
         raise ModelError(f'{source}: a document type (<!DOCTYPE>) is not accepted; remove it')
+    root = _parse_document(document, source)
     _check_bounds(root, source)
     _refuse_xacro(root, source)
     return root
