@@ -7,8 +7,7 @@ import sys
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose, Quaternion
-from simulator import BOX, GROUND, SimulatorTest, pose, proxy, topics_of, wait_until
-from std_srvs.srv import Empty
+from simulator import BOX, GROUND, SimulatorTest, pose, topics_of, wait_until
 
 SPAWNED = 'SpawnModel: Successfully spawned entity'
 NO_FRAME = ('SpawnModel: reference reference_frame not found, '
@@ -100,8 +99,14 @@ class ServicesTest(SimulatorTest):
         self.assertAlmostEqual(gained / fallen, -9.8, places=3)
 
     def test_pause_and_unpause_answer_twice(self):
-        for name in ('pause_physics', 'pause_physics', 'unpause_physics', 'unpause_physics'):
-            proxy(name, Empty)()
+        for _ in range(2):
+            self.pause()
+        stopped = self.world().sim_time
+        self.spawn('box', BOX, pose())  # takes far longer than a step
+        self.assertEqual(self.world().sim_time, stopped)
+        for _ in range(2):
+            self.unpause()
+        wait_until(lambda: self.world().sim_time > stopped, 'time going on')
 
 
 if __name__ == '__main__':

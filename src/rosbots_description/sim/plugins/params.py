@@ -24,10 +24,6 @@ class Params:
         self._element = element
         self._read: set[str] = set()
 
-    def has(self, tag: str) -> bool:
-        """Tell whether the tag is there."""
-        return self._element.child(tag) is not None
-
     def text(self, tag: str) -> str | None:
         """Return the tag's text without surrounding blanks, or None; says nothing."""
         self._read.add(tag)
