@@ -4,7 +4,7 @@ import pytest
 
 from rosbots_description.sim import markup
 from rosbots_description.sim.errors import ModelError
-from rosbots_description.sim.markup import parse, root_tag
+from rosbots_description.sim.markup import parse, root_tag, source_of
 
 
 def complaint(text):
@@ -21,7 +21,14 @@ def test_an_element_knows_its_line_and_the_document_its_source():
     root = parse(text, 'bot.urdf')
     assert root.tag == 'robot'
     assert root[0].sourceline == 5
-    assert root.getroottree().docinfo.URL == 'bot.urdf'
+    assert source_of(root) == 'bot.urdf'
+
+
+@pytest.mark.parametrize('source', [
+    '/tmp/Mein Roboter ä/a%20b #&"<.urdf', 'model://sun', '/tmp/not_utf8_\udcff.world',
+])
+def test_a_source_is_given_back_as_it_was_written(source):
+    assert source_of(parse('<robot/>', source)) == source
 
 
 def test_a_line_beyond_65535_is_counted_right():

@@ -8,14 +8,19 @@ reaches those of its collisions that have names of their own.
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from lxml import etree
 
 from .gazebo_materials import gazebo_material
 from .kinematic_tree import TreeLink
+from .markup import shortened
 from .markup_values import (
+    MAX_NOTES,
     fault,
+    note,
     place,
+    require_damping,
     scalar,
     scalar_number,
     scalar_numbers,
@@ -90,14 +95,21 @@ def read_gazebo_tags(
         if reference in joints:
             _read_joint_block(block, reference, tags, unread if reference not in links else [])
         if reference not in links and reference not in joints:
-            names = [*links, *joints]
-            tags.notes.append(
-                f'{place(block)}: there is no link or joint of that name, the block is '
-                f'ignored{suggestion(reference, names)}'
-            )
+            note(tags.notes, partial(_unknown, block, reference, [*links, *joints]))
     if unread:
-        tags.notes.append('not simulated in <gazebo> blocks: ' + ', '.join(dict.fromkeys(unread)))
+        listed = list(dict.fromkeys(unread))
+        more = f' and {len(listed) - MAX_NOTES} more' if len(listed) > MAX_NOTES else ''
+        tags.notes.append(
+            'not simulated in <gazebo> blocks: ' + ', '.join(listed[:MAX_NOTES]) + more
+        )
     return tags
+
+
+def _unknown(block: etree._Element, reference: str, names: Collection[str]) -> str:
+    return (
+        f'{place(block)}: there is no link or joint of that name, the block is '
+        f'ignored{suggestion(reference, names)}'
+    )
 
 
 def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
@@ -144,10 +156,10 @@ def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]
 def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     if not filename:
-        tags.notes.append(
+        note(tags.notes, lambda: (
             f'{place(element)}: a <plugin> without filename is ignored; '
             'filename="libgazebo_ros_….so" picks the code'
-        )
+        ))
         return
     tags.plugins.append(PluginSpec(element.get('name', ''), filename, to_element(element)))
 
@@ -196,6 +208,7 @@ def _read_max_contacts(element: etree._Element, link: LinkTags) -> None:
 
 def _read_damping(element: etree._Element, link: LinkTags) -> None:
     value = scalar_number(element)
+    require_damping(element, value)
     link.flags |= {'linear_damping': value, 'angular_damping': value}
 
 
@@ -241,10 +254,10 @@ def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     script = scalar(element)
     material = gazebo_material(script)
     if material is None:
-        tags.notes.append(
-            f"{place(element)}: material '{script}' is none of Gazebo's, grey is shown; "
-            'Gazebo/Red is an example of one'
-        )
+        note(tags.notes, lambda: (
+            f"{place(element)}: material '{shortened(script, 60)}' is none of Gazebo's, grey is "
+            'shown; Gazebo/Red is an example of one'
+        ))
         material = Material(script=script)
     link.material = material
 
@@ -280,4 +293,4 @@ def _read_joint_block(
 
 
 def _mention(element: etree._Element) -> str:
-    return f'<{tag_of(element)}> (line {element.sourceline})'
+    return f'<{shortened(tag_of(element), 60)}> (line {element.sourceline})'

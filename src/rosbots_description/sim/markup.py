@@ -4,7 +4,10 @@ The tree that comes out is lxml's, without comments and processing instructions.
 reads numbers, poses and names from it and words the complaints.
 """
 
+import contextlib
 import re
+from urllib.parse import quote, unquote
+from xml.parsers import expat
 
 from lxml import etree
 
@@ -13,57 +16,125 @@ from .errors import ModelError
 MAX_BYTES = 10_000_000
 MAX_DEPTH = 200
 MAX_ELEMENTS = 100_000
+MAX_ATTRIBUTES = 200  # of one element; libxml2 compares each with each
 
+_ANY_BYTES = 'surrogateescape'  # in the name of a file that is not UTF-8
 _DECLARATION = re.compile(r'\s*<\?xml\b[^>]*\?>')
-_XACRO_EXPRESSION = re.compile(r'\$\{[^}]*\}|\$\([^)]*\)')
 _UNDEFINED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
-# A document type can only come before the first element, after comments and instructions. Atomic
-# groups, so that a long row of comments takes no longer than reading it.
-_DOCTYPE = re.compile(rb'(?>\s*+(?><!--.*?-->|<\?.*?\?>))*+\s*+<!DOCTYPE', re.DOTALL)
 _XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
 
 
 def parse(text: str | bytes, source: str) -> etree._Element:
     """Return the root element of a document.
 
-    Every element knows its line (`sourceline`) and the document its `source`
-    (`getroottree().docinfo.URL`), a file or parameter name that begins every message.
+    Every element knows its line (`sourceline`) and its `source` (see `source_of`), a file or
+    parameter name that begins every message.
 
     Raises:
         ModelError: the text is empty, too big, too deep, not UTF-8, no well-formed XML, has a
             DTD (and so perhaps entities that multiply), or is xacro nobody expanded.
     """
     document = _decode(text, source)
-    if _DOCTYPE.match(document):  # before the parser sees an entity
-        raise ModelError(f'{source}: a document type (<!DOCTYPE>) is not accepted; remove it')
+    fault = check_bounds(document, source)
+    if fault is not None:
+        raise ModelError(_syntax_sentence(document, source, fault))
     root = _parse_document(document, source)
-    _check_bounds(root, source)
+    if b'xmlns=' in document:
+        _drop_default_namespace(root)
     _refuse_xacro(root, source)
     return root
+
+
+def source_of(element: etree._Element) -> str:
+    """Return the source that was given to `parse`, as it was written."""
+    return unquote(str(element.getroottree().docinfo.URL), errors=_ANY_BYTES)
 
 
 def root_tag(text: str | bytes) -> str | None:
     """Return the name of the first element, or None where the text does not begin as XML.
 
-    It looks no further, so a document that is broken later on still has a root.
+    It looks no further, so a document that is broken or too big later on still has a root.
     """
+    tags: list[str] = []
+
+    def found(tag: str, *_: object) -> None:
+        tags.append(tag)
+        raise _Found
+
+    parser = expat.ParserCreate('utf-8')
+    parser.StartElementHandler = found
+    parser.StartDoctypeDeclHandler = found  # it names the first element; no entity is looked at
+    if isinstance(text, str):
+        text = text.encode(errors='replace')
+    with contextlib.suppress(_Found, expat.ExpatError):
+        parser.Parse(text.lstrip(), True)
+    return tags[0] if tags else None
+
+
+class _Found(Exception):  # noqa: N818 (it ends a search)
+    pass
+
+
+def check_bounds(
+    document: bytes, source: str, max_elements: int | None = None
+) -> expat.ExpatError | None:
+    """Walk once through a document that may be meant to hurt, before a tree is made of it.
+
+    libxml2 needs hours for an element of very many attributes, and gigabytes for entities that
+    multiply. This parser needs neither, and ends at the first thing that is too much.
+
+    Args:
+        document: UTF-8; an XML declaration does not count.
+        max_elements: instead of MAX_ELEMENTS.
+    Returns:
+        The fault where the document is not well-formed; what comes behind it is not looked at.
+    Raises:
+        ModelError: it has a document type, is nested too deep, or has too many elements or
+            attributes.
+    """
+    most = MAX_ELEMENTS if max_elements is None else max_elements
+    depth = count = 0
+    parser = expat.ParserCreate('utf-8')
+    parser.ordered_attributes = True  # a list of names and values by turns
+
+    def start(tag: str, attributes: list[str]) -> None:
+        nonlocal depth, count
+        depth, count = depth + 1, count + 1
+        if depth > MAX_DEPTH:
+            raise ModelError(_depth_sentence(source, parser.CurrentLineNumber))
+        if count > most:
+            raise ModelError(f'{source}: more than {most} elements are not accepted')
+        if len(attributes) > 2 * MAX_ATTRIBUTES:
+            raise ModelError(
+                f'{source}, line {parser.CurrentLineNumber}: <{tag[:60]}> has '
+                f'{len(attributes) // 2} attributes; at most {MAX_ATTRIBUTES} are accepted'
+            )
+
+    def end(_: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    def refuse_type(*_: object) -> None:
+        raise ModelError(f'{source}: a document type (<!DOCTYPE>) is not accepted; remove it')
+
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.StartDoctypeDeclHandler = refuse_type
+    return _run(parser, document)
+
+
+def _run(parser: expat.XMLParserType, document: bytes) -> expat.ExpatError | None:
     try:
-        document = _decode(text, '')
-    except ModelError:
-        return None
-    parser = etree.XMLPullParser(
-        events=('start',), recover=True, resolve_entities=False, no_network=True
-    )
-    try:
-        parser.feed(document)
-    except etree.XMLSyntaxError:
-        return None
-    _, element = next(parser.read_events(), (None, None))
-    return None if element is None else element.tag
+        parser.Parse(document, True)
+    except expat.ExpatError as error:
+        error.offset = parser.ErrorByteIndex
+        return error
+    return None
 
 
 def _decode(text: str | bytes, source: str) -> bytes:
     """Return the document as UTF-8 without its declaration, lines kept."""
+    if len(text) > MAX_BYTES:
+        raise _too_big(len(text), source)
     if isinstance(text, bytes):
         try:
             text = text.decode('utf-8-sig')
@@ -88,10 +159,12 @@ def _decode(text: str | bytes, source: str) -> bytes:
             f'{source}, line {line}: character {text[error.start]!r} is not valid Unicode text'
         ) from error
     if len(document) > MAX_BYTES:
-        raise ModelError(
-            f'{source}: the text has {len(document)} bytes; at most {MAX_BYTES} are accepted'
-        )
+        raise _too_big(len(document), source)
     return document
+
+
+def _too_big(size: int, source: str) -> ModelError:
+    return ModelError(f'{source}: the text has {size} bytes; at most {MAX_BYTES} are accepted')
 
 
 def _parser(recover: bool = False) -> etree.XMLParser:
@@ -103,28 +176,54 @@ def _parser(recover: bool = False) -> etree.XMLParser:
 
 
 def _parse_document(document: bytes, source: str) -> etree._Element:
-    parser = _parser()
+    parser, url = _parser(), quote(source, errors=_ANY_BYTES)
     try:
-        return etree.fromstring(document, parser, base_url=source)
+        return etree.fromstring(document, parser, base_url=url)
     except etree.XMLSyntaxError as error:
         faults = list(parser.error_log)
         if not faults or any(fault.type != _UNDEFINED_PREFIX for fault in faults):
-            raise ModelError(_syntax_sentence(document, source, error)) from error
+            raise ModelError(_malformed(source, error.lineno or 1, error.msg or '')) from error
     # A prefix that nobody declared (<sensor:ray>) is harmless, and Gazebo takes it too.
-    return etree.fromstring(document, _parser(recover=True), base_url=source)
+    return etree.fromstring(document, _parser(recover=True), base_url=url)
 
 
-def _syntax_sentence(document: bytes, source: str, error: etree.XMLSyntaxError) -> str:
+def _drop_default_namespace(root: etree._Element) -> None:
+    """Name elements as they are written: Gazebo's parser knows no namespaces either."""
+    for element in root.iter(etree.Element):
+        if element.prefix is None and element.tag.startswith('{'):
+            element.tag = etree.QName(element).localname
+
+
+def _syntax_sentence(document: bytes, source: str, error: expat.ExpatError) -> str:
     opened = document.rfind(b'<!--')
     if opened >= 0 and document.find(b'-->', opened) < 0:
         line = document.count(b'\n', 0, opened) + 1
         return f"{source}, line {line}: a comment '<!--' is never closed; add '-->'"
-    if 'Excessive depth' in (error.msg or ''):
-        return _depth_sentence(source, error.lineno or 0)
-    reason = re.sub(r',? line \d+, column \d+$', '', (error.msg or 'unreadable').strip())
     if b'<' not in document:
-        reason = 'a URDF or SDF document was expected, the text has no element at all'
-    return f'{source}, line {error.lineno or 1}: not well-formed XML: {reason}'
+        return _malformed(
+            source, 1, 'a URDF or SDF document was expected, the text has no element at all'
+        )
+    # libxml2 words it better, e.g. with both of two tags that do not match. It sees only what is
+    # known to be harmless, and a little more.
+    tag = document.rfind(b'<', 0, error.offset)
+    if document.count(b'=', max(tag, 0), error.offset) <= MAX_ATTRIBUTES:
+        try:
+            etree.fromstring(document[:error.offset + MAX_ATTRIBUTES], _parser())
+        except etree.XMLSyntaxError as better:
+            return _malformed(source, better.lineno or 1, better.msg or '')
+    return _malformed(source, error.lineno, expat.ErrorString(error.code))
+
+
+def _malformed(source: str, line: int, reason: str) -> str:
+    reason = re.sub(r',? line \d+, column \d+$', '', reason.strip()) or 'unreadable'
+    return f'{source}, line {line}: not well-formed XML: {shortened(reason)}'
+
+
+def shortened(text: str, most: int = 600) -> str:
+    """Return a text as one line of at most about `most` characters, for a message."""
+    if len(text) > most:
+        text = f'{text[:most // 2]} ... {text[-most // 2:]}'
+    return ' '.join(''.join(c if c.isprintable() else ' ' for c in text).split())
 
 
 def _depth_sentence(source: str, line: int) -> str:
@@ -134,30 +233,28 @@ def _depth_sentence(source: str, line: int) -> str:
     )
 
 
-def _check_bounds(root: etree._Element, source: str) -> None:
-    count, level, depth = 0, [root], 0
-    while level:
-        count, depth = count + len(level), depth + 1
-        if depth > MAX_DEPTH:
-            raise ModelError(_depth_sentence(source, level[0].sourceline))
-        if count > MAX_ELEMENTS:
-            raise ModelError(f'{source}: more than {MAX_ELEMENTS} elements are not accepted')
-        level = [child for element in level for child in element]
-
-
 def _refuse_xacro(root: etree._Element, source: str) -> None:
     for element in root.iter(etree.Element):
         name = f'{element.prefix}:{etree.QName(element).localname}' \
             if element.prefix else element.tag
         if name.startswith('xacro:'):
             raise ModelError(
-                f'{source}, line {element.sourceline}: <{name}> is unexpanded xacro; {_XACRO_CURE}'
+                f'{source}, line {element.sourceline}: <{shortened(name)}> is unexpanded xacro; '
+                f'{_XACRO_CURE}'
             )
         places = [(f'{key}="{value}"', value) for key, value in element.attrib.items()]
         places.append((f'<{name}>{(element.text or "").strip()}', element.text or ''))
         for shown, value in places:
-            if '$' in value and _XACRO_EXPRESSION.search(value):
+            if _is_expression(value):
                 raise ModelError(
-                    f'{source}, line {element.sourceline}: {shown} in <{name}> is unexpanded '
-                    f'xacro; {_XACRO_CURE}'
+                    f'{source}, line {element.sourceline}: {shortened(shown)} in '
+                    f'<{shortened(name)}> is unexpanded xacro; {_XACRO_CURE}'
                 )
+
+
+def _is_expression(value: str) -> bool:
+    """Tell whether a text has ${...} or $(...) in it; in one go, however many open."""
+    return any(
+        opened >= 0 and value.find(close, opened) >= 0
+        for opened, close in ((value.find('${'), '}'), (value.find('$('), ')'))
+    )

@@ -4,20 +4,31 @@ Every complaint says source, line, the link, joint or plugin it is about, the fa
 """
 
 import math
-from collections.abc import Collection
+import re
+from collections.abc import Callable, Collection
 from difflib import get_close_matches
+from itertools import islice
 
 from lxml import etree
 
 from .errors import ModelError
+from .markup import shortened, source_of
 from .pose import IDENTITY, Pose, from_rpy
 from .spec import Element
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
+MAX_NOTES = 40  # sentences about one description; who needs more does not read them
+
+# What no model needs, and what the arithmetic of the engine cannot hold beside other models.
+LONGEST = 1e7  # [m] a size or a distance within a model
+LIGHTEST, HEAVIEST = 1e-12, 1e12  # [kg]
+MOST_INERT = 1e20  # [kg m^2]
+MOST_DAMPED = 1000.0  # [1/s] with steps of a millisecond a link then stands at once
 
 # Elements with a name of their own, which a message should mention.
 _OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'name',
            'plugin': 'name', 'sensor': 'name', 'material': 'name'}
+_CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 _TRUE = {'true', 'yes', '1'}
 _COUNTS = {1: 'one finite number', 2: 'two finite numbers', 3: 'three finite numbers',
            4: 'four finite numbers', 6: 'six finite numbers', 7: 'seven finite numbers'}
@@ -36,7 +47,7 @@ def fault(element: etree._Element, sentence: str) -> ModelError:
 
 def place(element: etree._Element) -> str:
     """Return where an element stands, e.g. "robot_description, line 12: joint 'j1'"."""
-    where = f'{element.getroottree().docinfo.URL}, line {element.sourceline}'
+    where = f'{source_of(element)}, line {element.sourceline}'
     owner = _owner(element)
     return f'{where}: {owner}' if owner else where
 
@@ -45,7 +56,7 @@ def _owner(element: etree._Element) -> str:
     for candidate in (element, *element.iterancestors()):
         name = candidate.get(_OWNERS[candidate.tag]) if candidate.tag in _OWNERS else None
         if name:
-            shown = name if len(name) <= 60 else f'{name[:57]}...'
+            shown = shortened(name, 60)
             if candidate.tag == 'gazebo':
                 return f"<gazebo reference='{shown}'>"
             return f"{candidate.tag} '{shown}'"
@@ -54,7 +65,8 @@ def _owner(element: etree._Element) -> str:
 
 def suggestion(name: str, known: Collection[str]) -> str:
     """Return "; did you mean 'x'?" where a known name is close, else the known ones, if few."""
-    close = get_close_matches(name, list(known)[:1000], n=1)
+    near = [other for other in islice(known, 1000) if abs(len(other) - len(name)) < 10]
+    close = get_close_matches(name, near, n=1) if len(name) <= 100 else []
     if close:
         return f"; did you mean '{close[0]}'?"
     if 0 < len(known) <= 8:
@@ -62,19 +74,48 @@ def suggestion(name: str, known: Collection[str]) -> str:
     return ''
 
 
+def note(notes: list[str], sentence: Callable[[], str]) -> None:
+    """Add what `sentence` returns, unless so much has been noted already that no one reads it."""
+    if len(notes) < MAX_NOTES:
+        notes.append(sentence())
+    elif len(notes) == MAX_NOTES:
+        notes.append('there is more of that kind, which is not listed')
+
+
+def check_name(name: str) -> None:
+    """Refuse a model's name that could not be shown or held.
+
+    Raises:
+        ModelError: it is too long, or has a line break or another control character in it.
+    """
+    reason = _unfit(name)
+    if reason:
+        raise ModelError(f"the model's name {reason}")
+
+
+def _unfit(name: str) -> str:
+    if len(name) > MAX_NAME:
+        return f'has {len(name)} characters; at most {MAX_NAME} are accepted'
+    if _CONTROL.search(name):
+        return (
+            f'{name[:100]!r} has a line break or another control character in it; '
+            'use letters, digits and _'
+        )
+    return ''
+
+
 def required_name(element: etree._Element) -> str:
     """Return the `name` attribute.
 
     Raises:
-        ModelError: it is missing, empty or longer than the engine can hold.
+        ModelError: it is missing, empty, longer than the engine can hold, or not printable.
     """
     name = element.get('name', '').strip()
     if not name:
         raise fault(element, f'a <{tag_of(element)}> without name; add name="..."')
-    if len(name) > MAX_NAME:
-        raise fault(
-            element, f'its name has {len(name)} characters; at most {MAX_NAME} are accepted'
-        )
+    reason = _unfit(name)
+    if reason:
+        raise fault(element, f'its name {reason}')
     return name
 
 
@@ -119,7 +160,54 @@ def positive(element: etree._Element, attribute: str, count: int = 1) -> tuple[f
             f'{attribute}="{element.get(attribute)}" of <{tag_of(element)}> is wrong; '
             'a size must be greater than zero',
         )
+    require_near(element, attribute, values)
     return values
+
+
+def require_near(element: etree._Element, what: str, values: Collection[float]) -> None:
+    """Refuse lengths [m] that no model has, of an attribute or an element's text.
+
+    Raises:
+        ModelError: one is greater than LONGEST, to either side.
+    """
+    if max(map(abs, values)) > LONGEST:
+        raise fault(
+            element,
+            f'{what} of <{tag_of(element)}> has a length of {max(values, key=abs):g} m; '
+            f'at most {LONGEST:g} m are accepted',
+        )
+
+
+def require_mass(element: etree._Element, mass: float, moments: Collection[float] = ()) -> None:
+    """Refuse a mass [kg] greater than zero, or moments of inertia [kg m^2], that no body has.
+
+    Raises:
+        ModelError: the engine could not tell them from zero or from infinity.
+    """
+    if mass > 0.0 and not LIGHTEST <= mass <= HEAVIEST:
+        raise fault(
+            element, f'mass {mass:g} kg is wrong; a mass is {LIGHTEST:g} to {HEAVIEST:g} kg'
+        )
+    if max(map(abs, moments), default=0.0) > MOST_INERT:
+        raise fault(
+            element,
+            f'an inertia of {max(moments, key=abs):g} kg m^2 is wrong; '
+            f'at most {MOST_INERT:g} are accepted',
+        )
+
+
+def require_damping(element: etree._Element, value: float) -> None:
+    """Refuse a damping of a link's velocity that would drive it.
+
+    Raises:
+        ModelError: it is negative, or more than the velocity would be lost in a step.
+    """
+    if not 0.0 <= value <= MOST_DAMPED:
+        raise fault(
+            element,
+            f'<{tag_of(element)}> is {value:g}; it damps the motion of a link, 0 to '
+            f'{MOST_DAMPED:g}',
+        )
 
 
 def parse_numbers(text: str, count: int) -> tuple[float, ...] | None:
@@ -165,7 +253,9 @@ def origin(element: etree._Element) -> Pose:
     if child is None:
         return IDENTITY
     zero = (0.0, 0.0, 0.0)
-    return Pose(numbers(child, 'xyz', zero), from_rpy(*numbers(child, 'rpy', zero)))
+    position = numbers(child, 'xyz', zero)
+    require_near(child, 'xyz', position)
+    return Pose(position, from_rpy(*numbers(child, 'rpy', zero)))
 
 
 def to_element(element: etree._Element) -> Element:

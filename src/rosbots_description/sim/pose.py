@@ -14,6 +14,8 @@ Quaternion = tuple[float, float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
 NO_ROTATION: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
+_SMALL, _LARGE = 1e-150, 1e150  # between these, squares neither vanish nor overflow
+
 
 class Pose(NamedTuple):
     """Where something is: position [m] and orientation (x, y, z, w), a unit quaternion."""
@@ -53,10 +55,18 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 def normalise(q: Quaternion) -> Quaternion:
     """Return the unit quaternion along `q`; all zeros mean no rotation, as in Gazebo."""
-    length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    if length == 0.0:
-        return NO_ROTATION
+    length = _length(q)
+    if not _SMALL < length < _LARGE:
+        largest = max(map(abs, q))
+        if largest == 0.0:
+            return NO_ROTATION
+        q = tuple(part / largest for part in q)
+        length = _length(q)
     return (q[0] / length, q[1] / length, q[2] / length, q[3] / length)
+
+
+def _length(q: Quaternion) -> float:
+    return math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
 
 
 def conjugate(q: Quaternion) -> Quaternion:

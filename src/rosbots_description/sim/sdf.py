@@ -6,7 +6,7 @@ from lxml import etree
 
 from .errors import ModelError
 from .gazebo_tags import inject_namespace
-from .markup_values import fault
+from .markup_values import check_name, fault
 from .model_search import FindModel
 from .pose import IDENTITY, Pose
 from .sdf_document import SdfDocument, SdfLibrary
@@ -48,6 +48,7 @@ def load_sdf(
 
     What can be simulated, but not quite as written, is a warning, named once for each file.
     """
+    check_name(name)
     library = SdfLibrary(find_model, find_package)
     document = library.add(text, source)
     inject_namespace(document.root, robot_namespace)
@@ -68,6 +69,7 @@ def load_sdf_light(text: str | bytes, name: str, *, source: str = 'model_xml') -
     first = document.root[0] if len(document.root) else None
     if first is None or first.tag.lower() != 'light':
         return None
+    check_name(name)
     first.set('name', name)
     light = read_light(document, first, pose_in(first.find('pose')))
     library.log_notes()

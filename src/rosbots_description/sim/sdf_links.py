@@ -8,12 +8,12 @@ from lxml import etree
 
 from .inertia import is_positive
 from .kinematic_tree import WORLD
-from .markup_values import fault, required_name, to_element
+from .markup_values import fault, require_mass, required_name, to_element
 from .pose import IDENTITY, Pose, relative, to_rpy
 from .sdf_document import SdfDocument
 from .sdf_frames import Frames
 from .sdf_shapes import read_collision, read_visual
-from .sdf_values import number_of, pose_in, truth_of
+from .sdf_values import damping_of, number_of, pose_in, truth_of
 from .spec import Collision, Element, Inertial, LinkSpec, Visual
 
 _READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
@@ -57,8 +57,8 @@ def read_link(
         gravity=truth_of(element, 'gravity', True),
         self_collide=truth_of(element, 'self_collide', self_collide),
         kinematic=truth_of(element, 'kinematic'),
-        linear_damping=number_of(element, 'velocity_decay/linear', 0.0),
-        angular_damping=number_of(element, 'velocity_decay/angular', 0.0),
+        linear_damping=damping_of(element, 'velocity_decay/linear'),
+        angular_damping=damping_of(element, 'velocity_decay/angular'),
         sensors=tuple(
             _part(part, frames, pose) for part in element if part.tag in _PARTS
         ),
@@ -123,6 +123,7 @@ def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Iner
         )
     values = {key: number_of(element, f'inertia/{key}', 1.0) for key in _MOMENTS}
     values |= {key: number_of(element, f'inertia/{key}', 0.0) for key in _PRODUCTS}
+    require_mass(element, mass, values.values())
     inertial = Inertial(mass, pose_in(element.find('pose')), **values)
     if any(values.values()):
         for key in _MOMENTS:

@@ -2,10 +2,12 @@
 
 import logging
 from collections.abc import Collection
+from itertools import islice
 
 from lxml import etree
 
-from .markup_values import parse_numbers, place, scalar, tag_of
+from .markup import shortened
+from .markup_values import MAX_NOTES, parse_numbers, place, scalar, tag_of
 
 logger = logging.getLogger(__name__)
 
@@ -40,8 +42,8 @@ class Notes:
 
     def __init__(self, source: str) -> None:
         self._source = source
-        self._unread: dict[str, list[int]] = {}
-        self._idle: dict[str, list[int]] = {}
+        self._unread: dict[str, dict[int, None]] = {}  # path -> lines, in order
+        self._idle: dict[str, dict[int, None]] = {}
         self._sentences: dict[str, None] = {}
 
     def check(
@@ -61,13 +63,15 @@ class Notes:
     def unread(self, element: etree._Element, idle: bool = False) -> None:
         """Note an element that is not simulated, unless it asks for nothing."""
         if not _is_neutral(element):
-            lines = (self._idle if idle else self._unread).setdefault(_path(element), [])
-            if element.sourceline not in lines:
-                lines.append(element.sourceline)
+            lines = (self._idle if idle else self._unread).setdefault(_path(element), {})
+            lines[element.sourceline] = None
 
     def warn(self, element: etree._Element, sentence: str) -> None:
         """Note that something is done differently than `element` asks."""
-        self._sentences[f'{place(element)}: {sentence}'] = None
+        if len(self._sentences) < MAX_NOTES:
+            self._sentences[f'{place(element)}: {shortened(sentence)}'] = None
+        elif len(self._sentences) == MAX_NOTES:
+            self._sentences[f'{self._source}: there is more of that kind, not listed'] = None
 
     def log(self) -> None:
         """Say everything; what changes nothing that is simulated only at level debug."""
@@ -97,8 +101,11 @@ def _path(element: etree._Element) -> str:
     return '/'.join(reversed(tags[:-1] or tags))
 
 
-def _list(lines_of: dict[str, list[int]]) -> str:
-    return ', '.join(
-        f'{path} (line {lines[0]}' + (f' and {len(lines) - 1} more)' if len(lines) > 1 else ')')
-        for path, lines in lines_of.items()
+def _list(lines_of: dict[str, dict[int, None]]) -> str:
+    listed = ', '.join(
+        f'{shortened(path, 200)} (line {next(iter(lines))}'
+        + (f' and {len(lines) - 1} more)' if len(lines) > 1 else ')')
+        for path, lines in islice(lines_of.items(), MAX_NOTES)
     )
+    more = len(lines_of) - MAX_NOTES
+    return f'{listed} and {more} more' if more > 0 else listed

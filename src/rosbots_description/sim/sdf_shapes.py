@@ -128,7 +128,7 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     try:
         if submesh:
             path = submesh_file(path, submesh, truth_of(element, 'submesh/center'))
-        check_mesh(path)
+        check_mesh(path, scale)
     except ModelError as error:
         raise fault(uri_element, str(error)) from error
     return Mesh(path, scale, uri)

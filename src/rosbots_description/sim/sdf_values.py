@@ -4,7 +4,15 @@ import math
 
 from lxml import etree
 
-from .markup_values import fault, scalar, scalar_numbers, tag_of, truth
+from .markup_values import (
+    fault,
+    require_damping,
+    require_near,
+    scalar,
+    scalar_numbers,
+    tag_of,
+    truth,
+)
 from .pose import IDENTITY, Pose, Vector, from_rpy
 from .pose import normalise as normalise_quaternion
 
@@ -62,6 +70,7 @@ def sizes_of(parent: etree._Element, path: str, count: int = 1) -> tuple[float, 
         raise fault(
             element, f"<{path}> is '{scalar(element)}'; a size must be greater than zero"
         )
+    require_near(element, 'the size', values)
     return values
 
 
@@ -92,6 +101,14 @@ def colour_of(parent: etree._Element, path: str) -> Colour | None:
     return tuple(min(1.0, max(0.0, value)) for value in rgba)
 
 
+def damping_of(parent: etree._Element, path: str) -> float:
+    """Return the damping of a link's velocity; none where nothing is said."""
+    value = number_of(parent, path, 0.0)
+    if parent.find(path) is not None:
+        require_damping(parent.find(path), value)
+    return value
+
+
 def unit_vector_of(parent: etree._Element, path: str, default: Vector) -> Vector:
     """Return a direction of length 1.
 
@@ -119,8 +136,10 @@ def pose_in(element: etree._Element | None) -> Pose:
         return IDENTITY
     if element.get('rotation_format') == 'quat_xyzw':
         *position, x, y, z, w = scalar_numbers(element, 7)
+        require_near(element, 'the position', position)
         return Pose(tuple(position), normalise_quaternion((x, y, z, w)))
     numbers = scalar_numbers(element, 6)
+    require_near(element, 'the position', numbers[:3])
     angles = numbers[3:]
     if element.get('degrees', '').lower() in ('true', '1'):
         angles = tuple(math.radians(angle) for angle in angles)

@@ -5,13 +5,14 @@ from dataclasses import replace
 
 from lxml import etree
 
+from .bounds import excess
 from .errors import ModelError
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
 from .inertia import turnable
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
-from .markup import parse
-from .markup_values import fault, origin, required_name, tag_of
+from .markup import parse, shortened
+from .markup_values import check_name, fault, note, origin, required_name, tag_of
 from .meshes import check_mesh
 from .pose import IDENTITY, Pose
 from .repointing import repoint_plugin
@@ -48,6 +49,7 @@ def load_urdf(
 
     What can be simulated, but not quite as written, is a warning, one line for each kind.
     """
+    check_name(name)
     robot = parse(text, source)
     if robot.tag != 'robot':
         raise fault(robot, f'the first element is <{tag_of(robot)}>; a URDF begins with <robot>')
@@ -66,9 +68,12 @@ def load_urdf(
         tags.static,
         {link: heir for link, (heir, _) in lumped.heirs.items()},
     )
+    too_much = excess(spec)
+    if too_much:
+        raise fault(robot, too_much)
     pose = _robot_origin(robot)
-    for note in [*notes, *_lumping_notes(lumped)]:
-        logger.warning("model '%s' (%s): %s", name, source, note.removeprefix(f'{source}, '))
+    for sentence in [*notes, *_lumping_notes(lumped)]:
+        logger.warning("model '%s' (%s): %s", name, source, sentence.removeprefix(f'{source}, '))
     if tags.idle:
         idle = ', '.join(dict.fromkeys(tags.idle))
         logger.debug("model '%s' (%s): without effect here: %s", name, source, idle)
@@ -104,10 +109,10 @@ def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[Link
     changed = [new.name for old, new in zip(links, turned, strict=True)
                if new.inertial is not old.inertial]
     if changed:
-        notes.append(
+        note(notes, lambda: (
             f'{_names(changed)}: an inertia of zero cannot be simulated; '
             'that of a small ball of the same mass is used'
-        )
+        ))
     return turned
 
 
@@ -136,5 +141,5 @@ def _robot_origin(robot: etree._Element) -> Pose:
 
 
 def _names(names: tuple[str, ...] | list[str], most: int = 12) -> str:
-    shown = ', '.join(f"'{name}'" for name in names[:most])
+    shown = ', '.join(f"'{shortened(name, 60)}'" for name in names[:most])
     return shown + (f' and {len(names) - most} more' if len(names) > most else '')

@@ -8,13 +8,16 @@ from .errors import ModelError
 from .gazebo_materials import gazebo_material
 from .inertia import is_positive
 from .kinematic_tree import FREE, TreeJoint, TreeLink
+from .markup import shortened
 from .markup_values import (
     fault,
+    note,
     number,
     numbers,
     origin,
     place,
     positive,
+    require_mass,
     required_name,
     suggestion,
 )
@@ -35,13 +38,13 @@ from .spec import (
     Sphere,
     Visual,
 )
-from .uris import file_path
+from .uris import file_path, refuse_climbing
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
 _JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC,
                 'fixed': FIXED, 'floating': FREE, 'planar': FREE}
 
-CheckMesh = Callable[[str], object]  # raises ModelError for a file that cannot be used
+CheckMesh = Callable[[str, Vector], object]  # file, scale; raises ModelError if it is no good
 
 
 class LinkReader:
@@ -96,10 +99,10 @@ class LinkReader:
         name = element.get('name', '')
         found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
         if found is None and element.find('texture') is None:
-            self.notes.append(
-                f"{place(element)}: material '{name}' has no <color> anywhere, it is shown grey"
-                f'{suggestion(name, self._materials)}'
-            )
+            note(self.notes, lambda: (
+                f"{place(element)}: material '{shortened(name, 60)}' has no <color> anywhere, "
+                f'it is shown grey{suggestion(name, self._materials)}'
+            ))
         return found
 
     def _colour(self, element: etree._Element) -> Material | None:
@@ -140,9 +143,10 @@ class LinkReader:
             raise fault(
                 element, f'scale="{element.get("scale")}" of <mesh> is wrong; no factor may be zero'
             )
+        refuse_climbing(element, element.get('uri', ''))
         path = file_path(element, filename)
         try:
-            self._check_mesh(path)
+            self._check_mesh(path, scale)
         except ModelError as error:
             raise fault(element, str(error)) from error
         return Mesh(path, scale, element.get('uri', filename))
@@ -163,6 +167,7 @@ def _inertial(link: etree._Element) -> Inertial | None:
         raise fault(element, 'an <inertial> without <inertia ixx iyy izz ixy ixz iyz/> [kg m^2]')
     moments = {key: number(inertia, key) for key in ('ixx', 'iyy', 'izz')}
     products = {key: number(inertia, key, 0.0) for key in ('ixy', 'ixz', 'iyz')}
+    require_mass(element, mass, (*moments.values(), *products.values()))
     inertial = Inertial(mass, origin(element), **moments, **products)
     if any((*moments.values(), *products.values())):
         for key, value in moments.items():
@@ -203,10 +208,10 @@ def read_joint(
         )
     parent, child = _end(element, 'parent'), _end(element, 'child')
     if kind == FREE:
-        notes.append(
+        note(notes, lambda: (
             f'{place(element)}: a {written} joint ties nothing here, '
-            f"'{child}' and what hangs on it move freely"
-        )
+            f"'{shortened(child, 60)}' and what hangs on it move freely"
+        ))
     if kind in (FIXED, FREE):
         lump = kind == FIXED and name not in kept
         limits = {'lower': 0.0, 'upper': 0.0} if kept.get(name) == REVOLUTE else {}
@@ -283,9 +288,10 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str
     if written == 'continuous':
         return limits
     if lower > upper:
-        notes.append(
-            f'{place(limit)}: lower limit {lower:g} is above upper limit {upper:g}, '
+        low, high = upper, lower
+        note(notes, lambda: (
+            f'{place(limit)}: lower limit {high:g} is above upper limit {low:g}, '
             'the two are switched'
-        )
-        lower, upper = upper, lower
+        ))
+        lower, upper = low, high
     return limits | {'lower': lower, 'upper': upper}
