@@ -55,6 +55,16 @@ def test_file_addresses_become_paths(uri, path):
     assert file_path(etree.Element('mesh'), uri) == path
 
 
+@pytest.mark.parametrize('scheme', ['', 'file://'])
+@pytest.mark.parametrize(('name', 'written'), [
+    ('a%20b ä#&.dae', 'a%20b ä#&.dae'), ('a b ä#&.dae', 'a%20b%20%C3%A4%23%26.dae'),
+    ('a%20b.dae', 'a%2520b.dae'),
+])
+def test_a_path_is_taken_as_it_is_or_decoded_whichever_is_there(tmp_path, scheme, name, written):
+    (tmp_path / name).touch()
+    assert file_path(etree.Element('mesh'), f'{scheme}{tmp_path}/{written}') == f'{tmp_path}/{name}'
+
+
 @pytest.mark.parametrize('uri', ['http://x/m.dae', 'model://x/m.dae', 'm.dae', 'package://x/m.dae'])
 def test_other_addresses_are_refused_with_a_cure(uri):
     with pytest.raises(ModelError, match='use .*file:///path'):

@@ -7,7 +7,8 @@ from pathlib import Path
 from lxml import etree
 
 from .errors import NotFoundError
-from .markup import parse
+from .files import read_file
+from .markup import MAX_BYTES, parse
 from .markup_values import fault
 
 # Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
@@ -101,10 +102,10 @@ def description_file(path: str, asker: etree._Element) -> str:
     Raises:
         ModelError: there is no such folder, or no description in it; said of `asker`.
     """
-    if os.path.isfile(path):
-        return path
-    if not os.path.isdir(path):
+    if not os.path.exists(path):
         raise fault(asker, f"'{path}' does not exist; check the address")
+    if not os.path.isdir(path):
+        return path
     for name in _MANIFESTS:
         manifest = os.path.join(path, name)
         if os.path.isfile(manifest):
@@ -116,7 +117,7 @@ def description_file(path: str, asker: etree._Element) -> str:
 
 
 def _chosen(manifest: str, asker: etree._Element) -> str:
-    root = parse(Path(manifest).read_bytes(), manifest)
+    root = parse(read_file(manifest, MAX_BYTES), manifest)
     offers = [
         (_version(entry.get('version', '')), (entry.text or '').strip())
         for entry in root.iterfind('sdf')
@@ -131,7 +132,9 @@ def _chosen(manifest: str, asker: etree._Element) -> str:
 
 def _version(text: str) -> tuple[int, ...]:
     parts = text.strip().split('.')
-    return tuple(int(part) for part in parts) if all(p.isdecimal() for p in parts) else (0, 0)
+    if not all(part.isdecimal() and len(part) < 10 for part in parts):
+        return (0, 0)
+    return tuple(int(part) for part in parts)
 
 
 def find_world(name: str, directories: Iterable[str | os.PathLike] = ()) -> Path:

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from lxml import etree
 
 from .errors import ModelError
-from .markup import parse
+from .files import read_file, within
+from .markup import MAX_BYTES, parse
 from .markup_values import fault, scalar, tag_of
 from .model_search import BUILT_IN_MODELS, FindModel, climbs, description_file
 from .sdf_notes import Notes
-from .uris import FindPackage, file_path, substitute_packages
+from .uris import FindPackage, file_path, refuse_climbing, substitute_packages
 
 NEWEST = (1, 7)
 _UNVERSIONED = (1, 6)
@@ -28,12 +29,18 @@ class SdfDocument:
     """
 
     def __init__(
-        self, text: str | bytes, source: str, library: 'SdfLibrary', directory: str = ''
+        self,
+        text: str | bytes,
+        source: str,
+        library: 'SdfLibrary',
+        directory: str = '',
+        home: str = '',
     ) -> None:
         """Parse a text.
 
         Args:
             directory: where its file lies, for addresses relative to it; '' if it has none.
+            home: the folder that those may not leave; '' if they may go anywhere.
         Raises:
             ModelError: it is no XML, or no SDF.
         """
@@ -41,6 +48,7 @@ class SdfDocument:
         self.root = parse(text, source)
         self.notes = Notes(source)
         self._directory = directory
+        self._home = home
         if self.root.tag not in ('sdf', 'gazebo'):
             raise fault(
                 self.root,
@@ -56,17 +64,24 @@ class SdfDocument:
         are absolute or relative to the file that names them.
 
         Raises:
-            ModelError: nothing is found there, or the address climbs out of a model (`..`).
+            ModelError: nothing is found there, or the address climbs out (`..`) of a model, a
+                package or the folder of the model that this text describes.
         """
         if uri.startswith('model://'):
             return self._in_models(element, uri)
         if uri.startswith('package://'):
+            refuse_climbing(element, uri)
             if self.library.find_package is not None:
                 uri = substitute_packages(uri, self.library.find_package)
             return file_path(element, uri)
         plain = uri.removeprefix('file://')
         if '://' not in plain and not os.path.isabs(plain) and self._directory:
-            return os.path.normpath(os.path.join(self._directory, plain))
+            path = os.path.normpath(os.path.join(self._directory, plain))
+            if self._home and not within(path, self._home):
+                raise fault(
+                    element, f"'{uri}' leads out of '{self._home}'; '..' is not accepted there"
+                )
+            return path
         return file_path(element, uri)
 
     def included(self, element: etree._Element) -> 'SdfDocument':
@@ -92,7 +107,7 @@ class SdfDocument:
             if built_in is None:
                 raise
             return self.library.built_in(uri, built_in)
-        return self.library.open(description_file(path, uri_element))
+        return self.library.open(description_file(path, uri_element), _home(uri, path))
 
     def _in_models(self, element: etree._Element, uri: str) -> str:
         inner = uri.removeprefix('model://')
@@ -113,12 +128,21 @@ class SdfDocument:
             self.notes.warn(self.root, 'no version="..." is given; it is read as SDF 1.6')
             return _UNVERSIONED
         parts = text.split('.')
-        if not all(part.isdecimal() for part in parts) or len(parts) < 2:
+        if not all(part.isdecimal() and len(part) < 10 for part in parts) or len(parts) < 2:
             raise fault(self.root, f'version="{text}" is wrong; it is something like "1.6"')
         version = (int(parts[0]), int(parts[1]))
         if version > NEWEST:
             self.notes.warn(self.root, f'SDF {text} is newer than 1.7; it is read as SDF 1.7')
         return version
+
+
+def _home(uri: str, path: str) -> str:
+    """Return the folder of the model or package that an address names, which is at `path`."""
+    if uri.startswith(('model://', 'package://')):
+        inner = os.path.normpath(uri.split('://', 1)[1]).split('/')
+        for _ in inner[1:]:
+            path = os.path.dirname(path)
+    return path if os.path.isdir(path) else os.path.dirname(path)
 
 
 class SdfLibrary:
@@ -136,25 +160,22 @@ class SdfLibrary:
         self._reading: list[SdfDocument] = []
         self._included = 0
 
-    def add(self, text: str | bytes, source: str, directory: str = '') -> SdfDocument:
-        """Return the document of a text; `directory` is where its file lies, if it has one."""
-        document = SdfDocument(text, source, self, directory)
+    def add(
+        self, text: str | bytes, source: str, directory: str = '', home: str = ''
+    ) -> SdfDocument:
+        """Return the document of a text; see `SdfDocument` for the folders."""
+        document = SdfDocument(text, source, self, directory, home)
         self._documents[source] = document
         return document
 
-    def open(self, path: str) -> SdfDocument:
-        """Return the document of a file.
+    def open(self, path: str, home: str) -> SdfDocument:
+        """Return the document of a file, whose relative addresses may not leave `home`.
 
         Raises:
             ModelError: the file cannot be read, or holds no SDF.
         """
         if path not in self._documents:
-            try:
-                with open(path, 'rb') as file:
-                    text = file.read()
-            except OSError as error:
-                raise ModelError(f"'{path}' cannot be read: {error.strerror}") from error
-            self.add(text, path, os.path.dirname(path))
+            self.add(read_file(path, MAX_BYTES), path, os.path.dirname(path), home)
         return self._documents[path]
 
     def built_in(self, uri: str, text: str) -> SdfDocument:

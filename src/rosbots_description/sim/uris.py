@@ -73,8 +73,26 @@ def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
             raise UnknownPackage(error.package, place(element)) from None
 
 
+def refuse_climbing(element: etree._Element, uri: str) -> None:
+    """Refuse a package:// address that leads out of its package.
+
+    Raises:
+        ModelError: its `..` go further up than its folders went down.
+    """
+    if not uri.startswith('package://'):
+        return
+    package, _, inner = uri.removeprefix('package://').partition('/')
+    if os.path.normpath(inner.lstrip('/')).split('/')[0] == '..':
+        raise fault(
+            element, f"'{uri}' leads out of package '{package}'; '..' is not accepted there"
+        )
+
+
 def file_path(element: etree._Element, uri: str) -> str:
     """Return the absolute path of a file address: file:///path or /path.
+
+    A path is taken as it is written, as in Gazebo, and where no such file is there, with its
+    %20 and the like decoded, as in RViz.
 
     Args:
         element: what names the file, for the message.
@@ -82,7 +100,7 @@ def file_path(element: etree._Element, uri: str) -> str:
         ModelError: the address has another form.
     """
     if uri.startswith('file://'):
-        path = unquote(uri.removeprefix('file://'))
+        path = uri.removeprefix('file://')
     elif '://' in uri:
         scheme = uri.split('://', 1)[0]
         if scheme == 'package':
@@ -99,4 +117,6 @@ def file_path(element: etree._Element, uri: str) -> str:
             element,
             f"'{uri}' is no absolute address; use package://PACKAGE/file or file:///path",
         )
+    if '%' in path and not os.path.exists(path):
+        path = unquote(path)
     return os.path.normpath(path)

@@ -2,12 +2,15 @@
 
 import logging
 import os
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
 from .errors import ModelError
+from .files import read_file
+from .markup import MAX_BYTES
 from .markup_values import fault, required_name
 from .model_search import FindModel
 from .pose import Pose
@@ -43,6 +46,7 @@ class _Content:
     lights: list[LightSpec] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
+    taken: Counter[str] = field(default_factory=Counter)  # name -> numbers given to others of it
 
 
 def load_world(
@@ -106,11 +110,7 @@ def open_world(
     Raises:
         ModelError: the file cannot be read; or as `load_world`.
     """
-    try:
-        with open(path, 'rb') as file:
-            text = file.read()
-    except OSError as error:
-        raise ModelError(f"world file '{path}' cannot be read: {error.strerror}") from error
+    text = read_file(os.fspath(path), MAX_BYTES, 'world file')
     return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package)
 
 
@@ -209,9 +209,10 @@ def _free_name(
     document: SdfDocument, element: etree._Element, name: str, content: _Content
 ) -> str:
     """Return the name, or where it is taken one with a number, as Gazebo's factory does."""
-    free, count = name, 0
+    free = name
     while free in content.models:
-        free, count = f'{name}_{count}', count + 1
+        free = f'{name}_{content.taken[name]}'
+        content.taken[name] += 1
     if free != name:
         document.notes.warn(
             element, f"there is a model '{name}' in the world already; this one is called '{free}'"
