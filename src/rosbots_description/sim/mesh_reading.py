@@ -9,19 +9,28 @@ import hashlib
 import io
 import logging
 import os
-import re
 import threading
 import warnings
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from lxml import etree
 
+from .collada_guard import ColladaError, safe_collada
 from .errors import ModelError
+from .files import read_file, regular_state, within
+from .markup import shortened
+from .markup_values import LONGEST
+from .mesh_thinning import thinned
+from .stl import read_stl
+from .wavefront import ObjPart, read_obj
 
-MAX_BYTES = 50_000_000
-MAX_TRIANGLES = 500_000
+logger = logging.getLogger(__name__)
+
+MAX_BYTES = 120_000_000
+MAX_TRIANGLES = 3_000_000  # in the file; a binary STL of 120 MB has 2.4 million
+FINEST = 400_000  # triangles that are simulated and shown; more are thinned
+MAX_LIBRARY_BYTES = 1_000_000
 FORMATS = ('.dae', '.stl', '.obj')
 
 Colour = tuple[float, float, float, float]
@@ -61,15 +70,19 @@ class MeshData:
         )
 
 
-def check_mesh(path: str) -> None:
+def check_mesh(path: str, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> None:
     """Make sure that a mesh file can be simulated and shown.
 
     A file that was good stays good until it changes, so this costs nothing the second time.
 
+    Args:
+        scale: factors of x, y, z that it will be used with.
     Raises:
         ModelError: the sentence names the file and what is wrong with it.
     """
-    _check(path, *_state(path))
+    reach = _check(path, *_state(path)) * max(map(abs, scale))
+    if reach > LONGEST:
+        raise _fault(path, f'reaches {reach:g} m far; at most {LONGEST:g} m are accepted')
 
 
 def read_mesh(path: str) -> MeshData:
@@ -95,18 +108,16 @@ def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | 
 
 def _state(path: str) -> tuple[int, int]:
     """Return what changes when the file changes: time of change [ns] and size."""
-    try:
-        state = os.stat(path)
-    except (OSError, ValueError) as error:
-        raise ModelError(
-            f"mesh file '{path}' does not exist or cannot be reached; check name and package"
-        ) from error
+    if not os.path.exists(path):
+        raise _fault(path, 'does not exist or cannot be reached; check name and package')
+    state = regular_state(path, 'mesh file')
     return state.st_mtime_ns, state.st_size
 
 
 @lru_cache(maxsize=4096)
-def _check(path: str, mtime_ns: int, size: int) -> None:
-    _read(path, mtime_ns, size)
+def _check(path: str, mtime_ns: int, size: int) -> float:
+    """Return how far from its origin a mesh reaches along an axis [m]."""
+    return max(float(np.abs(p.vertices).max()) for p in _read(path, mtime_ns, size).parts)
 
 
 @lru_cache(maxsize=16)
@@ -114,17 +125,9 @@ def _read(path: str, mtime_ns: int, size: int) -> MeshData:
     extension = os.path.splitext(path)[1].lower()
     if extension not in FORMATS:
         raise _fault(path, f"format '{extension}' is not read; convert it to {', '.join(FORMATS)}")
-    if not os.path.isfile(path):
-        raise _fault(path, 'is no file')
-    if size > MAX_BYTES:
-        raise _fault(path, f'has {size} bytes; at most {MAX_BYTES} are accepted: simplify it')
-    try:
-        with open(path, 'rb') as file:
-            content = file.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise _fault(path, f'cannot be read: {error.strerror}') from error
+    content = read_file(path, MAX_BYTES, 'mesh file')
     parts = _check_parts(path, _parse(path, extension, content))
-    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(parts))
+    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_thin(path, parts)))
 
 
 def _fault(path: str, sentence: str) -> ModelError:
@@ -137,10 +140,10 @@ def _parse(path: str, extension: str, content: bytes) -> list[Part]:
         with _SILENCE, warnings.catch_warnings(), np.errstate(all='ignore'):
             warnings.simplefilter('ignore')
             return _PARSERS[extension](content, path)
-    except ModelError:
-        raise
+    except ColladaError as error:
+        raise _fault(path, str(error)) from error
     except Exception as error:
-        reason = ' '.join(str(error).split())[:200] or type(error).__name__
+        reason = shortened(str(error), 200) or type(error).__name__
         raise _fault(path, f'is broken or no {extension} file: {reason}') from error
 
 
@@ -148,10 +151,11 @@ def _parse_collada(content: bytes, path: str) -> list[Part]:
     _quiet_trimesh()
     from trimesh.exchange.dae import load_collada
 
-    if not content.removeprefix(b'\xef\xbb\xbf').lstrip().startswith(b'<'):
-        raise _fault(path, 'is broken or no .dae file: it does not begin as XML')
-    _refuse_unknown_positions(content, path)
+    content = safe_collada(content)
     scene = load_collada(io.BytesIO(content))
+    if not scene['graph']:
+        # What is broken was left out, as in RViz; where nothing is left, say why.
+        load_collada(io.BytesIO(content), ignore_broken=False)
     parts = []
     for node in scene['graph']:
         geometry = scene['geometry'][node['geometry']]
@@ -161,43 +165,42 @@ def _parse_collada(content: bytes, path: str) -> list[Part]:
     return parts
 
 
-def _refuse_unknown_positions(content: bytes, path: str) -> None:
-    """Refuse a NaN among a Collada file's vertices, since pycollada takes it for zero."""
-    if not re.search(rb'[\s>]-?nan\b', content, re.IGNORECASE):
-        return
-    root = etree.fromstring(content, etree.XMLParser(resolve_entities=False, no_network=True))
-    positions = {
-        use.get('source', '').removeprefix('#') for use in root.iterfind('.//{*}vertices/{*}input')
-        if use.get('semantic') == 'POSITION'
-    }
-    for source in root.iterfind('.//{*}source'):
-        numbers = source.findtext('{*}float_array', '')
-        if source.get('id') in positions and 'nan' in numbers.lower():
-            raise _fault(path, 'is broken: a coordinate is no finite number')
-
-
 def _metres(units: str) -> float:
     """Return the length of a Collada unit [m], as trimesh words it: '0.01 * meters'."""
     return float(units.split('*', maxsplit=1)[0]) if '*' in units else 1.0
 
 
 def _parse_obj(content: bytes, path: str) -> list[Part]:
-    _quiet_trimesh()
-    from trimesh.exchange.obj import load_obj
-    from trimesh.resolvers import FilePathResolver
+    folder = os.path.dirname(path)
 
-    loaded = load_obj(io.BytesIO(content), resolver=FilePathResolver(path))
-    return [_part(geometry, np.eye(4), 1.0) for geometry in loaded.get('geometry', {}).values()]
+    def read_library(name: str) -> str:
+        """Return a file beside the mesh; whatever else an .obj names is not opened."""
+        library = os.path.join(folder, name)
+        if not within(library, folder):
+            return ''
+        try:
+            return read_file(library, MAX_LIBRARY_BYTES).decode('utf-8', 'replace')
+        except ModelError as error:
+            logger.debug('%s, which %s names', error, path)
+            return ''
+
+    return [_obj_part(part) for part in read_obj(content.decode('utf-8', 'replace'), read_library)]
+
+
+def _obj_part(part: ObjPart) -> Part:
+    normals = part.normals
+    if normals is not None:
+        normals = _turn_normals(normals, np.eye(3), len(part.vertices))
+    rgba = GREY
+    if part.colour is not None and np.isfinite(part.colour).all():
+        rgba = (*(min(1.0, max(0.0, value)) for value in part.colour), 1.0)
+    return Part(part.vertices, part.faces, normals, rgba)
 
 
 def _parse_stl(content: bytes, path: str) -> list[Part]:
-    _quiet_trimesh()
-    from trimesh.exchange.stl import load_stl
-
-    loaded = load_stl(io.BytesIO(content))
-    if 'geometry' in loaded:  # a text file of several solids
-        return [_part(solid, np.eye(4), 1.0) for solid in loaded['geometry'].values()]
-    return [_part({**loaded, 'vertex_normals': None}, np.eye(4), 1.0)]
+    corners = read_stl(content)
+    faces = np.arange(3 * len(corners)).reshape(-1, 3)
+    return [Part(corners.reshape(-1, 3), faces, None, GREY)]
 
 
 _PARSERS = {'.dae': _parse_collada, '.obj': _parse_obj, '.stl': _parse_stl}
@@ -261,6 +264,25 @@ def _check_parts(path: str, parts: list[Part]) -> list[Part]:
         if not np.isfinite(part.vertices).all():
             raise _fault(path, 'is broken: a coordinate is no finite number')
     return parts
+
+
+def _thin(path: str, parts: list[Part]) -> list[Part]:
+    """Return the parts with no more triangles than are simulated and shown."""
+    count = sum(len(part.faces) for part in parts)
+    if count <= FINEST:
+        return parts
+    thin, widest = [], 0.0
+    for part in parts:
+        most = max(1, FINEST * len(part.faces) // count)
+        vertices, faces, kept, cell = thinned(part.vertices, part.faces, most)
+        normals = None if part.normals is None else part.normals[kept]
+        thin.append(Part(vertices, faces, normals, part.rgba))
+        widest = max(widest, cell)
+    logger.warning(
+        "mesh file '%s' has %d triangles; %d are used, of points that lie %.2g m apart", path,
+        count, sum(len(part.faces) for part in thin), widest,
+    )
+    return thin
 
 
 def _by_colour(parts: list[Part]) -> tuple[Part, ...]:

@@ -5,16 +5,17 @@ units, transforms and colours do too.
 """
 
 import hashlib
-import os
-import tempfile
 from functools import lru_cache
 from pathlib import Path
 
 from lxml import etree
 
+from .collada_guard import ColladaError, safe_collada
 from .errors import ModelError
+from .files import read_file, regular_state
 from .markup_values import suggestion
 from .mesh_reading import MAX_BYTES, read_mesh
+from .scratch import ScratchFolder
 
 _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
 
@@ -22,17 +23,15 @@ _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
 def submesh_file(path: str, name: str, center: bool) -> str:
     """Return a file that shows only the part `name` of the mesh file `path`.
 
-    It lies in a private directory that lives as long as the process.
+    It lies in a private folder that lives as long as the process.
 
     Args:
         center: move the middle of the part's bounding box into the origin.
     Raises:
-        ModelError: the file is no Collada that can be read, or has no such part.
+        ModelError: the file is no Collada that can be read, or has no such part; or there is no
+            room for what is made of it.
     """
-    try:
-        state = os.stat(path)
-    except OSError as error:
-        raise ModelError(f"mesh file '{path}' does not exist or cannot be reached") from error
+    state = regular_state(path, 'mesh file')
     return _submesh_file(path, state.st_mtime_ns, state.st_size, name, center)
 
 
@@ -52,11 +51,14 @@ def _submesh_file(path: str, mtime_ns: int, size: int, name: str, center: bool) 
 
 
 def _parse(path: str) -> etree._Element:
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    content = read_file(path, MAX_BYTES, 'mesh file')
     try:
-        return etree.fromstring(Path(path).read_bytes(), parser)
-    except (OSError, etree.XMLSyntaxError) as error:
-        raise ModelError(f"mesh file '{path}' is broken or no .dae file: {error}") from error
+        document = safe_collada(content)
+    except ColladaError as error:
+        raise ModelError(f"mesh file '{path}' {error}") from error
+    return etree.fromstring(
+        document, etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
+    )
 
 
 def _keep_only(root: etree._Element, path: str, name: str) -> None:
@@ -94,11 +96,9 @@ def _move_to_middle(root: etree._Element, file: str) -> None:
 def _write(root: etree._Element, path: str) -> str:
     content = etree.tostring(root)
     digest = hashlib.sha256(content).hexdigest()[:32]
-    file = Path(_directory().name) / f'{Path(path).stem}_{digest}.dae'
-    file.write_bytes(content)
-    return str(file)
+    return str(_scratch().write(f'{Path(path).stem}_{digest}.dae', content, path))
 
 
 @lru_cache(maxsize=1)
-def _directory() -> tempfile.TemporaryDirectory:
-    return tempfile.TemporaryDirectory(prefix='rosbots_submeshes_')
+def _scratch() -> ScratchFolder:
+    return ScratchFolder('rosbots_submeshes_')

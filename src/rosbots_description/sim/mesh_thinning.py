@@ -1,0 +1,43 @@
+"""Meshes finer than anyone needs, made coarse enough to be simulated and shown."""
+
+import numpy as np
+
+
+def thinned(
+    vertices: np.ndarray, faces: np.ndarray, most: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Return at most `most` triangles that look like many.
+
+    Vertices that lie in one cell of a grid become the first of them; triangles that shrink to
+    nothing are left out.
+
+    Args:
+        vertices: (n, 3) [m].
+        faces: (m, 3), numbers of vertices.
+
+    Returns:
+        Vertices, faces, the numbers that the vertices had, and the length of a cell [m]: no
+        vertex has moved by more than its diagonal.
+    """
+    low = vertices.min(axis=0)
+    size = float((vertices.max(axis=0) - low).max())
+    # A flat surface crosses n^2 of n^3 cells, and has twice as many triangles as vertices.
+    count = max(2, int((most / 2.0) ** 0.5))
+    while True:
+        cell = size / count
+        key = np.zeros(len(vertices), dtype=np.int64)
+        for column in ((vertices - low) / (cell or 1.0)).astype(np.int64).T:
+            key = key * (count + 1) + column
+        _, first, number = np.unique(key, return_index=True, return_inverse=True)
+        triangles = number.reshape(-1)[faces]
+        a, b, c = triangles.T
+        triangles = triangles[(a != b) & (b != c) & (c != a)]
+        a, b, c = triangles.T
+        _, distinct = np.unique((a * len(first) + b) * len(first) + c, return_index=True)
+        triangles = triangles[distinct]
+        if len(triangles) <= most or count <= 1:
+            break
+        count = int(count * min(0.8, (most / len(triangles)) ** 0.5))
+    if not len(triangles):
+        triangles = faces[:1] * 0  # all of it is as small as a point
+    return vertices[first], triangles[:most], first, cell

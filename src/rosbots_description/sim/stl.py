@@ -1,0 +1,38 @@
+"""Read STL files, binary and text: plain triangles, no colours."""
+
+import re
+
+import numpy as np
+
+_HEADER = 84  # bytes: a title and the number of triangles
+_TRIANGLE = np.dtype([('normal', '<f4', 3), ('corners', '<f4', (3, 3)), ('attribute', '<u2')])
+_VERTEX = re.compile(r'\bvertex\s+(\S+)\s+(\S+)\s+(\S+)', re.IGNORECASE)
+
+
+def read_stl(content: bytes) -> np.ndarray:
+    """Return the corners of the triangles (n, 3, 3) in the file's unit, which ROS takes for metres.
+
+    All solids of a text file count as one.
+
+    Raises:
+        ValueError: the file is cut off, or is no STL; the message goes behind 'it'.
+    """
+    promised = int.from_bytes(content[80:_HEADER], 'little')
+    there = (len(content) - _HEADER) // _TRIANGLE.itemsize
+    exact = len(content) == _HEADER + promised * _TRIANGLE.itemsize
+    if not exact and content.lstrip()[:5].lower() == b'solid':
+        return _read_text(content.decode('utf-8', 'replace'))
+    if len(content) < _HEADER or there < promised:
+        raise ValueError(
+            f'its header promises {promised} triangles, but only {max(0, there)} are there'
+            if len(content) >= _HEADER else 'it is shorter than the header of a binary STL'
+        )
+    triangles = np.frombuffer(content, _TRIANGLE, promised, _HEADER)
+    return triangles['corners'].astype(float)
+
+
+def _read_text(text: str) -> np.ndarray:
+    corners = np.array(_VERTEX.findall(text), dtype=float)
+    if len(corners) % 3:
+        raise ValueError(f'it has {len(corners)} corners, which make no whole triangles')
+    return corners.reshape(-1, 3, 3)

@@ -1,0 +1,63 @@
+"""Polygons of .obj files, and meshes that are finer than anyone needs."""
+
+import numpy as np
+import pytest
+
+from rosbots_description.sim.mesh_thinning import thinned
+from rosbots_description.sim.wavefront import read_obj
+
+CORNERS = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\nv -1 0.2 0\n'
+
+
+def area(part):
+    a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
+
+
+@pytest.mark.parametrize(('faces', 'count', 'expected'), [
+    ('f 1 2 3 4\n', 2, 1.0),  # a file of nothing but quads, as modellers write them
+    ('f 1/1 2/1 3/1 4/1\n', 2, 1.0),
+    ('f 1//1 2//1 3//1\nf 1 3 4\nvn 0 0 1\n', 2, 1.0),
+    ('f -6 -5 -4 -3\n', 2, 1.0),
+    ('f 1 2 3 4 5\n', 3, 1.5),
+    ('f 1 2 3 4 5 6\n', 4, 1.65),
+    ('f 1 2 \\\n3 4\n', 2, 1.0),
+])
+def test_polygons_become_triangles(faces, count, expected):
+    (part,) = read_obj(CORNERS + faces, lambda _: '')
+    assert len(part.faces) == count
+    assert area(part) == pytest.approx(expected)
+
+
+def test_a_number_counted_back_counts_from_where_it_stands():
+    text = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 9 9 9\n'
+    (part,) = read_obj(text, lambda _: '')
+    assert part.vertices[part.faces[0]].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+def test_a_vertex_with_two_normals_becomes_two():
+    text = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1//2 3//1 2//1\n'
+    (part,) = read_obj(text, lambda _: '')
+    assert len(part.vertices) == 4
+    assert part.normals[part.faces[1, 0]].tolist() == [0, 0, 2]
+
+
+def test_a_fine_sheet_is_thinned_and_stays_where_it_is():
+    count = 100
+    x, y = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, 1, count), indexing='ij')
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(count**2)], axis=1)
+    i = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
+    faces = np.concatenate([
+        np.stack([i, i + count, i + 1], axis=1), np.stack([i + 1, i + count, i + count + 1], axis=1)
+    ])
+    fewer, triangles, kept, cell = thinned(vertices, faces, 2000)
+    assert 500 < len(triangles) <= 2000
+    assert (fewer == vertices[kept]).all()
+    assert fewer[np.unique(triangles)].max() == pytest.approx(1.0, abs=2 * cell)
+    assert fewer.min() == 0.0
+
+
+def test_a_mesh_as_small_as_a_point_is_thinned_too():
+    faces = np.zeros((50, 3), dtype=int)
+    _, triangles, _, _ = thinned(np.zeros((3, 3)), faces, 10)
+    assert len(triangles) == 1
