@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from .bounds import MAX_JOINTS
 from .errors import ModelError
 from .inertia import merge
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
@@ -16,9 +17,6 @@ from .markup_values import fault
 from .pose import IDENTITY, Pose, compose
 from .repointing import move_part
 from .spec import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
-
-# PyBullet handles a tree of more joints only up to the first question about it.
-MAX_JOINTS = 127
 
 _LUMPED = '_fixed_joint_lump__'
 

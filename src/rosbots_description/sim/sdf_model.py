@@ -10,10 +10,9 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from .bullet_description import kinematic_trees, rider_surfaces
+from .bounds import excess
 from .inertia import turnable
 from .kinematic_tree import WORLD
-from .lumping import MAX_JOINTS
 from .markup_values import fault, required_name, to_element
 from .pose import Pose, compose
 from .sdf_document import SdfDocument
@@ -121,7 +120,7 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     """Return a model complete and checked, under the name it is to have.
 
     Raises:
-        ModelError: it has no link, names meet twice, or its joints are too many.
+        ModelError: it has no link, names meet twice, or there is too much of something.
     """
     if not parts.links:
         raise fault(parts.element, 'the model has no <link>; a model needs at least one')
@@ -134,15 +133,9 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     spec = ModelSpec(
         name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner
     )
-    for tree in kinematic_trees(spec):
-        # Every surface of its own rides on its link by a joint of the engine's.
-        count = sum(max(1, len(rider_surfaces(link))) for link in tree.links) - 1
-        if count > MAX_JOINTS and not spec.static:
-            raise fault(
-                parts.element,
-                f'the links that hang together need more than {MAX_JOINTS} joints in the '
-                'physics engine, which holds no more; split the model',
-            )
+    too_much = excess(spec)
+    if too_much:
+        raise fault(parts.element, too_much)
     return spec
 
 

@@ -1,0 +1,48 @@
+"""How much of everything a model may consist of, so that adding it ends in good time."""
+
+from .bullet_description import Tree, kinematic_trees, rider_surfaces
+from .spec import ModelSpec
+
+# PyBullet handles a tree of more joints only up to the first question about it.
+MAX_JOINTS = 127
+
+# Links after lumping, in all trees. Which of them may touch is told to PyBullet pair by pair.
+MAX_LINKS = 500
+
+# Collisions and visuals. Each collision that touches costs time in every step, and each visual is
+# a marker of its own for RViz.
+MAX_SHAPES = 5000
+
+
+def excess(spec: ModelSpec) -> str | None:
+    """Return in a sentence what a model has too much of to be simulated; None if nothing."""
+    if len(spec.links) > MAX_LINKS:
+        return (
+            f'the model has {len(spec.links)} links that fixed joints do not merge; '
+            f'at most {MAX_LINKS} are accepted: spawn parts as models of their own'
+        )
+    shapes = sum(len(link.collisions) + len(link.visuals) for link in spec.links)
+    if shapes > MAX_SHAPES:
+        return (
+            f'the model has {shapes} collisions and visuals; at most {MAX_SHAPES} are accepted: '
+            'put more into one mesh'
+        )
+    return next(filter(None, map(_excess_of_joints, kinematic_trees(spec))), None)
+
+
+def _excess_of_joints(tree: Tree) -> str | None:
+    joints = len(tree.links) - 1
+    if joints > MAX_JOINTS:
+        return (
+            f'the links that hang together need more than {MAX_JOINTS} joints in the '
+            'physics engine, which holds no more: split the model'
+        )
+    # Every surface of its own rides on its link by a joint of the engine's.
+    riders = sum(max(1, len(rider_surfaces(link))) - 1 for link in tree.links)
+    if joints + riders > MAX_JOINTS:
+        return (
+            f'links that hang together have {riders} collisions with a surface of their own and '
+            f'{joints} joints; the physics engine holds {MAX_JOINTS} of both: give collisions of '
+            'one link the same mu, kp and kd'
+        )
+    return None
