@@ -3,11 +3,8 @@
 import logging
 import math
 import os
+import shutil
 import struct
-import tempfile
-import threading
-import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -61,6 +58,13 @@ def write(tmp_path):
         return str(path)
 
     return write_file
+
+
+@pytest.fixture
+def store():
+    made = MeshStore()
+    yield made
+    made.close()
 
 
 def corners(path):
@@ -168,7 +172,8 @@ def test_a_folder_is_no_mesh(tmp_path):
 
 
 def test_a_name_with_a_null_is_no_file():
-    assert 'does not exist' in complaint('/a\0.dae')
+    with pytest.raises(ModelError, match='does not exist'):
+        check_mesh('/a\0.dae')
 
 
 def test_another_format_is_named_with_those_that_are_read(write):
@@ -217,16 +222,15 @@ def sphere(count):
     return '\n'.join(lines + [f'f {i} {i + 1} {i + 2}' for i in range(1, count - 1)])
 
 
-def test_the_hull_of_few_points_is_exact_and_scaled(write, tmp_path):
-    store = MeshStore(tmp_path / 'cache')
+def test_the_hull_of_few_points_is_exact_and_scaled(write, store):
     points, faces = read_obj(store.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
     assert sorted(points.tolist()) == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
     assert set(faces.ravel()) == {0, 1, 2}
 
 
-def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, tmp_path):
+def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, store):
     path = write('ball.obj', sphere(6000))
-    points, faces = read_obj(MeshStore(tmp_path / 'cache').collision_hull(path))
+    points, faces = read_obj(store.collision_hull(path))
     assert len(points) <= HULL_DIRECTIONS + 6
     assert set(faces.ravel()) == set(range(len(points)))
     full, _ = read_mesh(path).triangles()
@@ -237,76 +241,40 @@ def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, t
     assert lost.max() < 0.01
 
 
-def test_the_hull_leaves_out_points_no_triangle_uses(write, tmp_path):
+def test_the_hull_leaves_out_points_no_triangle_uses(write, store):
     path = write('m.obj', 'v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n')
-    points, _ = read_obj(MeshStore(tmp_path / 'cache').collision_hull(path))
+    points, _ = read_obj(store.collision_hull(path))
     assert points.max() == 1.0
 
 
-def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, tmp_path):
+def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, store):
     path = write('m.obj', TRIANGLE)
-    store = MeshStore(tmp_path / 'cache')
     points, faces = read_obj(store.collision_surface(path, (-1.0, 1.0, 1.0)))
     a, b, c = points[faces[0]]
     assert sorted(points.tolist()) == [[-1, 0, 0], [0, 0, 0], [0, 1, 0]]
     assert np.cross(b - a, c - a)[2] == 1.0
 
 
-def test_a_file_is_written_once_for_all_runs_and_places(write, tmp_path):
-    first = MeshStore(tmp_path / 'cache').collision_hull(write('m.obj', TRIANGLE))
+def test_a_file_is_written_once_for_the_same_content_in_several_places(write, store, tmp_path):
+    first = store.collision_hull(write('m.obj', TRIANGLE))
     written = os.stat(first).st_mtime_ns
     other = tmp_path / 'elsewhere'
     other.mkdir()
     (other / 'n.obj').write_text(TRIANGLE)
-    assert MeshStore(tmp_path / 'cache').collision_hull(str(other / 'n.obj')) == first
+    assert store.collision_hull(str(other / 'n.obj')) == first
     assert os.stat(first).st_mtime_ns == written
-    assert len(os.listdir(tmp_path / 'cache')) == 1
+    assert len(os.listdir(os.path.dirname(first))) == 1
 
 
-def test_scale_kind_and_content_have_files_of_their_own(write, tmp_path):
-    store = MeshStore(tmp_path / 'cache')
+def test_a_file_that_someone_deleted_is_made_again(write, store):
+    path = write('m.obj', TRIANGLE)
+    shutil.rmtree(os.path.dirname(store.collision_hull(path)))
+    assert os.path.isfile(store.collision_hull(path))
+
+
+def test_scale_kind_and_content_have_files_of_their_own(write, store):
     path = write('m.obj', TRIANGLE)
     files = {store.collision_hull(path), store.collision_surface(path),
              store.collision_hull(path, (1.0, 1.0, math.pi)),
              store.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n'))}
     assert len(files) == 4
-
-
-def test_a_cache_that_cannot_be_made_is_replaced_by_a_temporary_one(write, tmp_path, caplog):
-    store = MeshStore(write('occupied', 'a file, not a folder'))
-    assert 'cannot be written' in caplog.text
-    path = store.collision_hull(write('m.obj', TRIANGLE))
-    assert os.path.isfile(path)
-    store.close()
-    assert not os.path.exists(path)
-
-
-def test_a_cache_that_goes_away_is_replaced_by_a_temporary_one(write, tmp_path, caplog):
-    store = MeshStore(tmp_path / 'cache')
-    (tmp_path / 'cache').rmdir()
-    assert os.path.isfile(store.collision_hull(write('m.obj', TRIANGLE)))
-    assert 'a temporary one is used' in caplog.text
-
-
-def test_threads_that_lose_the_cache_together_share_a_temporary_one(write, tmp_path, monkeypatch):
-    path, store = write('m.obj', TRIANGLE), MeshStore(tmp_path / 'cache')
-    (tmp_path / 'cache').rmdir()
-    mkstemp = tempfile.mkstemp
-
-    def slow_mkstemp(**where):
-        time.sleep(0.02)  # lets the other threads begin to write, if they may
-        return mkstemp(**where)
-
-    monkeypatch.setattr(tempfile, 'mkstemp', slow_mkstemp)
-    ready = threading.Barrier(8)
-
-    def convert(number):
-        ready.wait(5.0)
-        return store.collision_hull(path, (float(number), 1.0, 1.0))
-
-    with ThreadPoolExecutor(8) as threads:
-        files = list(threads.map(convert, range(1, 9)))
-    assert {os.path.dirname(file) for file in files} == {str(store.directory)}
-    assert all(map(os.path.isfile, files))
-    store.close()
-    assert not store.directory.exists()

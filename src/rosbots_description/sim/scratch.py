@@ -1,0 +1,97 @@
+"""Files that the simulator makes for itself: private, and gone when their owner is."""
+
+import contextlib
+import os
+import tempfile
+import threading
+from pathlib import Path
+
+from .errors import ModelError
+
+MEMORY = '/dev/shm'  # a folder that needs no disk; Linux has it
+
+
+class ScratchFolder:
+    """A private folder for files of ours, made when the first one is written.
+
+    It lies where temporary files do (TMPDIR), or in memory where nothing can be written there.
+    Without a file nothing is made, so a full or read-only disk harms nobody who needs none.
+    Any thread may use it.
+    """
+
+    def __init__(self, prefix: str) -> None:
+        """Begin the folder's name with `prefix`."""
+        self._prefix = prefix
+        self._folders: list[tempfile.TemporaryDirectory] = []  # several once a disk has filled up
+        self._lock = threading.Lock()
+
+    def find(self, name: str) -> Path | None:
+        """Return the file of that name if it was written and is still there."""
+        paths = [Path(folder.name, name) for folder in self._folders]
+        return next((path for path in paths if path.is_file()), None)
+
+    def write(self, name: str, content: bytes, source: str) -> Path:
+        """Write a file so that nobody ever sees a part of it; return its path.
+
+        Args:
+            source: the mesh file that it is made from, for the message.
+        Raises:
+            ModelError: it can be written nowhere; the sentence names each place and its fault.
+        """
+        with self._lock:
+            for folder in self._folders:
+                with contextlib.suppress(OSError):  # it was deleted, or its disk is full by now
+                    return _write(Path(folder.name), name, content)
+            return self._write_anew(name, content, source)
+
+    def close(self) -> None:
+        """Remove the folder and all files in it."""
+        with self._lock:
+            while self._folders:
+                self._folders.pop().cleanup()
+
+    def _write_anew(self, name: str, content: bytes, source: str) -> Path:
+        """Write into a new folder, in the first place that takes the file."""
+        faults = []
+        for place in (_temporary_folder(), MEMORY):
+            try:
+                folder = tempfile.TemporaryDirectory(
+                    prefix=self._prefix, dir=place, ignore_cleanup_errors=True)
+                try:
+                    path = _write(Path(folder.name), name, content)
+                except OSError:
+                    folder.cleanup()
+                    raise
+            except OSError as error:
+                faults.append(f'{place} ({error.strerror})')
+            else:
+                self._folders.append(folder)
+                return path
+        raise ModelError(
+            f"mesh file '{source}' cannot be made ready: nothing can be written in "
+            f"{' nor in '.join(faults)}; make room there, or set TMPDIR to a folder that has some"
+        )
+
+
+def _temporary_folder() -> str:
+    """Return where temporary files go, whether or not something can be written there now.
+
+    Python's own answer, where it finds none that can be written, is an error.
+    """
+    try:
+        return tempfile.gettempdir()
+    except OSError:
+        return os.environ.get('TMPDIR') or '/tmp'
+
+
+def _write(folder: Path, name: str, content: bytes) -> Path:
+    handle, partial = tempfile.mkstemp(dir=folder, suffix='.tmp')
+    try:
+        with os.fdopen(handle, 'wb') as file:
+            file.write(content)
+        os.replace(partial, folder / name)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(partial)
+        raise
+    return folder / name

@@ -1,0 +1,144 @@
+"""Files of our own: private, and written wherever there is room."""
+
+import os
+import stat
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from support import ROOT
+from support.surroundings import unshare
+
+from rosbots_description.sim import scratch
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.scratch import ScratchFolder
+
+# Fills the places that its arguments name, in a private view of the file system, and goes on.
+FILL = """
+for place; do
+  mount -t tmpfs -o size=4k full "$place" && head -c 4k /dev/zero > "$place/x" || exit 77
+done
+exec "$PYTHON" -c "$PROGRAM"
+"""
+NOT_PERMITTED = 77
+WRITE = """
+import os, resource, tempfile
+from rosbots_description.sim.scratch import ScratchFolder
+tempfile.tempdir = os.environ.get('TMPDIR')  # chosen when there was still room
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(os.environ.get('LARGEST', -1)),) * 2)
+folder = ScratchFolder('test_')
+try:
+    print(folder.write('a.obj', b'content', 'bot.dae'))
+finally:
+    folder.close()
+"""
+
+
+def run(*command, **environment):
+    python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
+    return subprocess.run(
+        command, env={'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **environment},
+        capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.fixture
+def folder():
+    made = ScratchFolder('test_scratch_')
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def places(tmp_path, monkeypatch):
+    """The folders for temporary files and for memory, of this test alone."""
+    disk, memory = tmp_path / 'disk', tmp_path / 'memory'
+    for place in (disk, memory):
+        place.mkdir()
+    monkeypatch.setattr(tempfile, 'tempdir', str(disk))
+    monkeypatch.setattr(scratch, 'MEMORY', str(memory))
+    return disk, memory
+
+
+def test_nobody_else_may_read_the_files(folder):
+    path = folder.write('a.obj', b'content', 'a.dae')
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert path.read_bytes() == b'content'
+
+
+def test_nothing_is_made_before_it_is_needed_and_nothing_stays(folder, places):
+    disk, _ = places
+    assert folder.find('a.obj') is None
+    assert list(disk.iterdir()) == []
+    path = folder.write('a.obj', b'content', 'a.dae')
+    assert folder.find('a.obj') == path
+    folder.close()
+    assert list(disk.iterdir()) == []
+
+
+def test_memory_serves_where_the_temporary_folder_is_gone_and_earlier_files_stay(folder, places):
+    disk, memory = places
+    first = folder.write('a.obj', b'a', 'a.dae')
+    first.parent.rename(disk.parent / 'away')
+    disk.rmdir()
+    second = folder.write('b.obj', b'b', 'b.dae')
+    assert second.is_relative_to(memory)
+    disk.mkdir()
+    (disk.parent / 'away').rename(first.parent)
+    assert (folder.find('a.obj'), folder.find('b.obj')) == (first, second)
+
+
+def test_without_any_place_the_sentence_names_the_mesh_and_all_places(folder, places):
+    for place in places:
+        place.rmdir()
+    with pytest.raises(ModelError) as caught:
+        folder.write('a.obj', b'content', '/models/bot.dae')
+    assert str(caught.value) == (
+        f"mesh file '/models/bot.dae' cannot be made ready: nothing can be written in {places[0]} "
+        f'(No such file or directory) nor in {places[1]} (No such file or directory); '
+        'make room there, or set TMPDIR to a folder that has some')
+
+
+@pytest.mark.parametrize(('full', 'code', 'said'), [
+    (1, 0, '/dev/shm/test_'),
+    (2, 1, '(No space left on device) nor in /dev/shm (No space left on device)'),
+])
+def test_a_full_disk_costs_nothing_while_there_is_memory(tmp_path, full, code, said):
+    places = [str(tmp_path), scratch.MEMORY][:full]
+    done = run(*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, TMPDIR=str(tmp_path),
+               PYTHON=sys.executable, PROGRAM=WRITE)
+    if done.returncode == NOT_PERMITTED:
+        pytest.skip(f'this machine lets nobody mount a disk: {done.stderr.strip()}')
+    assert done.returncode == code, done.stderr
+    assert said in done.stdout + done.stderr
+
+
+def test_no_place_takes_a_file_larger_than_the_limit_of_the_process():
+    done = run(sys.executable, '-c', WRITE, LARGEST='0')
+    assert done.returncode == 1
+    assert "'bot.dae' cannot be made ready: nothing can be written in /tmp (" in done.stderr
+    assert 'nor in /dev/shm (File too large)' in done.stderr
+
+
+def test_threads_share_a_folder(folder, places, monkeypatch):
+    mkdtemp = tempfile.mkdtemp
+
+    def slow_mkdtemp(*where, **named):
+        time.sleep(0.02)  # lets the other threads begin to write, if they may
+        return mkdtemp(*where, **named)
+
+    monkeypatch.setattr(tempfile, 'mkdtemp', slow_mkdtemp)
+    ready = threading.Barrier(8)
+
+    def write(number):
+        ready.wait(5.0)
+        return folder.write(f'{number}.obj', b'content', 'a.dae')
+
+    with ThreadPoolExecutor(8) as threads:
+        files = list(threads.map(write, range(8)))
+    assert len({file.parent for file in files}) == 1
+    assert all(file.is_file() for file in files)
