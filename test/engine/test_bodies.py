@@ -134,23 +134,35 @@ BOLT = '<link name="world"/><joint name="j" type="{}"><parent link="world"/><chi
 LIMIT = '<axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'
 
 
+def noting(used, convert, exactly):
+    """Return `convert`, which adds to `used` what it is asked for."""
+
+    def note(path, scale):
+        used.add((path, scale, exactly))
+        return convert(path, scale)
+
+    return note
+
+
 @pytest.mark.parametrize(('extra', 'exact'), [
     ('', False),
     ('<gazebo><static>true</static></gazebo>', True),
     (BOLT.format('fixed', '</joint>'), True),
     (BOLT.format('revolute', LIMIT), False),
 ])
-def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, extra, exact):
+def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, monkeypatch, extra,
+                                                                  exact):
     mesh = tmp_path / 'm.obj'
     mesh.write_text('v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n')
     spec = urdf_spec(MESH_LINK.format(name='a', file=mesh) + extra)
+    used = set()
     with empty_world() as world:
+        for method, exactly in (('collision_hull', False), ('collision_surface', True)):
+            convert = getattr(world.meshes, method)
+            monkeypatch.setattr(world.meshes, method, noting(used, convert, exactly))
         world.spawn(spec, 'thing', Pose((0.0, 0.0, 2.0)))
-        (file,) = world.meshes.directory.iterdir()
-        ((needed, surface),) = mesh_needs(spec)
-        assert surface == exact
-        convert = world.meshes.collision_surface if exact else world.meshes.collision_hull
-        assert convert(needed.path, needed.scale) == str(file)
+    assert used == {(needed.path, needed.scale, surface) for needed, surface in mesh_needs(spec)}
+    assert [exactly for *_, exactly in used] == [exact]
 
 
 def test_a_link_without_gravity_floats():

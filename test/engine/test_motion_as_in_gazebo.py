@@ -1,79 +1,89 @@
 """The article's robot falls, stands and drives as it does in the real Gazebo."""
 
-import json
 import math
 from functools import cache
 
 import pytest
-from support import ROOT, SETTLED, SPAWN_POSE, empty_world, robot_spec
+from support import SETTLED, SPAWN_POSE, empty_world, robot_spec
+from support.motion import (
+    COMMANDS,
+    RECORDED,
+    angle_between,
+    drive_as_recorded,
+    measure,
+    ramp_delays,
+)
 
-from rosbots_description.sim.pose import relative, yaw_of
-
-GAZEBO = json.loads((ROOT / 'test' / 'data' / 'gazebo_motion.json').read_text(encoding='utf-8'))
-SPEED_SHARE = 0.03  # of Gazebo's steady speed
-DISPLACEMENT_SHARE = 0.04  # of the way Gazebo's robot has gone at rest
-TURN_TOLERANCE = 0.15  # [rad] after five seconds of turning
+SPEED_SHARE = 0.01  # of Gazebo's steady speed
+WHEEL_SHARE = 0.02  # of the speed of Gazebo's wheels
+T90_SHARE = 0.05  # of the time to 90 % of the steady speed
+DISPLACEMENT_SHARE = 0.02  # of the way Gazebo's robot has gone at rest
+TURN_TOLERANCE = 0.05  # [rad] after five seconds of turning
+RAMP_TOLERANCE = 0.010  # [s] by which a speed is reached earlier or later
 REST_HEIGHT = (-0.120, 0.002)  # [m] of base_footprint: the wheels reach 0.12 m below it
-IDLE_CREEP = 0.002  # [m] in thirty seconds
+IDLE_CREEP = 1e-4  # [m] in thirty seconds
+TREMBLING = 1e-3  # [m/s or rad/s] of a robot at rest; in Gazebo it is 0.004 and 0.016
 
 
 @cache
-def drive(name):
-    """Return steady speeds, and displacement and turn at rest, as in gazebo_motion.json."""
-    command, seconds = GAZEBO[name]['command'], GAZEBO[name]['seconds']
-    with empty_world() as world:
-        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.run(SETTLED)
-        start = model.pose
-        model.plugins[0].command(*command)
-        world.run(1000)
-        speeds = []
-        for _ in range((seconds - 1) * 100):
-            world.run(10)
-            pose, twist = model.state()
-            yaw = yaw_of(pose.orientation)
-            vx, vy, _ = twist.linear
-            speeds.append((math.cos(yaw) * vx + math.sin(yaw) * vy, twist.angular[2]))
-        model.plugins[0].command(0.0, 0.0)
-        world.run(3000)
-        end = relative(model.pose, start)
-        v, w = (sum(values) / len(speeds) for values in zip(*speeds, strict=True))
-        turned = yaw_of(end.orientation)
-        turns = round((GAZEBO[name]['yaw'] - turned) / (2 * math.pi))
-        return {
-            'v': v,
-            'w': w,
-            'x': end.position[0],
-            'y': end.position[1],
-            'yaw': turned + turns * 2 * math.pi,
-        }
+def samples(name):
+    """Return the motion for a recorded command."""
+    return drive_as_recorded(name)
+
+
+@cache
+def ours(name):
+    """Return what gazebo_motion.json tells, for our robot."""
+    return measure(samples(name), RECORDED[name]['seconds'], turns=name == 'turn')
 
 
 @pytest.mark.parametrize(
     ('name', 'quantity'), [('straight', 'v'), ('turn', 'w'), ('arc', 'v'), ('arc', 'w')]
 )
 def test_steady_speeds_are_gazebos(name, quantity):
-    assert drive(name)[quantity] == pytest.approx(GAZEBO[name][quantity], rel=SPEED_SHARE)
+    assert ours(name)[quantity] == pytest.approx(RECORDED[name][quantity], rel=SPEED_SHARE)
+
+
+@pytest.mark.parametrize('name', COMMANDS)
+def test_full_speed_is_reached_when_gazebo_reaches_it(name):
+    assert ours(name)['t90'] == pytest.approx(RECORDED[name]['t90'], rel=T90_SHARE)
+
+
+@pytest.mark.parametrize('name', COMMANDS)
+@pytest.mark.parametrize('side', ['left', 'right'])
+def test_the_wheels_turn_as_gazebos(name, side):
+    assert ours(name)[side] == pytest.approx(RECORDED[name][side], rel=WHEEL_SHARE)
 
 
 @pytest.mark.parametrize('name', ['straight', 'arc'])
 def test_the_robot_comes_to_rest_where_gazebos_does(name):
-    ours, theirs = drive(name), GAZEBO[name]
-    apart = math.dist((ours['x'], ours['y']), (theirs['x'], theirs['y']))
-    assert apart < DISPLACEMENT_SHARE * math.hypot(theirs['x'], theirs['y'])
+    x, y = RECORDED[name]['x'], RECORDED[name]['y']
+    apart = math.dist((ours(name)['x'], ours(name)['y']), (x, y))
+    assert apart < DISPLACEMENT_SHARE * math.hypot(x, y)
 
 
-def test_turning_on_the_spot_ends_at_gazebos_heading():
-    assert drive('turn')['yaw'] == pytest.approx(GAZEBO['turn']['yaw'], abs=TURN_TOLERANCE)
+@pytest.mark.parametrize('name', COMMANDS)
+def test_the_heading_at_rest_is_gazebos(name):
+    assert abs(angle_between(ours(name)['yaw'], RECORDED[name]['yaw'])) < TURN_TOLERANCE
 
 
-def test_the_robot_stands_on_its_wheels_and_does_not_creep():
+def test_speeding_up_and_slowing_down_follow_gazebos_ramp():
+    ramp, end = RECORDED['ramp'], RECORDED['straight']['seconds']
+    delays = ramp_delays(samples('straight'), ramp['start'], 0.0, rising=True)
+    delays += ramp_delays(samples('straight'), ramp['stop'], end, rising=False)
+    assert max(map(abs, delays)) <= RAMP_TOLERANCE
+
+
+def test_the_robot_stands_on_its_wheels_and_neither_creeps_nor_trembles():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(SETTLED)
         before = model.pose.position
         assert before[2] == pytest.approx(REST_HEIGHT[0], abs=REST_HEIGHT[1])
-        world.run(30_000)
+        for _ in range(30_000 // 37):
+            world.run(37)  # no divisor of the plugin's period
+            twist = model.twist
+            assert max(map(abs, (*twist.linear, *twist.angular))) < TREMBLING
         assert math.dist(before, model.pose.position) < IDLE_CREEP
 
 

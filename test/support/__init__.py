@@ -11,6 +11,7 @@ import xacro
 
 from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.spec import ModelSpec
+from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.world import World
 from rosbots_description.sim.worlds import add_empty_world
@@ -44,9 +45,13 @@ def robot_spec() -> ModelSpec:
 
 
 @contextmanager
-def empty_world() -> Iterator[World]:
-    """Open a world with a ground plane; it is closed at the end."""
-    world = World()
+def empty_world(tuning: Tuning | None = None) -> Iterator[World]:
+    """Open a world with a ground plane; it is closed at the end.
+
+    Args:
+        tuning: other choices of the engine than the usual ones.
+    """
+    world = World(tuning=tuning)
     try:
         add_empty_world(world)
         yield world

@@ -19,6 +19,7 @@ from rosbots_description.sim.spec import (
     LinkSpec,
     PluginSpec,
 )
+from rosbots_description.sim.wheel import CREEP
 
 TAGS = {
     'robotNamespace': '/',
@@ -326,15 +327,25 @@ def test_a_loaded_wheel_that_pulls_creeps_and_reports_its_hub():
     plugin.command(0.52, 0.0)
     run(plugin, PERIOD_STEPS + 1)
     for wheel in plugin.model.wheels.values():
-        wheel.weight, wheel.effort = 20.0, 1.3  # F / N = 0.25, so 2 % creep
-    run(plugin, PERIOD_STEPS)
-    assert rim_speeds(plugin) == pytest.approx((0.98 * 0.52,) * 2)
+        wheel.weight, wheel.effort = 10.0, 1.3  # it pulls at half of its grip
+    run(plugin, 100 * PERIOD_STEPS)  # the creep follows slowly
+    assert rim_speeds(plugin) == pytest.approx((0.52 - 0.25 * CREEP,) * 2)
+    assert plugin.wheels[0].velocity == pytest.approx(2.0)
     plugin.config = replace(plugin.config, publish_wheel_joint_state=True)
     states = collect(plugin.joint_states)
-    run(plugin, PERIOD_STEPS)
-    # The hub is ahead of the joint by the creep of one period.
-    run(plugin, PERIOD_STEPS)
-    assert states[1].positions[0] == pytest.approx(0.02 * 2.0 * 0.011)
+    run(plugin, 2 * PERIOD_STEPS)
+    # The joint of these tests stands still, so what is reported is the hub's lead alone.
+    led = states[1].positions[0] - states[0].positions[0]
+    assert led == pytest.approx(0.25 * CREEP / 0.26 * 0.010)
+
+
+def test_a_wheel_that_nothing_rests_on_does_not_creep():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    for wheel in plugin.model.wheels.values():
+        wheel.effort = 1.3
+    plugin.command(0.52, 0.0)
+    run(plugin, 10 * PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52))
 
 
 def wheel_of(radius):

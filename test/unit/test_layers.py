@@ -41,17 +41,17 @@ def imported_layers(tree):
     return words & {'cli', 'ros_api', 'sim'}
 
 
-def test_only_the_engine_imports_pybullet():
+def test_pybullet_is_imported_in_one_place():
     assert [path for path, tree in files().items() if 'pybullet' in imported(tree)] == [
-        'sim/engine.py']
+        'sim/bullet.py']
 
 
-def test_only_engine_and_canvas_use_pybullet():
+def test_only_what_makes_moves_and_draws_bodies_uses_pybullet():
     using = [path for path, tree in files().items()
              if any(isinstance(node, ast.Name) and node.id == 'pybullet'
                     or isinstance(node, ast.alias) and node.name == 'pybullet'
                     for node in ast.walk(tree))]
-    assert using == ['sim/canvas.py', 'sim/engine.py']
+    assert using == ['sim/body_maker.py', 'sim/bullet.py', 'sim/canvas.py', 'sim/engine.py']
 
 
 def test_only_ros_api_imports_rospy():

@@ -27,6 +27,9 @@ class Body:
         self.roots: list[str] = []  # links that the engine moves as bases
         self.bolted: set[str] = set()  # roots that the world holds
         self.bodies: list[int] = []
+        # Links that feel no gravity: PyBullet's body and index, and the mass [kg].
+        self.weightless: list[tuple[int, int, float]] = []
+        self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
 
 

@@ -8,7 +8,9 @@ afterwards.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import NamedTuple
+from xml.sax.saxutils import quoteattr
 
 from .pose import Pose, compose, inverse, relative, to_rpy
 from .spec import (
@@ -30,6 +32,8 @@ from .spec import (
 # A part of a link that touches differently rides on the link as a body of its own; its mass must
 # not be zero for PyBullet and must not matter beside any real link [kg].
 RIDER_MASS = 1e-9
+
+_STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
 
 WORLD_LINK = LinkSpec('world')  # what models are bolted to
 
@@ -131,7 +135,8 @@ def _geometry(geometry: Geometry, mesh_file: MeshFile) -> str:
         case Plane(normal):
             return f'<plane normal="{_numbers(normal)}"/>'
         case Mesh():
-            return f'<mesh filename="{mesh_file(geometry)}"/>'
+            # the folder for temporary files may be called anything
+            return f'<mesh filename={quoteattr(mesh_file(geometry))}/>'
 
 
 def _joint(
@@ -183,6 +188,30 @@ def friction(surface: Surface) -> float:
     return min(1.0, max(0.0, surface.mu))
 
 
+def overlap_share(step_size: float, push_out: float) -> float:
+    """Return the share of an overlap that contacts take away in a step.
+
+    Args:
+        step_size: duration of the step [s].
+        push_out: rate at which bodies are pushed apart [1/s].
+    """
+    return min(0.2, push_out * step_size)
+
+
+def contact_spring(
+    surface: Surface, step_size: float, push_out: float
+) -> tuple[float, float] | None:
+    """Return stiffness [N/m] and damping [N s/m] of a contact; None if nobody described it.
+
+    It gives way by force / kp at rest, and is damped so much that it parts bodies no faster than
+    other contacts do; a kd of a user's could shoot them away. Arguments as in `overlap_share`.
+    """
+    if surface.kp >= _STIFFEST:
+        return None
+    least = step_size * surface.kp * (1.0 / overlap_share(step_size, push_out) - 1.0)
+    return surface.kp, max(surface.kd, least)
+
+
 def kinematic_trees(spec: ModelSpec) -> list[Tree]:
     """Return the trees that a model consists of.
 
@@ -222,3 +251,14 @@ def mesh_needs(spec: ModelSpec) -> Iterator[tuple[Mesh, bool]]:
             for collision in link.collisions:
                 if isinstance(collision.geometry, Mesh):
                     yield collision.geometry, tree.stands
+
+
+def untouching_links(spec: ModelSpec) -> Iterator[tuple[str, str]]:
+    """Yield each pair of links that pass through each other.
+
+    Two links of a model touch only if both ask for it and no joint connects them.
+    """
+    joined = {frozenset((joint.parent, joint.child)) for joint in spec.joints}
+    for a, b in combinations(spec.links, 2):
+        if not (a.self_collide and b.self_collide) or {a.name, b.name} in joined:
+            yield a.name, b.name

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .engine import pybullet
+from .bullet import pybullet
 from .pose import Pose, Vector
 
 _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes

@@ -1,9 +1,9 @@
 """A camera of the simulator's own: pictures of the world on machines without a screen."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
 
 from .canvas import Canvas, Triangles
 from .meshes import visual_parts
@@ -11,6 +11,9 @@ from .model import Link, Model
 from .pose import Vector, compose
 from .spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .world import World
+
+if TYPE_CHECKING:
+    import trimesh
 
 EYE: Vector = (1.9, -1.9, 1.3)  # [m] a good look at a robot that stands at the origin
 TARGET: Vector = (0.0, 0.1, 0.25)  # [m]
@@ -99,7 +102,9 @@ def _parts(visual: Visual) -> list[Triangles]:
     return [Triangles(np.asarray(mesh.vertices), np.asarray(mesh.faces), rgba)]
 
 
-def _primitive(geometry: Geometry) -> trimesh.Trimesh:
+def _primitive(geometry: Geometry) -> 'trimesh.Trimesh':
+    import trimesh  # noqa: PLC0415  a third of the simulator's start, and seldom needed
+
     match geometry:
         case Box(size):
             return trimesh.creation.box(size)

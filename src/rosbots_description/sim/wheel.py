@@ -1,22 +1,28 @@
 """A driven wheel: a motor, a tyre that creeps, and what the motor side sees of it.
 
-A tyre that passes on a force F under a load N rolls slower than its hub turns, by a share of the
-speed that grows with F / N (linear creep; Pacejka, Tyre and Vehicle Dynamics, ch. 3). PyBullet's
-contacts never creep, so the creep sits between motor and wheel here: the motor is asked for the
-hub's speed, the joint turns at the tyre's, and position and velocity are reported for the hub.
+A tyre that passes on a force creeps: its rim is faster than the ground passes under it. Gazebo's
+trace of the article's robot shows by how much: at any speed alike, and with the square of the share
+of the grip in use (doc/physics.md). PyBullet's contacts never creep, so the creep sits between
+motor and wheel here: the motor is asked for the hub's speed, the joint turns at the tyre's, and
+position and velocity are reported for the hub.
 """
 
+import math
 from typing import TYPE_CHECKING
 
+from .bullet_description import friction
+from .clock import SimClock
 from .pose import Vector, compose, rotate
 from .spec import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:
     from .model import Joint
 
-# Creep stiffness: F / N at which the creep would be 100 %. Rubber on a road has 10 to 20; with this
-# value the article's robot loses as much speed as in Gazebo, whose contacts slip by trembling.
-CREEP_STIFFNESS = 12.5
+# Creep of a tyre that uses all of its grip [m/s], before it slides.
+CREEP = 0.085
+# Time in which creep follows the force [s]; a tyre's follows over a length. Without it the force,
+# which a rigid contact lets jump from step to step, would shake the wheels.
+RELAXATION = 0.05
 
 
 class Wheel:
@@ -26,48 +32,59 @@ class Wheel:
     cylinder or ball; such a wheel does not creep.
     """
 
-    def __init__(self, joint: 'Joint', torque: float) -> None:
+    def __init__(self, joint: 'Joint', torque: float, clock: SimClock) -> None:
         """Describe the wheel; `release` takes over its motor.
 
         Args:
             joint: what turns.
             torque: the most the motor gives [N m].
+            clock: the simulated time.
         """
         self.joint = joint
         self.name = joint.name
         self.radius = _radius(self._link())
+        self._grip = _grip(self._link())
         self._torque = torque
+        self._clock = clock
         self._creep = 0.0  # hub speed minus tyre speed [rad/s]
-        self._lead = 0.0  # how far the hub has turned more than the tyre [rad]
+        self._lead = 0.0  # how far the hub had turned more than the tyre at `_noted` [rad]
+        self._noted = 0.0  # [s]
 
     def release(self) -> None:
         """Forget speed and way; the motor holds the wheel."""
-        self._creep = self._lead = 0.0
+        self.rest()
+        self._lead = 0.0
         self.joint.set_motor(0.0, self._torque)
 
     def rest(self) -> None:
         """Take note that the wheel stands still; how far it has turned, and the motor, stay."""
+        self._note_lead()
         self._creep = 0.0
 
     @property
     def position(self) -> float:
         """Return how far the hub has turned [rad]."""
-        return self.joint.position + self._lead
+        since = self._clock.now - self._noted
+        return self.joint.position + self._lead + self._creep * since
 
     @property
     def velocity(self) -> float:
         """Return the speed of the hub [rad/s]."""
         return self.joint.velocity + self._creep
 
-    def drive(self, velocity: float, elapsed: float) -> None:
-        """Turn the hub at `velocity` [rad/s] from now on.
-
-        Args:
-            elapsed: time since the last call [s], for which the last creep counts.
-        """
-        self._lead += self._creep * elapsed
-        self._creep = self._creep_share() * velocity
+    def drive(self, velocity: float) -> None:
+        """Turn the hub at `velocity` [rad/s] from now on."""
+        elapsed = self._note_lead()
+        self._creep += (self._steady_creep() - self._creep) * min(1.0, elapsed / RELAXATION)
         self.joint.set_motor(velocity - self._creep, self._torque)
+
+    def _note_lead(self) -> float:
+        """Add up the creep since it was last done; return the time since then [s]."""
+        now = self._clock.now
+        elapsed = now - self._noted
+        self._noted = now
+        self._lead += self._creep * elapsed
+        return elapsed
 
     def place_on_axle(self) -> Vector:
         """Return where the touching shape stands along the axle, in the model frame [m].
@@ -82,14 +99,14 @@ class Wheel:
         along = ax * x + ay * y + az * z
         return (along * ax, along * ay, along * az)
 
-    def _creep_share(self) -> float:
-        """Return the share of the hub's speed that creep takes now; negative while braking."""
-        load = self.joint.normal_force() if self.radius else 0.0
+    def _steady_creep(self) -> float:
+        """Return the creep [rad/s] that belongs to the present force; it points along the force."""
+        load = self.joint.normal_force() * self._grip if self.radius else 0.0
         if load <= 0.0:
             return 0.0
-        speed, effort = self.joint.velocity, self.joint.effort
-        share = min(1.0, abs(effort) / self.radius / load) / CREEP_STIFFNESS
-        return share if speed * effort > 0.0 else -share
+        effort = self.joint.effort
+        use = min(1.0, abs(effort) / (self.radius * load))
+        return math.copysign(CREEP * use * use / self.radius, effort)
 
     def _link(self) -> LinkSpec:
         return self.joint.model.spec.link(self.joint.spec.child)
@@ -99,3 +116,7 @@ def _radius(link: LinkSpec) -> float | None:
     if len(link.collisions) != 1 or not isinstance(link.collisions[0].geometry, Cylinder | Sphere):
         return None
     return link.collisions[0].geometry.radius
+
+
+def _grip(link: LinkSpec) -> float:
+    return min((friction(collision.surface) for collision in link.collisions), default=0.0)

@@ -4,13 +4,12 @@ import contextlib
 import logging
 from collections.abc import Iterator
 from fractions import Fraction
-from pathlib import Path
 from typing import Protocol
 
 from .clock import SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
-from .guard import Guard
+from .guard import LARGEST, Guard, is_lost
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
 from .meshes import MeshStore
@@ -21,6 +20,7 @@ from .plugins.registry import known_filenames, plugin_class
 from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
 from .spec import ModelSpec, PluginSpec
+from .tuning import Tuning
 from .world_spec import LightSpec
 
 logger = logging.getLogger(__name__)
@@ -49,12 +49,12 @@ class World:
     """
 
     def __init__(
-        self, physics: PhysicsSettings | None = None, mesh_cache: Path | None = None
+        self, physics: PhysicsSettings | None = None, tuning: Tuning | None = None
     ) -> None:
         """Open an empty world.
 
         Args:
-            mesh_cache: a directory to keep converted meshes in; None: a private temporary one.
+            tuning: other choices of the engine than the usual ones, to measure what they do.
         """
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
@@ -65,13 +65,14 @@ class World:
         self.lights: dict[str, LightSpec] = {}
         self.listeners: list[Listener] = []
         self.paused = False
-        self.meshes = MeshStore(mesh_cache)
+        self.meshes = MeshStore()
         self._guard = Guard(self)
         self.schedule.add(self._guard)
         self.engine = Engine(
             self.physics,
             lambda mesh: str(self.meshes.collision_hull(mesh.path, mesh.scale)),
             lambda mesh: str(self.meshes.collision_surface(mesh.path, mesh.scale)),
+            tuning,
         )
 
     def close(self) -> None:
@@ -109,10 +110,15 @@ class World:
         A plugin that fails is logged and left out; the model lives.
 
         Raises:
-            ModelError: the name is taken or empty.
+            ModelError: the name is taken or empty, or the pose is of no world.
         """
         if not name:
             raise ModelError('a model needs a name; the one given is empty')
+        if not all(abs(x) < LARGEST for x in pose.position):
+            raise ModelError(
+                f"model '{name}' is to appear {max(pose.position, key=abs):g} m away; "
+                f'less than {LARGEST:g} m are accepted'
+            )
         if name in self.models:
             raise ModelError(f"a model named '{name}' is in the world already")
         model = Model(name, spec, self.engine, pose)
@@ -138,7 +144,11 @@ class World:
             raise NotFoundError(f"there is no model named '{name}'")
         for listener in self.listeners:
             listener.model_deleted(model)
+        lost = is_lost(model)
         self._remove(model)
+        if lost:
+            # What it was lost by would stay in the engine otherwise, and in what it touched.
+            self.mend([other for other in self.models.values() if is_lost(other)])
 
     def _remove(self, model: Model) -> None:
         self.jobs.cancel(lambda target: target.model is model)

@@ -13,6 +13,7 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Point
 
 from ...sim.inertia import in_link_axes, is_positive, turnable
+from ...sim.markup_values import HEAVIEST, LIGHTEST, MOST_INERT
 from ...sim.model import Link
 from ...sim.pose import Pose
 from ...sim.spec import Inertial
@@ -83,6 +84,12 @@ def _movable(link: Link, inertial: Inertial) -> Inertial:
         raise RequestError(
             f"mass is {inertial.mass}; link '{link.scoped_name}' moves, so it must be greater "
             'than zero [kg]'
+        )
+    moments = (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz)
+    if not LIGHTEST <= inertial.mass <= HEAVIEST or max(map(abs, moments)) > MOST_INERT:
+        raise RequestError(
+            f"mass and inertia of link '{link.scoped_name}' are those of no body: "
+            f'{LIGHTEST:g} to {HEAVIEST:g} kg and at most {MOST_INERT:g} kg m^2 are accepted'
         )
     if not is_positive(inertial):
         raise RequestError(

@@ -106,7 +106,7 @@ class DiffDrive(ModelPlugin):
     """Drive two wheel joints from a planar velocity command; report odometry.
 
     Outputs, each a `Port`: `odometry` (`Odometry`), `wheel_transform` (`FrameTransform`, once per
-    wheel) and `joint_states` (`JointStates`: right, left).
+    wheel) and `joint_states` (`JointStates`: right, left). `wheels` are the left and the right one.
     """
 
     def load(self) -> None:
@@ -120,7 +120,7 @@ class DiffDrive(ModelPlugin):
         self.params = Params(self.spec.element, self.log_prefix)
         self.config = read_config(self.params)
         self.odometry, self.wheel_transform, self.joint_states = Port(), Port(), Port()
-        self._wheels = (self._wheel(self.config.left_joint), self._wheel(self.config.right_joint))
+        self.wheels = (self._wheel(self.config.left_joint), self._wheel(self.config.right_joint))
         self._warn_unread()
         self._warn_geometry()
         rate = self.config.update_rate
@@ -135,7 +135,7 @@ class DiffDrive(ModelPlugin):
         # The first encoder step spans all of the time so far, as upstream's does.
         self._encoder_ns = 0
         self.reset()
-        for wheel in self._wheels:
+        for wheel in self.wheels:
             wheel.release()
 
     def reset(self) -> None:
@@ -143,7 +143,7 @@ class DiffDrive(ModelPlugin):
         self._command = (0.0, 0.0)
         self._encoder_pose = (0.0, 0.0, 0.0)  # x [m], y [m], yaw [rad]
         self._encoder_twist = (0.0, 0.0)  # forward [m/s], yaw rate [rad/s]
-        for wheel in self._wheels:
+        for wheel in self.wheels:
             wheel.rest()
         self._last_ns = self.world.clock.now_ns
         self._set_due()
@@ -178,14 +178,14 @@ class DiffDrive(ModelPlugin):
         limit = config.wheel_acceleration * elapsed
         radius = config.wheel_diameter / 2.0
         missing = [
-            goal - wheel.velocity * radius for goal, wheel in zip(target, self._wheels, strict=True)
+            goal - wheel.velocity * radius for goal, wheel in zip(target, self.wheels, strict=True)
         ]
         if limit > 0.0 and min(abs(missing[0]), abs(missing[1])) >= REACHED:
             for i in (0, 1):
                 self._setpoint[i] += max(-limit, min(limit, missing[i]))
             target = self._setpoint
-        for wheel, rim_speed in zip(self._wheels, target, strict=True):
-            wheel.drive(rim_speed / radius, elapsed)
+        for wheel, rim_speed in zip(self.wheels, target, strict=True):
+            wheel.drive(rim_speed / radius)
 
     def _publish(self) -> None:
         config = self.config
@@ -194,11 +194,11 @@ class DiffDrive(ModelPlugin):
             self.odometry.send(self._encoder_odometry() if encoder else self._world_odometry())
         if config.publish_wheel_tf and self.wheel_transform.wanted():
             model_pose = self.model.pose
-            for spec in (wheel.joint.spec for wheel in self._wheels):
+            for spec in (wheel.joint.spec for wheel in self.wheels):
                 pose = relative(self.model.links[spec.child].pose, model_pose)
                 self.wheel_transform.send(FrameTransform(spec.parent, spec.child, pose))
         if config.publish_wheel_joint_state and self.joint_states.wanted():
-            left, right = self._wheels
+            left, right = self.wheels
             self.joint_states.send(
                 JointStates((right.name, left.name), (right.position, left.position))
             )
@@ -225,7 +225,7 @@ class DiffDrive(ModelPlugin):
         if elapsed <= 0.0:
             return
         radius = self.config.wheel_diameter / 2.0
-        left, right = (wheel.velocity * radius * elapsed for wheel in self._wheels)
+        left, right = (wheel.velocity * radius * elapsed for wheel in self.wheels)
         x, y, yaw = self._encoder_pose
         difference = right - left
         forward = (left + right) / 2.0
@@ -242,7 +242,7 @@ class DiffDrive(ModelPlugin):
 
     def _wheel(self, name: str) -> Wheel:
         try:
-            return Wheel(self.model.joint(name), self.config.wheel_torque)
+            return Wheel(self.model.joint(name), self.config.wheel_torque, self.world.clock)
         except NotFoundError as error:
             raise PluginError(
                 f"{self.log_prefix}couldn't get wheel hinge joint named {name}: {error}"
@@ -260,7 +260,7 @@ class DiffDrive(ModelPlugin):
 
     def _warn_geometry(self) -> None:
         """Say so when the numbers given contradict the wheels that touch the ground."""
-        left, right = self._wheels
+        left, right = self.wheels
         if left.radius is None or right.radius is None:
             return
         diameter, track = 2.0 * left.radius, math.dist(left.place_on_axle(), right.place_on_axle())

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Measure what each choice of the engine does to motion and cost; the table of doc/physics.md.
+
+For each setting: how far the article's robot is from Gazebo (largest share among the steady speeds
+and times to 90 %), the errors of the scenes in test/support/scenes.py, and the cost of a step with
+the robot driving, as a multiple of the usual setting's in the same run.
+"""
+
+import logging
+import sys
+import time
+from dataclasses import replace
+
+from article import SETTLED, SPAWN_POSE, robot_spec
+from support import empty_world, urdf_spec
+from support.motion import COMMANDS, RECORDED, drive_as_recorded, measure
+from support.scenes import SCENES, SPEED, box, forward_speed
+
+from rosbots_description.sim.model import Model
+from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.world import World
+
+USUAL = Tuning()
+SETTINGS = {
+    'as is': USUAL,
+    '50 passes': Tuning(passes=1.0),
+    '20 passes': Tuning(passes=0.4),
+    '12 passes': Tuning(passes=0.24),
+    '8 passes': Tuning(passes=0.16),
+    'cone': Tuning(friction_cone=True),
+    'prisms': Tuning(exact_cylinders=False),
+    'push 200/s': Tuning(push_out=200.0),
+}
+WIDTH = 22  # of the first column
+SMALL = 0.2  # speeds below this are not compared [m/s or rad/s]
+BATCH = 200  # steps between two looks at the time
+ROUNDS = 100
+TURNS = 3
+
+
+def gazebo_errors(tuning: Tuning) -> tuple[float, float]:
+    """Return the largest shares by which steady speeds and times to 90 % differ from Gazebo's."""
+    speeds, times = [], []
+    for name in COMMANDS:
+        gazebo = RECORDED[name]
+        turns = not gazebo['command'][0]
+        ours = measure(drive_as_recorded(name, tuning), gazebo['seconds'], turns)
+        speeds += [abs(ours[k] / gazebo[k] - 1.0) for k in 'vw' if abs(gazebo[k]) > SMALL]
+        times.append(abs(ours['t90'] / gazebo['t90'] - 1.0))
+    return max(speeds), max(times)
+
+
+def driven(world: World) -> Model:
+    """Return the article's robot, driving at its steady speed."""
+    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    model.plugins[0].command(SPEED, 0.0)
+    world.run(SETTLED)
+    return model
+
+
+def lay_box(world: World) -> None:
+    """Lay a box of 100 m where the plane was."""
+    world.delete('ground_plane')
+    slab = replace(urdf_spec(box('slab', (100.0, 100.0, 1.0), 1.0)), static=True)
+    world.spawn(slab, 'ground_plane', Pose((0.0, 0.0, -0.5)))
+
+
+def quickest_batch(world: World) -> float:
+    """Return the shortest time that a batch of steps took [s]; other work only slows down."""
+    best = float('inf')
+    for _ in range(ROUNDS):
+        begin = time.perf_counter()
+        world.run(BATCH)
+        best = min(best, time.perf_counter() - begin)
+    return best
+
+
+def costs() -> dict[str, float]:
+    """Return the cost of a step with the robot driving, in multiples of the usual one.
+
+    The settings take turns, and of each the quickest batch counts.
+    """
+    best = dict.fromkeys(SETTINGS, float('inf'))
+    for _ in range(TURNS):
+        for name, tuning in SETTINGS.items():
+            with empty_world(tuning) as world:
+                driven(world)
+                best[name] = min(best[name], quickest_batch(world))
+    return {name: value / best['as is'] for name, value in best.items()}
+
+
+def compare_grounds() -> str:
+    """Return what a box as ground does to the cost of a step and to the robot's speed."""
+    best, speeds = [float('inf')] * 2, [0.0] * 2
+    for _ in range(TURNS):
+        for i in (0, 1):
+            with empty_world() as world:
+                if i:
+                    lay_box(world)
+                speeds[i] = forward_speed(driven(world))
+                best[i] = min(best[i], quickest_batch(world))
+    return (f'a box of 100 m as ground: a step costs {best[1] / best[0]:.2f} times as much, '
+            f'the speed differs by {speeds[1] / speeds[0] - 1.0:+.2%}')
+
+
+def main() -> int:
+    """Print the table, one column for each setting; return the exit code."""
+    logging.disable(logging.WARNING)
+    print(' ' * WIDTH + ''.join(f'{name:>11}' for name in SETTINGS))
+    multiples = costs()
+    errors = {name: gazebo_errors(tuning) for name, tuning in SETTINGS.items()}
+    print(f'{"cost of a step":{WIDTH}}' + ''.join(f'{multiples[n]:11.2f}' for n in SETTINGS))
+    for i, what in enumerate(("speeds, Gazebo's", "t90, Gazebo's")):
+        print(f'{what:{WIDTH}}' + ''.join(f'{errors[n][i]:11.2%}' for n in SETTINGS))
+    for what, scene in SCENES.items():
+        print(f'{what:{WIDTH}}', end='')
+        for tuning in SETTINGS.values():
+            print(f'{scene(tuning):11.5f}', end='', flush=True)
+        print()
+    print(compare_grounds())
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,165 @@
+"""Makes PyBullet's bodies of links and joints; their text is that of bullet_description.py."""
+
+import os
+
+from .body import Body, Part
+from .bullet import pybullet
+from .bullet_description import (
+    RIDER_MASS,
+    MeshFile,
+    Tree,
+    contact_spring,
+    describe_tree,
+    friction,
+    rider_surfaces,
+    untouching_links,
+)
+from .inertia import principal_axes
+from .pose import Pose, Vector, compose, inverse
+from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from .tuning import Tuning
+
+ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
+_MASSLESS = Inertial(0.0)
+
+
+class BodyMaker:
+    """Makes bodies in one PyBullet world. They move as rigid bodies do, with no motor on."""
+
+    def __init__(
+        self, client: int, tuning: Tuning, mesh_file: MeshFile, surface_file: MeshFile
+    ) -> None:
+        """Work in the world of that PyBullet client; the rest is as for the Engine."""
+        self._client = client
+        self._tuning = tuning
+        self._mesh_file = mesh_file
+        self._surface_file = surface_file
+
+    def add_tree(self, body: Body, tree: Tree, model_pose: Pose, step_size: float) -> None:
+        """Put links that joints connect into the world, and note in `body` where they are.
+
+        Args:
+            model_pose: where the model's frame is.
+            step_size: of the simulation [s]; the contacts of soft surfaces depend on it.
+        """
+        inertials = [link.inertial or _MASSLESS for link in tree.links]
+        moments, axes = zip(*(principal_axes(inertial) for inertial in inertials), strict=True)
+        coms = [
+            Pose(inertial.pose.position, orientation)
+            for inertial, orientation in zip(inertials, axes, strict=True)
+        ]
+        mesh_file = self._surface_file if tree.stands else self._mesh_file
+        text = describe_tree(tree, coms, mesh_file)
+        number = self._load_urdf(text, tree, compose(model_pose, tree.links[0].pose))
+        body.bodies.append(number)
+        shapes = [collision.geometry for link in tree.links for collision in link.collisions]
+        meshes = [mesh_file(shape) for shape in shapes if isinstance(shape, Mesh)]
+        body.size += len(text) + sum(map(os.path.getsize, meshes))
+        body.roots.append(tree.links[0].name)
+        if tree.fixed_base:
+            body.bolted.add(tree.links[0].name)
+        index_of = self._indices(number)
+        # In a call of its own: together with an inertia PyBullet gives that inertia to the base.
+        pybullet.changeDynamics(
+            number,
+            -1,
+            linearDamping=tree.links[0].linear_damping,
+            angularDamping=tree.links[0].angular_damping,
+            maxJointVelocity=ANY_SPEED,
+            physicsClientId=self._client,
+        )
+        for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
+            part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
+            body.parts[link.name] = part
+            self._set_dynamics(part, index_of, i, link, moments[i], joint, step_size)
+            if joint is not None and joint.type != FIXED:
+                body.joints[joint.name] = (number, part.index)
+            if not link.gravity and not (tree.fixed_base and i == 0):
+                body.weightless.append((number, part.index, inertials[i].mass))
+
+    def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
+        """Let those links of a model pass through each other that do so in Gazebo."""
+        if len(body.bodies) == 1 and not any(link.self_collide for link in spec.links):
+            return  # one body without the self-collision flag never touches itself
+        for a, b in untouching_links(spec):
+            one, other = body.parts[a], body.parts[b]
+            pybullet.setCollisionFilterPair(
+                one.body, other.body, one.index, other.index, 0, self._client
+            )
+
+    def _load_urdf(self, text: str, tree: Tree, pose: Pose) -> int:
+        flags = pybullet.URDF_USE_INERTIA_FROM_FILE
+        if self._tuning.exact_cylinders:
+            flags |= pybullet.URDF_USE_IMPLICIT_CYLINDER
+        if sum(link.self_collide for link in tree.links) > 1:
+            # Quadruples the cost of a step, so only where asked for.
+            flags |= pybullet.URDF_USE_SELF_COLLISION
+        # A file that lives in memory only: no disk to fill, nothing left behind.
+        descriptor = os.memfd_create('model')
+        try:
+            os.write(descriptor, text.encode())
+            return pybullet.loadURDF(
+                f'/proc/self/fd/{descriptor}',
+                *pose,
+                useFixedBase=tree.fixed_base,
+                flags=flags,
+                physicsClientId=self._client,
+            )
+        finally:
+            os.close(descriptor)
+
+    def _indices(self, number: int) -> dict[str, int]:
+        """Return PyBullet's index of every link of a body; the root `l0` is the base, -1."""
+        indices = {'l0': -1}
+        for index in range(pybullet.getNumJoints(number, self._client)):
+            indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
+        return indices
+
+    def _set_dynamics(
+        self,
+        part: Part,
+        index_of: dict[str, int],
+        i: int,
+        link: LinkSpec,
+        inertia: Vector,
+        joint: JointSpec | None,
+        step_size: float,
+    ) -> None:
+        pybullet.changeDynamics(
+            part.body,
+            part.index,
+            localInertiaDiagonal=inertia,
+            jointDamping=joint.damping if joint else 0.0,
+            physicsClientId=self._client,
+        )
+        for k, collision in enumerate(rider_surfaces(link)):
+            index = part.index
+            if k > 0:
+                index = index_of[f'l{i}r{k}']
+                pybullet.changeDynamics(
+                    part.body,
+                    index,
+                    localInertiaDiagonal=(RIDER_MASS,) * 3,
+                    physicsClientId=self._client,
+                )
+            self._set_surface(part.body, index, collision.surface, step_size)
+
+    def _set_surface(self, number: int, index: int, surface: Surface, step_size: float) -> None:
+        pybullet.changeDynamics(
+            number,
+            index,
+            lateralFriction=friction(surface),
+            spinningFriction=0.0,
+            rollingFriction=0.0,
+            restitution=0.0,
+            physicsClientId=self._client,
+        )
+        spring = contact_spring(surface, step_size, self._tuning.push_out)
+        if spring is not None:
+            pybullet.changeDynamics(
+                number,
+                index,
+                contactStiffness=spring[0],
+                contactDamping=spring[1],
+                physicsClientId=self._client,
+            )

@@ -1,0 +1,33 @@
+"""A model that is lost to numbers of no world leaves nothing behind that harms the others."""
+
+import pytest
+from support import box_urdf, empty_world, urdf_spec
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.pose import Pose, Twist
+
+BOX = urdf_spec(box_urdf('1 1 1', 1.0))
+STANDING = Pose((5.0, 0.0, 0.5))
+
+
+@pytest.mark.parametrize('lose', [
+    lambda model: model.set_pose(Pose((1e308, 0.0, 0.5))),
+    lambda model: model.set_twist(Twist((1e308, 0.0, 0.0), (0.0, 0.0, 0.0))),
+])
+def test_a_lost_model_that_is_deleted_before_anyone_notices_harms_nobody(lose):
+    with empty_world() as world:
+        neighbour = world.spawn(BOX, 'neighbour', STANDING)
+        lost = world.spawn(BOX, 'lost', Pose((0.0, 0.0, 0.5)))
+        lose(lost)
+        world.run(3)
+        world.delete('lost')
+        world.run(500)
+        assert neighbour.state()[0].position == pytest.approx((5.0, 0.0, 0.5), abs=1e-3)
+
+
+@pytest.mark.parametrize('x', [1e9, -1e308, float('inf'), float('nan')])
+def test_a_model_does_not_appear_beyond_the_world(x):
+    with empty_world() as world:
+        with pytest.raises(ModelError, match='m away; less than 1e'):
+            world.spawn(BOX, 'far', Pose((x, 0.0, 0.5)))
+        assert 'far' not in world.models

@@ -1,0 +1,266 @@
+"""Robots and things in general, each with what mechanics says it must do: the error is returned.
+
+The engine's settings are chosen by these (benchmark/physics.py), and tests hold what was reached.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from rosbots_description.sim.model import Model
+from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy, yaw_of
+from rosbots_description.sim.spec import ModelSpec
+from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.world import World
+
+from . import empty_world, urdf_spec
+
+GRAVITY = 9.8  # [m/s^2]
+SPEED = 0.5  # [m/s] commanded
+RADIUS = 0.1  # of the skid steer's wheels [m]
+DRIVE_PLUGIN = (
+    '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+    '<leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>'
+    '<wheelSeparation>{separation}</wheelSeparation><wheelDiameter>{diameter}</wheelDiameter>'
+    '<wheelTorque>{torque}</wheelTorque><wheelAcceleration>1</wheelAcceleration>'
+    '</plugin></gazebo>'
+)
+
+Scene = Callable[[Tuning | None], float]
+
+
+def link(name: str, shape: str, mass: float, inertia: tuple[float, float, float], at: str = '0 0 0',
+         rpy: str = '0 0 0') -> str:
+    """Return a link with one shape and its centre of mass at `at` [m]."""
+    ixx, iyy, izz = inertia
+    origin = f'<origin xyz="{at}" rpy="{rpy}"/>'
+    return (
+        f'<link name="{name}"><inertial>{origin}<mass value="{mass}"/><inertia ixx="{ixx}" '
+        f'iyy="{iyy}" izz="{izz}" ixy="0" ixz="0" iyz="0"/></inertial>'
+        f'<collision>{origin}<geometry>{shape}</geometry></collision></link>'
+    )
+
+
+def box(name: str, size: tuple[float, float, float], mass: float, at: str = '0 0 0') -> str:
+    """Return a link that is a solid box."""
+    x, y, z = size
+    inertia = tuple(mass / 12.0 * s for s in (y * y + z * z, x * x + z * z, x * x + y * y))
+    return link(name, f'<box size="{x} {y} {z}"/>', mass, inertia, at)
+
+
+def ball(name: str, radius: float, mass: float, at: str = '0 0 0') -> str:
+    """Return a link that is a solid ball."""
+    return link(name, f'<sphere radius="{radius}"/>', mass, (0.4 * mass * radius**2,) * 3, at)
+
+
+def wheel(name: str, joint: str, radius: float, width: float, mass: float, place: str) -> str:
+    """Return a wheel on a joint at `place` [m] of the link `base`, positive forward."""
+    across = mass * (3.0 * radius**2 + width**2) / 12.0
+    shape = f'<cylinder radius="{radius}" length="{width}"/>'
+    about = f'{-math.pi / 2} 0 0'
+    return (
+        link(name, shape, mass, (across, across, mass * radius**2 / 2.0))
+        + f'<joint name="{joint}" type="continuous"><parent link="base"/><child link="{name}"/>'
+        f'<origin xyz="{place}" rpy="{about}"/><axis xyz="0 0 1"/></joint>'
+    )
+
+
+def surface(link_name: str, mu: float) -> str:
+    """Return the tags that give a link its friction."""
+    return f'<gazebo reference="{link_name}"><mu1>{mu}</mu1><mu2>{mu}</mu2></gazebo>'
+
+
+def castered(mass: float = 5.0, size: float = 0.4, casters: int = 2, mu: float = 1.0) -> ModelSpec:
+    """Return a symmetric robot on two wheels and casters in front (2) and behind (1 and 2).
+
+    Args:
+        size: length of its body [m]; everything scales with it.
+    """
+    radius = size / 4.0
+    caster = radius / 3.0
+    height = radius  # of the body's middle over the ground
+    body = box('base', (size, 0.7 * size, radius), 0.8 * mass)
+    for k, x in enumerate((-0.4 * size, 0.4 * size)[:casters]):
+        # A ball that is part of the body: it drags, as the article's caster does.
+        body += ball(f'caster{k}', caster, 0.02 * mass)
+        body += (
+            f'<joint name="caster{k}_joint" type="fixed"><parent link="base"/>'
+            f'<child link="caster{k}"/><origin xyz="{x} 0 {caster - height}"/></joint>'
+        )
+        body += surface(f'caster{k}', mu)
+    for side, y in (('left', 0.4 * size), ('right', -0.4 * size)):
+        body += wheel(f'{side}_wheel', f'{side}_joint', radius, 0.1 * size, 0.08 * mass, f'0 {y} 0')
+    body += DRIVE_PLUGIN.format(
+        separation=0.8 * size, diameter=2.0 * radius, torque=mass * GRAVITY * radius
+    )
+    return urdf_spec(body)
+
+
+def forward_speed(model: Model) -> float:
+    """Return the velocity along the model's x axis [m/s]."""
+    pose, ((vx, vy, _), _) = model.state()
+    yaw = yaw_of(pose.orientation)
+    return math.cos(yaw) * vx + math.sin(yaw) * vy
+
+
+def drive(world: World, spec: ModelSpec, seconds: int = 4) -> Model:
+    """Return the model after it has driven straight ahead for so long."""
+    model = world.spawn(spec, 'robot', Pose((0.0, 0.0, spec_height(spec))))
+    world.run(1000)
+    model.plugins[0].command(SPEED, 0.0)
+    world.run(1000 * seconds)
+    return model
+
+
+def spec_height(spec: ModelSpec) -> float:
+    """Return how high the base of a robot of `castered` stands [m]."""
+    wheels = [one for one in spec.links if one.name == 'left_wheel']
+    return wheels[0].collisions[0].geometry.radius
+
+
+def speed_error(spec: ModelSpec) -> Scene:
+    """Return a scene: the share by which a robot's speed differs from the command."""
+
+    def scene(tuning: Tuning | None = None) -> float:
+        with empty_world(tuning) as world:
+            return abs(forward_speed(drive(world, spec)) / SPEED - 1.0)
+
+    return scene
+
+
+def veer(tuning: Tuning | None = None) -> float:
+    """Return by how much a symmetric robot turns while it drives straight for 20 s [rad]."""
+    with empty_world(tuning) as world:
+        return abs(yaw_of(drive(world, castered(casters=1), 20).pose.orientation))
+
+
+def skid_steer(mass: float = 14.0) -> ModelSpec:
+    """Return a robot of that mass [kg] on four driven wheels, without a plugin."""
+    body = box('base', (0.5, 0.3, 0.1), 0.7 * mass)
+    for side, y in (('left', 0.2), ('right', -0.2)):
+        for end, x in (('front', 0.15), ('rear', -0.15)):
+            name = f'{side}_{end}'
+            body += wheel(name, f'{name}_joint', RADIUS, 0.05, 0.075 * mass, f'{x} {y} 0')
+    return urdf_spec(body)
+
+
+def skid(world: World, left: float, right: float, seconds: float) -> Model:
+    """Return the skid steer after its wheels' rims ran at these speeds [m/s] for so long."""
+    model = world.spawn(skid_steer(), 'robot', Pose((0.0, 0.0, RADIUS)))
+    for name, joint in model.joints.items():
+        joint.set_motor((left if name.startswith('left') else right) / RADIUS, 20.0)
+    world.run(round(1000 * seconds))
+    return model
+
+
+def skid_straight(tuning: Tuning | None = None) -> float:
+    """Return the share by which four driven wheels, turning alike, miss their speed."""
+    with empty_world(tuning) as world:
+        return abs(forward_speed(skid(world, SPEED, SPEED, 4.0)) / SPEED - 1.0)
+
+
+def skid_turn(tuning: Tuning | None = None) -> float:
+    """Return the share of the rate without slip at which a skid steer turns on the spot."""
+    with empty_world(tuning) as world:
+        model = skid(world, -SPEED, SPEED, 1.0)
+        turned = 0.0
+        for _ in range(300):
+            world.run(10)
+            turned += model.twist.angular[2] * 0.01
+        return turned / 3.0 / (2.0 * SPEED / 0.4)
+
+
+def step_climbed(tuning: Tuning | None = None) -> float:
+    """Return how far short of 2 m the skid steer is after 5 s, a step of 3 cm before it [m]."""
+    with empty_world(tuning) as world:
+        ledge = replace(urdf_spec(box('ledge', (4.0, 2.0, 0.03), 1.0)), static=True)
+        world.spawn(ledge, 'ledge', Pose((2.5, 0.0, 0.015)))
+        return max(0.0, 2.0 - skid(world, SPEED, SPEED, 5.0).pose.position[0])
+
+
+def slope(world: World, degrees: float = 10.0) -> Pose:
+    """Tilt a large board about y; return the frame in its upper face, x downhill."""
+    board = replace(urdf_spec(box('board', (40.0, 10.0, 1.0), 1.0)), static=True)
+    tilt = from_rpy(0.0, math.radians(degrees), 0.0)
+    s, c = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    world.delete('ground_plane')
+    world.spawn(board, 'board', Pose((-0.5 * s, 0.0, -0.5 * c), tilt))
+    return Pose((0.0, 0.0, 0.0), tilt)
+
+
+def on_slope(frame: Pose, height: float) -> Pose:
+    """Return the pose of something whose middle stands `height` [m] over the board."""
+    return compose(frame, Pose((0.0, 0.0, height)))
+
+
+def parked_on_slope(tuning: Tuning | None = None) -> float:
+    """Return how far the robot creeps in 10 s on a slope of 10 degrees, wheels held [m]."""
+    with empty_world(tuning) as world:
+        model = world.spawn(castered(), 'robot', on_slope(slope(world), 0.1))
+        world.run(1000)
+        before = model.pose.position
+        world.run(10_000)
+        return math.dist(before, model.pose.position)
+
+
+def sliding_on_slope(tuning: Tuning | None = None) -> float:
+    """Return the share by which a box of mu 0.1 slides down 10 degrees unlike g (sin - mu cos)."""
+    with empty_world(tuning) as world:
+        spec = urdf_spec(box('box', (0.2, 0.2, 0.1), 2.0) + surface('box', 0.1))
+        model = world.spawn(spec, 'box', on_slope(slope(world), 0.05))
+        world.run(200)
+        before = model.twist.linear
+        world.run(1000)
+        gained = math.dist(before, model.twist.linear)
+        tilt = math.radians(10.0)
+        return abs(gained / (GRAVITY * (math.sin(tilt) - 0.1 * math.cos(tilt))) - 1.0)
+
+
+def stack(tuning: Tuning | None = None) -> float:
+    """Return how far the topmost of five stacked boxes is from its place after 10 s [m]."""
+    with empty_world(tuning) as world:
+        spec = urdf_spec(box('box', (0.2, 0.2, 0.2), 1.0))
+        for k in range(5):
+            model = world.spawn(spec, f'box{k}', Pose((0.0, 0.0, 0.1 + 0.2 * k)))
+        world.run(10_000)
+        return math.dist(model.pose.position, (0.0, 0.0, 0.9))
+
+
+def half_sunk(tuning: Tuning | None = None) -> float:
+    """Return how far above its rest a box of 0.2 m jumps that is spawned half sunk [m]."""
+    with empty_world(tuning) as world:
+        model = world.spawn(urdf_spec(box('box', (0.2, 0.2, 0.2), 1.0)), 'box', Pose())
+        highest = 0.0
+        for _ in range(300):
+            world.run(10)
+            highest = max(highest, model.pose.position[2])
+        return highest - 0.1
+
+
+def rolling_ball(tuning: Tuning | None = None) -> float:
+    """Return the share by which a ball that was sliding at 1 m/s rolls unlike 5/7 m/s."""
+    with empty_world(tuning) as world:
+        model = world.spawn(urdf_spec(ball('ball', 0.1, 1.0)), 'ball', Pose((0.0, 0.0, 0.1)))
+        world.run(100)
+        model.set_twist(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        world.run(3000)
+        return abs(math.hypot(*model.twist.linear[:2]) * 7.0 / 5.0 - 1.0)
+
+
+# What each tells is an error that is best at 0, but for `skid steer turns`.
+SCENES: dict[str, Scene] = {
+    'one dragging caster': speed_error(castered(casters=1)),
+    'two casters, mu 1': speed_error(castered(mu=1.0)),
+    'two casters, mu 0.1': speed_error(castered(mu=0.1)),
+    '50 kg': speed_error(castered(50.0, 1.0, casters=1)),
+    '0.2 kg': speed_error(castered(0.2, 0.12, casters=1)),
+    'veer in 20 s [rad]': veer,
+    'skid steer straight': skid_straight,
+    'skid steer turns': skid_turn,
+    'step of 3 cm [m]': step_climbed,
+    'parked on 10 deg [m]': parked_on_slope,
+    'slides on 10 deg': sliding_on_slope,
+    'five boxes [m]': stack,
+    'half sunk box [m]': half_sunk,
+    'ball rolls': rolling_ball,
+}
