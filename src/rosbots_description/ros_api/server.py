@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from ..sim.meshes import MeshStore
 from ..sim.model_search import FindModel
+from ..sim.trial import Trials
 from ..sim.uris import FindPackage
 from ..sim.world import World
 from .loop import Loop
@@ -22,8 +23,10 @@ class Server:
     registrar: Registrar
     find_package: FindPackage
     find_model: FindModel
+    trials: Trials = field(default_factory=Trials)  # of models that ask to come in
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)
+    parameters: list[Callable[[], None]] = field(default_factory=list)  # write those that are ours
     stepping: threading.Lock = field(default_factory=threading.Lock)  # one caller of step at a time
 
     @property

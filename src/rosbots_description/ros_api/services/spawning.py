@@ -12,6 +12,7 @@ from ...sim.markup import root_tag
 from ...sim.pose import Pose, compose
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.spec import ModelSpec
+from ...sim.trial import EngineFiles
 from ...sim.urdf import load_urdf
 from ...sim.uris import UnknownPackage
 from ...sim.world_spec import LightSpec
@@ -93,16 +94,17 @@ def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, P
 def _arrival(
     server: Server, request: SpawnModelRequest, load: Callable[[], tuple[ModelSpec, Pose]]
 ) -> _Arrival | SpawnModelResponse:
-    """Parse, validate and read meshes, while the simulation goes on."""
+    """Parse, validate, read meshes and try the engine on it, while the simulation goes on."""
     name, frame = request.model_name, request.reference_frame
     if not name:
         raise ModelError('model_name is empty; give the model a name')
     pose = _initial_pose(request)
-    refusal = server.loop.call(lambda: _refusal(server, name, frame))
+    refusal, physics = server.loop.call(
+        lambda: (_refusal(server, name, frame), server.world.physics))
     if refusal is not None:
         return refusal
     spec, origin = load()
-    _warm_meshes(server, spec)
+    server.trials.require(spec, physics, _mesh_files(server, spec))
     return _Arrival(name, spec, compose(pose, origin), frame)
 
 
@@ -157,8 +159,9 @@ def _frame_refusal(server: Server, frame: str) -> SpawnModelResponse | None:
     return None
 
 
-def _warm_meshes(server: Server, spec: ModelSpec) -> None:
+def _mesh_files(server: Server, spec: ModelSpec) -> EngineFiles:
     """Convert the meshes that will touch, so that the world finds them ready."""
-    for mesh, exact in mesh_needs(spec):
-        convert = server.meshes.collision_surface if exact else server.meshes.collision_hull
-        convert(mesh.path, mesh.scale)
+    convert = {True: server.meshes.collision_surface, False: server.meshes.collision_hull}
+    return {
+        (mesh, exact): convert[exact](mesh.path, mesh.scale) for mesh, exact in mesh_needs(spec)
+    }

@@ -1,0 +1,234 @@
+"""Trials of models in child processes: who passes, who does not, and that nothing is left."""
+
+import contextlib
+import errno
+import os
+import signal
+import socket
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from support import box_urdf, robot_spec, urdf_spec
+
+from rosbots_description.sim import trial
+from rosbots_description.sim.engine import Engine
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.meshes import MeshStore
+from rosbots_description.sim.physics import PhysicsSettings
+from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.spec import (
+    REVOLUTE,
+    Box,
+    Collision,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    ModelSpec,
+    Surface,
+)
+from rosbots_description.sim.trial import Trials
+from rosbots_description.sim.worlds import GROUND_PLANE
+
+CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
+SHORT = 0.3  # [s, wall] for a model that is never done with
+
+
+def engine_that(does):
+    """Return a class of engines that does something when a model other than the ground comes."""
+
+    class Odd(Engine):
+        def add(self, spec, pose):
+            if spec is not GROUND_PLANE:
+                does()
+            return super().add(spec, pose)
+
+    return Odd
+
+
+def require(trials, spec=CRATE, files=None):
+    trials.require(spec, PhysicsSettings(), files or {})
+
+
+def fault_of(does):
+    with pytest.raises(ModelError) as caught:
+        require(Trials(engine_that(does)))
+    return str(caught.value)
+
+
+@pytest.fixture(name='forks')
+def fixture_forks(monkeypatch):
+    """A list that grows with each process made."""
+    made, fork = [], os.fork
+
+    def counted():
+        child = fork()
+        if child:
+            made.append(child)
+        return child
+
+    monkeypatch.setattr(trial.os, 'fork', counted)
+    return made
+
+
+@pytest.fixture(autouse=True)
+def fixture_nothing_is_left():
+    before = os.listdir('/proc/self/fd')
+    yield
+    assert os.listdir('/proc/self/fd') == before
+    with contextlib.suppress(ChildProcessError):  # there is none at all
+        assert os.waitpid(-1, os.WNOHANG) == (0, 0)
+
+
+def test_a_content_is_tried_once_whatever_it_is_called_and_looks_like(forks):
+    trials = Trials()
+    require(trials)
+    assert len(forks) == 1
+    (link,) = CRATE.links
+    require(trials, replace(CRATE, name='other', links=(replace(link, visuals=()),)))
+    assert len(forks) == 1
+    heavier = replace(link, inertial=replace(link.inertial, mass=3.0))
+    require(trials, replace(CRATE, links=(heavier,)))
+    assert len(forks) == 2
+
+
+def test_a_mesh_is_known_by_what_its_file_holds(forks, tmp_path):
+    trials, meshes = Trials(), MeshStore()
+    source = tmp_path / 'part.stl'
+    try:
+        for height in (1.0, 1.0, 2.0):
+            source.write_text(tetrahedron(height))
+            spec = urdf_spec(box_urdf('1 1 1', 2.0).replace(
+                '<box size="1 1 1"/>', f'<mesh filename="file://{source}"/>'))
+            mesh = spec.links[0].collisions[0].geometry
+            file = meshes.collision_hull(mesh.path, mesh.scale)
+            require(trials, spec, {(mesh, False): file})
+    finally:
+        meshes.close()
+    assert len(forks) == 2
+
+
+def tetrahedron(height):
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, height)]
+    faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+    loops = (''.join(f'vertex {x} {y} {z}\n' for x, y, z in map(corners.__getitem__, face))
+             for face in faces)
+    return 'solid t\n' + ''.join(
+        f'facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n' for loop in loops
+    ) + 'endsolid t\n'
+
+
+def test_the_contents_that_passed_first_are_forgotten_first(forks, monkeypatch):
+    monkeypatch.setattr(trial, 'REMEMBERED', 1)
+    trials = Trials()
+    static = replace(CRATE, static=True)
+    for spec, tried in ((CRATE, 1), (static, 2), (static, 2), (CRATE, 3)):
+        require(trials, spec)
+        assert len(forks) == tried
+
+
+def test_the_robot_of_the_article_passes():
+    spec, meshes = robot_spec(), MeshStore()
+    try:
+        files = {(collision.geometry, False): meshes.collision_hull(collision.geometry.path)
+                 for link in spec.links for collision in link.collisions
+                 if hasattr(collision.geometry, 'path')}
+        require(Trials(), spec, files)
+    finally:
+        meshes.close()
+
+
+@pytest.mark.parametrize('number', [signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT, signal.SIGFPE])
+def test_a_model_that_crashes_the_engine_is_refused(number):
+    assert fault_of(lambda: os.kill(os.getpid(), number)) == (
+        "model 'crate' is not brought in: tried in a process of its own, it crashed the physics "
+        f'engine ({number.name}); leave out parts of it to find the one that does it, meshes first')
+
+
+def test_a_model_that_never_ends_is_refused(monkeypatch):
+    monkeypatch.setattr(trial, 'PATIENCE', SHORT)
+
+    def hang():
+        while True:
+            pass
+
+    assert f'was not done with it after {SHORT:g} s' in fault_of(hang)
+
+
+def test_a_model_that_ends_the_process_is_refused():
+    assert 'it ended the process (exit code 3)' in fault_of(lambda: os._exit(3))
+
+
+def test_a_model_that_the_engine_cannot_be_asked_about_is_refused():
+    # Each surface of its own becomes a link to PyBullet, which loads more than it can tell about.
+    shapes = tuple(Collision(f'c{i}', Box((0.1, 0.1, 0.1)), surface=Surface(mu=i / 200))
+                   for i in range(200))
+    link = LinkSpec('link', inertial=Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0), collisions=shapes)
+    with pytest.raises(ModelError, match='the physics engine failed: error.*BasePosition'):
+        require(Trials(), ModelSpec('rough', (link,)))
+
+
+def test_a_model_that_is_lost_at_once_is_refused():
+    heavy = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
+    links = (LinkSpec('near', inertial=heavy), LinkSpec('far', Pose((1e150, 0.0, 0.0)), heavy))
+    spec = ModelSpec('wide', links, (JointSpec('joint', REVOLUTE, 'near', 'far'),))
+    with pytest.raises(ModelError, match='its pose or velocity was no finite number'):
+        require(Trials(), spec)
+
+
+def test_a_model_that_failed_is_tried_again(forks):
+    trials = Trials(engine_that(lambda: os.kill(os.getpid(), signal.SIGSEGV)))
+    for tried in (1, 2):
+        with pytest.raises(ModelError):
+            require(trials)
+        assert len(forks) == tried
+
+
+def test_nothing_of_a_trial_is_seen(capfd, caplog):
+    def chatter():
+        os.write(1, b'b3Warning: no inertial')
+        os.write(2, b'Fatal Python error')
+        trial.logger.error('lost')
+
+    require(Trials(engine_that(chatter)))
+    assert capfd.readouterr() == ('', '')
+    assert caplog.text == ''
+
+
+def test_ctrl_c_reaches_the_parent_only():
+    def interrupt():
+        for number in (signal.SIGINT, signal.SIGTERM):
+            os.kill(os.getpid(), number)
+
+    require(Trials(engine_that(interrupt)))
+
+
+def test_connections_are_not_held_open_by_a_trial():
+    with contextlib.ExitStack() as stack:
+        ends = [stack.enter_context(end) for end in socket.socketpair()]
+
+        def look():
+            for end in ends:
+                with pytest.raises(OSError, match='Bad file descriptor'):
+                    os.fstat(end.fileno())
+
+        require(Trials(engine_that(look)))
+
+
+def test_where_no_process_can_be_made_a_model_passes_with_a_warning(monkeypatch, caplog):
+    def full():
+        raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+
+    monkeypatch.setattr(trial.os, 'fork', full)
+    require(Trials())
+    assert "model 'crate' comes in untried: Resource temporarily unavailable" in caplog.text
+
+
+def test_a_child_that_cannot_be_watched_does_not_stay(monkeypatch, forks):
+    def missing(_pid):
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
+
+    monkeypatch.setattr(trial.os, 'pidfd_open', missing)
+    require(Trials())
+    (child,) = forks
+    assert not Path(f'/proc/{child}').exists()

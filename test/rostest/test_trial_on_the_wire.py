@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""A model that crashes the engine is refused in a sentence, and nobody else notices."""
+
+import sys
+
+import rospy
+import rostest
+from crashing_server import DOOM
+from server_process import OwnServerTest
+from simulator import BOX, pose
+
+TIMES = 10
+SPARE = 5  # files and threads for what nodes and master ask one another
+SENTENCE = ("SpawnModel: Failure - model 'bad' is not brought in: tried in a process of its own, "
+            'it crashed the physics engine (SIGSEGV)')
+# More surfaces on one body than PyBullet can tell about; what it loads it cannot be asked for.
+ROUGH = BOX.replace('</robot>', ''.join(
+    f'''<link name="l{i}"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+        <joint name="j{i}" type="fixed"><parent link="body"/><child link="l{i}"/></joint>
+        <gazebo reference="l{i}"><mu1>{i / 200}</mu1></gazebo>''' for i in range(200))
+    + '</robot>')
+
+
+class TrialTest(OwnServerTest):
+
+    program = {'package': 'rosbots_description', 'program': 'crashing_server.py'}
+
+    def test_a_crash_takes_nobodys_work(self):
+        self.drive_neighbour()
+        doomed = BOX.replace('"body"', f'"{DOOM}"')
+        self.assertIn(SENTENCE, self.spawn('bad', doomed).status_message)
+        files, threads = self.server.open_files(), self.server.threads()
+        for _ in range(TIMES):
+            response = self.spawn('bad', doomed, pose(x=5.0))
+            self.assertFalse(response.success)
+            self.assertIn(SENTENCE, response.status_message)
+        self.assertEqual(self.server.children(), [])
+        self.assert_no_more_than(files + SPARE, threads + SPARE)
+        self.assert_neighbour_drives()
+        self.assertTrue(self.spawn('good', BOX, pose(x=5.0)).success)
+        self.assertEqual(self.server.end()[0], 0)
+
+    def test_a_model_the_engine_cannot_be_asked_about_is_refused(self):
+        self.drive_neighbour()
+        self.assertFalse(self.spawn('rough', ROUGH, pose(x=5.0)).success)
+        self.assert_neighbour_drives()
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_trial', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'trial', TrialTest, sys.argv)
