@@ -1,5 +1,7 @@
-"""Connections that do not speak TCPROS are told apart, and nothing is taken from the others."""
+"""Connections that do not speak TCPROS are told apart and keep nobody else waiting."""
 
+import errno
+import os
 import socket
 import struct
 import threading
@@ -7,7 +9,11 @@ import time
 
 import pytest
 
-from rosbots_description.ros_api.handshake import LONGEST_HEADER, speaks_tcpros
+from rosbots_description.ros_api.handshake import (
+    LONGEST_HEADER,
+    accept_connections,
+    speaks_tcpros,
+)
 
 PATIENCE = 0.05  # [s]
 
@@ -50,6 +56,14 @@ def test_a_header_that_does_not_come_is_not_waited_for(ends):
     assert time.monotonic() - begin >= PATIENCE
 
 
+def test_the_rest_of_a_header_is_not_waited_for_from_one_who_has_gone(ends):
+    ends[1].sendall(struct.pack('<I', 7) + b'a=')
+    ends[1].close()
+    begin = time.monotonic()
+    assert not speaks_tcpros(ends[0], 1000.0)
+    assert time.monotonic() - begin < 10.0
+
+
 def test_a_header_in_pieces_is_recognised_when_it_is_whole(ends):
     ours, theirs = ends
     header = struct.pack('<I', 7) + b'abc=def'
@@ -70,3 +84,53 @@ def test_a_header_has_a_greatest_length(ends, length, taken):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', length) + b'x' * length)
     assert speaks_tcpros(ours, 100 * PATIENCE) == taken
+
+
+class Listener:
+    """A server of rospy's whose listening socket gives what it is told to, then shuts down."""
+
+    def __init__(self, *outcomes):
+        self.server_sock, self.is_shutdown = self, False
+        self.received = []
+        self._outcomes = list(outcomes)
+
+    def listen(self, _backlog):
+        pass
+
+    def accept(self):
+        outcome = self._outcomes.pop(0)
+        self.is_shutdown = not self._outcomes
+        if isinstance(outcome, OSError):
+            raise outcome
+        return outcome, ('localhost', 1)
+
+    def inbound_handler(self, connection, _address):
+        self.received.append(connection)
+
+
+def received(listener, count):
+    end = time.monotonic() + 10.0
+    while len(listener.received) < count and time.monotonic() < end:
+        time.sleep(0.001)
+    return listener.received
+
+
+def test_a_silent_connection_keeps_nobody_waiting(ends):
+    silent, _ = ends
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        theirs.sendall(struct.pack('<I', 3) + b'a=b')
+        listener = Listener(silent, ours)
+        accept_connections(listener)
+        assert received(listener, 1) == [ours]
+
+
+def test_after_a_shortage_of_files_connections_are_accepted_again(ends, caplog):
+    ours, theirs = ends
+    theirs.sendall(struct.pack('<I', 3) + b'a=b')
+    shortage = OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+    listener = Listener(shortage, shortage, ours)
+    accept_connections(listener)
+    assert received(listener, 1) == [ours]
+    (record,) = caplog.records
+    assert 'no connection can be accepted for now: [Errno 24] Too many open files' in record.message

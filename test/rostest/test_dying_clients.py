@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""Clients that die, fall silent or come all at once: the server and everyone else go on."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import rospy
+import rostest
+from gazebo_msgs.msg import LinkStates, ModelStates
+from gazebo_msgs.srv import (
+    GetWorldProperties,
+    GetWorldPropertiesRequest,
+    SpawnModel,
+    SpawnModelRequest,
+)
+from nav_msgs.msg import Odometry
+from raw_client import (
+    answer,
+    connection,
+    deaf_subscriber,
+    request_bytes,
+    service_connection,
+    unsent_bytes,
+    vanish,
+)
+from rosgraph_msgs.msg import Clock
+from server_process import OwnServerTest
+from simulator import BOX, DEADLINE, pose, wait_until
+
+MANY = 20
+SPARE = 5  # files and threads for what nodes and master ask one another, and keep open for a while
+CROWD = 200
+FULL = 2048  # [bytes] that wait to be sent: the reader's buffer is full
+CTRL_C_LIMIT = 2.0  # [s] promised
+TOPICS = {'/clock': Clock, '/gazebo/model_states': ModelStates, '/gazebo/link_states': LinkStates,
+          '/odom': Odometry}
+
+
+def spawn_request(name, x):
+    return request_bytes(SpawnModelRequest(name, BOX, '/', pose(x=x), ''))
+
+
+class DyingClientsTest(OwnServerTest):
+
+    def setUp(self):
+        super().setUp()
+        self.drive_neighbour()
+        rospy.wait_for_service('/gazebo/set_parameters', DEADLINE)  # what is begun last
+        self.files, self.threads = self.server.open_files(), self.server.threads()
+
+    def _assert_all_is_well(self):
+        self.assert_no_more_than(self.files + SPARE, self.threads + SPARE)
+        self.assert_neighbour_drives()
+
+    @staticmethod
+    def _deaf_subscribers():
+        """Return subscribers that do not read, and to whom nothing more can be sent."""
+        deaf = [deaf_subscriber(topic, kind) for topic, kind in TOPICS.items()]
+        wait_until(lambda: all(unsent_bytes(client) > FULL for client in deaf), 'full buffers')
+        return deaf
+
+    def test_clients_killed_in_the_middle_of_a_call(self):
+        for i in range(MANY):
+            request = spawn_request(f'box_{i}', 5.0 + 2.0 * i)
+            vanish(connection())
+            vanish(service_connection('spawn_urdf_model', SpawnModel))
+            for length in (2, len(request) // 2, len(request)):
+                client = service_connection('spawn_urdf_model', SpawnModel)
+                client.sendall(request[:length])
+                vanish(client)
+        # Who has asked completely gets what was asked for, as in Gazebo.
+        wanted = {f'box_{i}' for i in range(MANY)}
+        wait_until(lambda: wanted <= set(self.world().model_names), 'all boxes')
+        self._assert_all_is_well()
+
+    def test_processes_killed_in_the_middle_of_a_spawn(self):
+        for i in range(5):
+            with subprocess.Popen(
+                ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-param', 'robot_description',
+                 '-model', f'robot_{i}', '-robot_namespace', f'robot_{i}', '-y', str(3 * i + 3)],
+                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            ) as client:
+                while 'Calling service' not in client.stdout.readline():
+                    self.assertIsNone(client.poll())
+                time.sleep(0.01 * i)  # each one a little further on
+                client.kill()
+        self.assert_neighbour_drives()
+        self.assertTrue(self.spawn('another', BOX, pose(x=-8.0)).success)
+
+    def test_connections_that_stay_half_open(self):
+        request = spawn_request('never', 5.0)
+        clients = [connection() for _ in range(MANY)]
+        clients += [service_connection('spawn_urdf_model', SpawnModel) for _ in range(2 * MANY)]
+        for client in clients[:MANY]:
+            client.sendall(b'\x10')  # a quarter of a header's length
+        for client in clients[-MANY:]:
+            client.sendall(request[:-1])
+        odometry = self.collect('/odom', Odometry)
+        wait_until(lambda: len(odometry) > 50, 'half a second of driving')
+        self.assert_neighbour_drives()
+        self._connections.pop().unregister()
+        for client in clients:
+            client.close()
+        self._assert_all_is_well()
+        self.assertNotIn('never', self.world().model_names)
+
+    def test_subscribers_that_do_not_read(self):
+        deaf = self._deaf_subscribers()
+        odometry = self.collect('/odom', Odometry)
+        wait_until(lambda: len(odometry) > 50, 'half a second of driving')
+        self.assert_neighbour_drives()
+        self.assertTrue(self.delete('neighbour').success)
+        self.drive_neighbour()
+        for _ in range(3):
+            for client in deaf:
+                vanish(client)
+            deaf = self._deaf_subscribers()
+        for client in deaf:
+            client.close()
+        self._assert_all_is_well()
+
+    def test_ctrl_c_ends_a_server_whose_subscribers_do_not_read(self):
+        deaf = self._deaf_subscribers()
+        begin = time.monotonic()
+        self.assertEqual(self.server.end()[0], 0)
+        self.assertLess(time.monotonic() - begin, CTRL_C_LIMIT)
+        for client in deaf:
+            client.close()
+
+    def test_a_stopped_process(self):
+        with subprocess.Popen(
+            ['rostopic', 'echo', '/gazebo/link_states'], stdout=subprocess.PIPE, text=True,
+        ) as client:
+            while 'name' not in client.stdout.readline():
+                self.assertIsNone(client.poll())
+            os.kill(client.pid, signal.SIGSTOP)
+            self.assert_neighbour_drives()
+            client.kill()
+        self._assert_all_is_well()
+
+    def test_a_crowd_that_comes_at_once(self):
+        def ask(_):
+            client = service_connection('get_world_properties', GetWorldProperties)
+            client.sendall(request_bytes(GetWorldPropertiesRequest()))
+            response = answer(client, GetWorldProperties)
+            client.close()
+            return response.success
+
+        with ThreadPoolExecutor(CROWD) as pool:
+            answers = list(pool.map(ask, range(CROWD), timeout=6 * DEADLINE))
+        self.assertEqual(answers, [True] * CROWD)
+        self._assert_all_is_well()
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_dying_clients', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'dying_clients', DyingClientsTest, sys.argv)
