@@ -62,6 +62,19 @@ def test_bad_parameters_leave_the_camera_where_it_was(parameters, caplog):
     assert caplog.text.count("eye is 'here'") == 1
 
 
+def test_without_a_master_the_camera_stays_where_it_was(monkeypatch):
+    def refused(*_):
+        raise ConnectionRefusedError
+
+    monkeypatch.setattr('rospy.get_param', refused)
+    camera, registrar = Camera(), FakeRegistrar()
+    camera.read_soon(registrar)
+    registrar.jobs.pop()()
+    assert camera.sight == (EYE, TARGET)
+    camera.read_soon(registrar)
+    assert len(registrar.jobs) == 1
+
+
 def test_the_registrar_reads_and_is_asked_once_at_a_time(parameters):
     parameters['~view/target'] = [0, 0, 9]
     camera, registrar = Camera(), FakeRegistrar()

@@ -65,6 +65,7 @@ def advertise_reconfigure(server: Server) -> None:
     """Offer the settings; needs the loop to run, and takes some calls to the ROS master."""
     reconfigure = PhysicsReconfigure(server)
     server.physics_listeners.append(lambda: server.registrar.post(reconfigure.follow))
+    server.parameters.append(reconfigure.write)
     logger.info('Physics dynamic reconfigure ready.')
 
 
@@ -83,6 +84,11 @@ class PhysicsReconfigure(ReconfigureServer):
                 self.config = current
                 self._copy_to_parameter_server()
                 self.update_topic.publish(encode_config(current))
+
+    def write(self) -> None:
+        """Write the settings as parameters."""
+        with self.mutex:
+            self._copy_to_parameter_server()
 
     def _copy_from_parameter_server(self) -> None:
         """Leave presets alone: as in Gazebo they are replaced by the settings that count."""

@@ -69,6 +69,8 @@ class Camera:
         try:
             values = [rospy.get_param('~view/eye', EYE), rospy.get_param('~view/target', TARGET)]
             self.sight = line_of_sight(*values)
+        except OSError:
+            pass  # there is no master now, which master_watch tells
         except RequestError as error:
             if str(error) != self._complaint:
                 self._complaint = str(error)

@@ -1,0 +1,76 @@
+"""Brings the simulator back into the graph of a ROS master that was started anew.
+
+A ROS node registers once; when its master dies, the next one knows nothing of it. Gazebo has to be
+started again then. Here the simulation goes on meanwhile, and who is connected stays so.
+"""
+
+import logging
+import threading
+from http.client import HTTPException
+from xmlrpc.client import Error as XmlRpcError
+
+import rosgraph
+import rospy
+from rospy.impl.registration import (
+    Registration,
+    get_registration_listeners,
+    get_service_manager,
+    get_topic_manager,
+)
+
+from .server import Server
+
+logger = logging.getLogger(__name__)
+
+PERIOD = 1.0  # time between two looks for the master [s, wall]
+PATIENCE = 30.0  # how long a registration may take before it is begun again [s, wall]
+
+
+def watch_master(server: Server) -> None:
+    """Look after the master from now on, on a thread of its own."""
+    threading.Thread(target=_watch, args=(server,), name='master_watch', daemon=True).start()
+
+
+def _watch(server: Server) -> None:
+    master = rosgraph.Master(rospy.get_name())
+    gone, ended = False, threading.Event()
+    rospy.on_shutdown(ended.set)
+    while True:
+        known = _is_known(master)
+        if rospy.core.is_shutdown_requested():  # who is shutting down has unregistered on purpose
+            return
+        if known is None and not gone:
+            logger.warning('the ROS master is gone; the simulation goes on and waits for a new one')
+        if known is False:
+            server.registrar.post(lambda: _introduce(server))
+            server.registrar.wait(PATIENCE)
+        gone = known is None
+        if ended.wait(PERIOD):
+            return
+
+
+def _is_known(master: rosgraph.Master) -> bool | None:
+    """Tell whether the master knows a node of our name; None if there is no master."""
+    try:
+        master.lookupNode(rospy.get_name())
+    except rosgraph.MasterError:
+        return False
+    except (OSError, HTTPException, XmlRpcError, rosgraph.MasterException):
+        return None
+    return True
+
+
+def _introduce(server: Server) -> None:
+    """Tell the master everything that was told to the one before; rospy has no public way."""
+    listeners = get_registration_listeners()
+    topics, services = get_topic_manager(), get_service_manager()
+    for kind, entries in (
+        (Registration.PUB, topics.get_publications()),
+        (Registration.SUB, topics.get_subscriptions()),
+        (Registration.SRV, services.get_services()),
+    ):
+        for name, told in entries:
+            listeners.notify_added(name, told, kind)
+    for tell in server.parameters:
+        tell()
+    logger.info('registered with a new ROS master')
