@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""Whatever is sent to it, the server answers soon, stays small, and the neighbour drives on."""
+
+import contextlib
+import io
+import math
+import os
+import sys
+import tempfile
+import time
+from itertools import pairwise
+from pathlib import Path
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rosnode
+import rospy
+import rostest
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import (
+    ApplyBodyWrench,
+    ApplyJointEffort,
+    GetModelState,
+    GetPhysicsProperties,
+    SetLinkProperties,
+    SetModelConfiguration,
+    SetModelState,
+    SetPhysicsProperties,
+    SpawnModel,
+)
+from geometry_msgs.msg import Twist, Vector3, Wrench
+from nav_msgs.msg import Odometry
+from simulator import BOX, SimulatorTest, pose, proxy, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from support.hostile import cases  # noqa: E402  (the folder of tests is no package of its own)
+
+ANSWERED = 20.0  # [s, wall] for what takes two at most on a machine that does nothing else
+GROWN = 600e6  # [bytes] of memory by all cases together; one of 100 MB takes as much for a moment
+FORWARD, TURN = 0.3, 0.3  # [m/s, rad/s] the circle of the neighbour
+FASTEST = 0.6  # [m/s] nothing makes its origin go faster, whatever is commanded
+TURNS = 0.15  # [rad/s] what it turns at least; it is commanded twice that
+HEIGHT, SINKS = -0.12, 0.02  # [m] where its origin is when it stands, and what that may be off
+AFTERWARDS = 5  # readings of odometry, each 10 ms of simulated time, in which it drives on
+AWAY = (30.0, 30.0, 0.5)  # [m] where models appear, out of the neighbour's way
+HUGE = (math.nan, math.inf, -math.inf, 1e308)
+ODD_NAMES = ('a/b', '/a', 'a b', 'ünï', '🤖', "a'b\"c", '<a>', '%s{}', '::', '$(a)', '~', '..')
+ODD_NAMESPACES = ('a b', '\n', 'ü', '..', 'a' * 10_000)  # in none of them its topics are /odom
+UNFIT_NAMES = ('', 'a\nb', 'a\0b', 'a\tb', 'a' * 100_000)
+
+
+class RawRequest(SpawnModel._request_class):
+    """A request whose texts go over the wire as the bytes that they are."""
+
+    def serialize(self, buff):
+        """Write what SpawnModelRequest would, but for the decoding."""
+        stream = io.BytesIO()
+        plain = SpawnModel._request_class(self.model_name, 'XML', *[
+            getattr(self, slot) for slot in self.__slots__[2:]])
+        plain.serialize(stream)
+        name = self.model_name.encode()
+        rest = stream.getvalue()[4 + len(name) + 4 + 3:]
+        for text in (name, self.model_xml):
+            buff.write(len(text).to_bytes(4, 'little') + text)
+        buff.write(rest)
+
+
+def _distance(one, other):
+    a, b = one.pose.pose.position, other.pose.pose.position
+    return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))
+
+
+def _farthest(one, other):
+    """Return how far the neighbour gets between two readings at most [m]."""
+    return FASTEST * (other.header.stamp - one.header.stamp).to_sec() + 0.001
+
+
+class HostileTest(SimulatorTest):
+    """One neighbour drives in a circle through all tests of this file."""
+
+    def setUp(self):
+        super().setUp()
+        self.assertTrue(self.spawn('neighbour').success)
+        self._drive = self.driver()
+        self._odometry = self.collect('/odom', Odometry)
+        self._spawn_sdf = proxy('spawn_sdf_model', SpawnModel)
+        wait_until(self._is_driving, 'the neighbour driving')
+        address = rosnode.get_api_uri(rosgraph.Master('/test'), '/gazebo')
+        self._pid = ServerProxy(address).getPid('/test')[2]
+
+    def _is_driving(self):
+        self._drive(FORWARD, TURN)  # again, as the first one may go to a robot that was deleted
+        return self.model_state('neighbour', '').twist.angular.z > TURNS
+
+    def _memory(self):
+        """Return the resident memory of the server [bytes]."""
+        pages = int(Path(f'/proc/{self._pid}/statm').read_text(encoding='ascii').split()[1])
+        return pages * os.sysconf('SC_PAGE_SIZE')
+
+    @contextlib.contextmanager
+    def _neighbour_drives_on(self):
+        """Let the neighbour go on meanwhile as it is commanded, on a path without a jump."""
+        self._odometry.clear()
+        wait_until(lambda: self._odometry, 'a place to begin')
+        yield
+        count = len(self._odometry)
+        wait_until(lambda: len(self._odometry) > count + AFTERWARDS, 'odometry going on')
+        path = list(self._odometry)
+        for one, next_one in pairwise(path):
+            self.assertLess(_distance(one, next_one), _farthest(one, next_one))
+        for reading in path[count:]:
+            self.assertGreater(reading.twist.twist.angular.z, TURNS)
+            self.assertLess(abs(reading.pose.pose.position.z - HEIGHT), SINKS)
+
+    def _send(self, case, folder):
+        """Return success and sentence of a case."""
+        text = case.text(folder)
+        service = self._spawn_sdf if case.kind == 'sdf' else self.spawn_service
+        request = RawRequest(
+            'hostile', text if isinstance(text, bytes) else text.encode(), '/', pose(*AWAY), '')
+        try:
+            response = service.call(request)
+        except rospy.ServiceException as error:
+            self.assertTrue(case.call_error, str(error))
+            return False, str(error)
+        self.assertFalse(case.call_error, response)
+        return response.success, response.status_message
+
+    def test_every_description(self):
+        before = self._memory()
+        with tempfile.TemporaryDirectory() as folder:
+            for case in cases():
+                if case.kind == 'world' or not case.wire:
+                    continue
+                with self.subTest(case.name), self._neighbour_drives_on():
+                    begin = time.monotonic()
+                    own = Path(folder, case.name)
+                    own.mkdir()
+                    success, sentence = self._send(case, own)
+                    self.assertLess(time.monotonic() - begin, ANSWERED)
+                    self.assertEqual(success, not case.says, sentence)
+                    self.assertIn(case.wire_says or case.says, sentence)
+                    self.assertNotIn('\n', sentence)
+                    self.assertEqual(
+                        success, 'hostile' in self.world().model_names, self.world().model_names)
+                    if success:
+                        self.assertTrue(self.delete('hostile').success)
+        self.assertLess(self._memory() - before, GROWN)
+
+    def test_text_that_is_no_unicode(self):
+        with self._neighbour_drives_on():
+            response = self.spawn_service.call(RawRequest(
+                'hostile', b'<robot name="caf\xe9"/>', '/', pose(*AWAY), ''))
+            self.assertFalse(response.success)
+
+    def test_names(self):
+        with self._neighbour_drives_on():
+            for name in ODD_NAMES:
+                with self.subTest(name):
+                    self.assertTrue(self.spawn(name, BOX, pose(*AWAY)).success)
+                    self.assertTrue(self.model_state(name, '').success)
+                    self.assertTrue(self.delete(name).success)
+            for name in UNFIT_NAMES:
+                with self.subTest(name[:20]):
+                    response = self.spawn(name, BOX, pose(*AWAY))
+                    self.assertFalse(response.success)
+                    self.assertIn('name', response.status_message)
+                    self.assertFalse(self.model_state(name or 'x', '').success)
+                    self.assertFalse(self.delete(name).success)
+            for namespace in ODD_NAMESPACES:
+                with self.subTest(namespace=namespace[:20]):
+                    response = self.spawn('robot', None, pose(*AWAY), namespace=namespace)
+                    self.assertIn(response.success, (True, False))
+                    if response.success:
+                        self.assertTrue(self.delete('robot').success)
+            self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
+
+    def test_numbers(self):
+        """Nothing of this is answered with success and an absurd world; see each service's own."""
+        self.assertTrue(self.spawn('box', BOX, pose(*AWAY)).success)
+        services = {
+            name: proxy(name, kind) for name, kind in {
+                'set_model_state': SetModelState, 'apply_body_wrench': ApplyBodyWrench,
+                'apply_joint_effort': ApplyJointEffort, 'set_link_properties': SetLinkProperties,
+                'set_model_configuration': SetModelConfiguration,
+                'get_physics_properties': GetPhysicsProperties,
+                'set_physics_properties': SetPhysicsProperties}.items()
+        }
+        with self._neighbour_drives_on():
+            for number in HUGE:
+                with self.subTest(number):
+                    self._send_number(services, number)
+                self.assertTrue(proxy('get_model_state', GetModelState)('box', '').success)
+            physics = services['get_physics_properties']()
+            for step in (-0.001, 0.0, *HUGE):
+                with self.subTest(step=step):
+                    response = services['set_physics_properties'](
+                        step, physics.max_update_rate, physics.gravity, physics.ode_config)
+                    self.assertFalse(response.success, response)
+            self.assertEqual(services['get_physics_properties']().time_step, physics.time_step)
+
+    def _send_number(self, services, number):
+        finite = math.isfinite(number)
+        spawned = self.spawn('far', BOX, pose(number, *AWAY[1:]))
+        if spawned.success:
+            self.delete('far')
+        self.assertFalse(spawned.success and not finite)
+        for state in (ModelState('box', pose(number, *AWAY[1:]), Twist(), ''),
+                      ModelState('box', pose(*AWAY), Twist(linear=Vector3(number, 0, 0)), '')):
+            self.assertFalse(services['set_model_state'](state).success and not finite)
+        wrench = Wrench(force=Vector3(0, 0, number))
+        answer = services['apply_body_wrench'](
+            'box::body', '', pose().position, wrench, rospy.Time(), rospy.Duration(0.01))
+        self.assertFalse(answer.success and not finite)
+        answer = services['apply_joint_effort'](
+            'no_such_joint', number, rospy.Time(), rospy.Duration(0.01))
+        self.assertFalse(answer.success)
+        answer = services['set_link_properties'](
+            'box::body', pose(0, 0, 0), True, number, 1, 0, 0, 1, 0, 1)
+        self.assertFalse(answer.success and not finite)
+        answer = services['set_model_configuration'](
+            'neighbour', '', ['no_such_joint'], [number])
+        self.assertFalse(answer.success and not finite)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_hostile', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'hostile', HostileTest, sys.argv)

@@ -1,0 +1,110 @@
+"""Whatever comes in, it ends soon, with one sentence or a model, and opens nothing it should not.
+
+The cases and their outcomes are those of test/data/hostile/cases.yaml; here the parsers get them.
+"""
+
+import logging
+import os
+import sys
+
+import pytest
+from support import ROOT, package_directory
+from support.hostile import FOLDER, cases
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.meshes import check_mesh
+from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.sdf import load_sdf
+from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.world_file import open_world
+
+LONGEST = 2500  # characters of a sentence
+CASES = cases()
+
+
+class Opened:
+    """The files that this process opens while it listens; Python tells of every one."""
+
+    def __init__(self):
+        self.paths = []
+        self.listening = False
+        sys.addaudithook(self._hear)  # there is no way to take it away again
+
+    def _hear(self, event, arguments):
+        if self.listening and event == 'open' and isinstance(arguments[0], str | bytes):
+            self.paths.append(os.fsdecode(arguments[0]))
+        if self.listening and event.startswith(('socket.connect', 'subprocess.', 'os.system',
+                                                'os.exec', 'os.posix_spawn')):
+            self.paths.append(event)
+
+
+@pytest.fixture(scope='module')
+def opened():
+    for path in (ROOT / 'meshes').glob('*.dae'):
+        check_mesh(str(path))  # what is imported late has been
+    return Opened()
+
+
+def read(case, folder):
+    text = case.text(folder)
+    if case.kind == 'world':
+        path = folder / case.name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return open_world(path, find_model=ModelSearch([folder]), find_package=package_directory)
+    if case.kind == 'sdf':
+        return load_sdf(text, 'hostile', find_model=ModelSearch([folder]),
+                        find_package=package_directory)
+    return load_urdf(text, 'hostile', find_package=package_directory)
+
+
+def may_be_opened(path, case, folder):
+    return path == case.opens or path.startswith((str(folder), str(FOLDER))) \
+        or path.endswith('.pyc')  # Python's own, of a codec for example
+
+
+@pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)
+def test_a_case_ends_as_the_table_says(case, tmp_path, opened, caplog, capfd):
+    said = ''
+    opened.paths.clear()
+    opened.listening = True
+    try:
+        read(case, tmp_path)
+    except ModelError as error:
+        said = str(error)
+    finally:
+        opened.listening = False
+    expected = case.parser or case.says
+    assert (expected in said) if expected else not said, said
+    logged = [(r.levelno, r.getMessage()) for r in caplog.records]
+    for level, words in ((logging.WARNING, case.warns), (logging.ERROR, case.logs)):
+        assert not words or any(level == at and words in text for at, text in logged), logged
+    for sentence in (said, *(text for _, text in logged)):
+        assert len(sentence) < LONGEST
+        assert '\n' not in sentence
+        assert not case.hides or case.hides not in sentence
+    assert [path for path in opened.paths if not may_be_opened(path, case, tmp_path)] == []
+    assert capfd.readouterr() == ('', '')
+
+
+def test_every_file_of_the_corpus_is_in_the_table_once_and_small():
+    listed = [case.name for case in CASES]
+    assert len(set(listed)) == len(listed)
+    files = {path.name for path in FOLDER.iterdir()} - {'cases.yaml', 'triangle.obj'}
+    assert files <= set(listed)
+    assert max(path.stat().st_size for path in FOLDER.iterdir()) < 20_000
+
+
+@pytest.mark.parametrize('ending', ['urdf', 'sdf', 'dae', 'stl', 'obj', 'world'])
+def test_there_are_cases_of_each_kind(ending):
+    assert any(case.kind == ending for case in CASES)
+
+
+def test_a_library_outside_of_the_folder_is_not_opened(opened):
+    opened.paths.clear()
+    opened.listening = True
+    check_mesh.__globals__['_check'].cache_clear()
+    check_mesh.__globals__['_read'].cache_clear()
+    check_mesh(str(FOLDER / 'library_out_of_folder.obj'))
+    opened.listening = False
+    assert len(opened.paths) == 1
+    assert opened.paths[0].endswith('library_out_of_folder.obj')
