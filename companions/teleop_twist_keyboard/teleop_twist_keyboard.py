@@ -2,6 +2,7 @@
 """Drive a robot from the keys of a terminal."""
 import sys
 
+from rosbots_description.cli.program import run
 from rosbots_description.cli.teleop_twist_keyboard import main
 
-sys.exit(main())
+sys.exit(run(main))

@@ -23,6 +23,7 @@ from rosbots_description.cli.demo_report import (
     table,
 )
 from rosbots_description.cli.launched import Launched
+from rosbots_description.cli.program import run
 
 _MODEL = 'rosbots'
 PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
@@ -161,4 +162,4 @@ def _say(text: str) -> None:
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    sys.exit(run(main))

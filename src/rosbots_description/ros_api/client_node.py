@@ -12,7 +12,7 @@ from typing import Any
 import rosgraph
 import rospy
 
-from .process import end_at_once, print_lines_at_once
+from .process import init_node
 
 logger = logging.getLogger(__name__)
 
@@ -41,9 +41,7 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
                        rosgraph.get_master_uri())
         while not rosgraph.is_master_online():
             time.sleep(_RETRY)
-    print_lines_at_once()
-    rospy.init_node(name, [name, *arguments], anonymous, disable_signals=True)
-    end_at_once()
+    init_node(name, arguments, anonymous=anonymous, disable_signals=True)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _shut_down)
 

@@ -1,18 +1,60 @@
-"""How our programs behave as processes: they print lines at once and end at once."""
+"""How our programs behave as nodes: they begin wherever they are, and end at once."""
 
-import sys
+import os
+import socket
+from collections.abc import Sequence
 
 import rospy
+from rosgraph.network import get_address_override
 from rospy.impl.registration import get_registration_listeners
 
-
-def print_lines_at_once() -> None:
-    """Write each line when it is complete, also into a pipe or file, where Python would wait."""
-    sys.stdout.reconfigure(line_buffering=True)
+from .log_file import log_file, log_to_nowhere, obstacle, outlive_full_disk
 
 
-def end_at_once() -> None:
-    """Spare this process up to half a second at its end; call it after `init_node`.
+def init_node(name: str, arguments: Sequence[str], **options) -> None:
+    """Start the node as `rospy.init_node` does, also without a log file or a name to be found by.
+
+    Args:
+        name: of the node.
+        arguments: the command line without the program's name, for ROS remappings.
+        options: of `rospy.init_node`.
+    """
+    lost_name = _address_without_name()
+    path = log_file(name, arguments)
+    reason = obstacle(path)
+    rospy.init_node(name, [name, *arguments, *(log_to_nowhere() if reason else ())], **options)
+    _end_at_once()
+    outlive_full_disk()
+    if reason:
+        rospy.logwarn('log file %s cannot be written (%s), so there is none; set ROS_LOG_DIR to a '
+                      'folder that can be written', path, reason)
+    if lost_name:
+        rospy.logwarn("this machine's name, %s, leads nowhere, so only programs on this machine "
+                      'reach this node; name it in /etc/hosts, or set ROS_HOSTNAME or ROS_IP',
+                      lost_name)
+
+
+def _address_without_name() -> str | None:
+    """Let others find this node by localhost if this machine's name does not resolve.
+
+    rospy would tell everybody that name, and nobody could connect.
+
+    Returns:
+        That name if so; None if all is well or the user has given an address.
+    """
+    name = socket.gethostname()
+    if get_address_override():
+        return None
+    try:
+        socket.getaddrinfo(name, None)
+    except (OSError, UnicodeError):  # the latter for what cannot be a host's name at all
+        os.environ['ROS_HOSTNAME'] = 'localhost'
+        return name
+    return None
+
+
+def _end_at_once() -> None:
+    """Spare this process up to half a second at its end.
 
     rospy's registration thread looks only every 0.5 s whether the node is shutting down, and the
     shutdown waits for it. Waking it needs rospy's internals: there is no public way.

@@ -1,0 +1,74 @@
+"""Our programs begin wherever they are: with any locale, any standard streams."""
+
+import os
+import subprocess
+import sys
+import textwrap
+
+import pytest
+from support import ROOT
+
+# Prints what it sees; the word behind is for the file system.
+PROGRAM = textwrap.dedent("""\
+    import os, sys
+    from rosbots_description.cli.program import run
+
+    def main():
+        print('größe', sys.argv[1:], flush=True)
+        print('Kürbis', file=sys.stderr)
+        with open(sys.argv[1], 'w') as file:
+            file.write(f'{sys.getfilesystemencoding()} {os.fstat(1) and os.fstat(2) and "open"}')
+        return 7
+
+    sys.exit(run(main))
+    """)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Return a function (redirections, variables) -> (exit code, output, errors, what it saw)."""
+    program, seen = tmp_path / 'program.py', tmp_path / 'gesehen ä'
+    program.write_text(PROGRAM, encoding='utf-8')
+
+    def run_program(redirections='', **variables):
+        python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
+        done = subprocess.run(
+            ['bash', '-c', f'set -o pipefail; "$@" {redirections}', 'bash', sys.executable, program,
+             seen],
+            env={'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **variables},
+            capture_output=True, timeout=60, check=False)
+        return done.returncode, done.stdout, done.stderr, seen.read_text(encoding='utf-8')
+
+    return run_program
+
+
+UTF8 = "größe ['".encode()
+SEEN = 'utf-8 open'
+
+
+@pytest.mark.parametrize('variables', [
+    {}, {'LANG': 'C'}, {'LC_ALL': 'C'}, {'LC_ALL': 'POSIX'}, {'LC_ALL': 'C.UTF-8'},
+    {'LC_ALL': 'C', 'PYTHONUTF8': '0'}, {'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'},
+], ids=str)
+def test_names_and_texts_are_utf8_in_every_locale(run, variables):
+    code, output, errors, seen = run(**variables)
+    assert (code, seen) == (7, SEEN)
+    assert output.startswith(UTF8)
+    assert errors == 'Kürbis\n'.encode()
+
+
+def test_an_output_that_takes_only_ascii_gets_the_rest_by_number(run):
+    code, output, errors, seen = run(PYTHONIOENCODING='ascii')
+    assert (code, seen) == (7, SEEN)
+    assert output.startswith(b"gr\\xf6\\xdfe ['")
+    assert errors == b'K\\xfcrbis\n'
+
+
+@pytest.mark.parametrize('redirections', [
+    '>&-', '2>&-', '<&-', '<&- >&-', '<&- >&- 2>&-', '>/dev/full', '>/dev/full 2>&1',
+    '2>&1 | true',
+])
+def test_streams_that_take_nothing_change_nothing(run, redirections):
+    code, _, errors, seen = run(redirections)
+    assert (code, seen) == (7, SEEN)
+    assert b'Error' not in errors
