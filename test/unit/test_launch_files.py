@@ -1,6 +1,7 @@
 """Every launch file loads without a master, explains its arguments, and starts what it says."""
 
 import os
+import shlex
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -124,5 +125,19 @@ def test_simulation_hands_its_arguments_to_the_simulator(load):
     config = load('simulation.launch', 'paused:=true', 'world_name:=my.world',
                   'use_sim_time:=false')
     assert arguments(config, 'gazebo').startswith('-u ')
-    assert arguments(config, 'gazebo').endswith(' my.world')
+    assert arguments(config, 'gazebo').endswith(' "my.world"')
     assert config.params['/use_sim_time'].value is False
+
+
+@pytest.mark.parametrize('file', ['empty_world', 'elevator_world'])
+@pytest.mark.parametrize(('world', 'words'), [
+    ("/home/me/Mein Roboter ä/o'clock #1.world", ["/home/me/Mein Roboter ä/o'clock #1.world"]),
+    ('', []),
+])
+def test_a_world_with_blanks_in_its_path_is_one_argument(load, tmp_path, file, world, words):
+    path = tmp_path / 'including.launch'
+    path.write_text(
+        f'<launch><include file="$(find gazebo_ros)/launch/{file}.launch">'
+        f'<arg name="world_name" value="{world}"/></include></launch>', encoding='utf-8')
+    server = next(node for node in load(path).nodes if node.name == 'gazebo')
+    assert [word for word in shlex.split(server.args) if '.world' in word or not word] == words
