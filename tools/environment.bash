@@ -15,10 +15,33 @@ enter_environment() {
   fi
   # python3 must be the one with PyBullet, whatever else (pyenv, conda) is first in the caller's PATH.
   export PATH="$WORKSPACE/venv/bin:$PATH"
+  export PYTHONUTF8=1  # so that names and files are read as UTF-8 whatever the locale says
   export ROSBOTS_ROOT=$ROOT
-  local ros_home=${ROS_HOME:-${HOME:-/nonexistent}/.ros}
-  if ! mkdir -p "$ros_home" 2> /dev/null || [[ ! -w $ros_home ]]; then
+  find_ros_home
+  find_address
+}
+
+# ROS writes its logs there, and roslaunch starts nothing where it cannot.
+find_ros_home() {
+  local temporary=${TMPDIR:-/tmp}/rosbots-$UID
+  if takes_logs "${ROS_HOME:-${HOME:-/nonexistent}/.ros}"; then return; fi
+  if takes_logs "$WORKSPACE/ros_home"; then
     export ROS_HOME=$WORKSPACE/ros_home
-    mkdir -p "$ROS_HOME"
+    return
+  fi
+  mkdir -m 700 "$temporary" 2> /dev/null || true
+  if [[ -O $temporary ]] && takes_logs "$temporary"; then
+    export ROS_HOME=$temporary
+  else
+    echo 'rosbots: no folder for logs can be written; set ROS_HOME to one that can' >&2
+  fi
+}
+
+takes_logs() { mkdir -p "$1/log" 2> /dev/null && [[ -w $1/log ]]; }
+
+# Nodes tell each other this machine's name; where that leads nowhere they would never meet.
+find_address() {
+  if [[ -z ${ROS_HOSTNAME:-}${ROS_IP:-} ]] && ! timeout 2 getent hosts "$(uname -n)" > /dev/null; then
+    export ROS_HOSTNAME=localhost
   fi
 }

@@ -19,7 +19,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
-REPORTS = ROOT / '.ws' / 'test_results'
+REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest wants a path without blanks
 OUTPUT_LINES = 60  # of a failed test's output, shown at the end
 
 
@@ -38,13 +38,21 @@ class Count:
 
 
 def count_report(path: Path) -> Count:
-    """Count the test cases of a junit file; one that cannot be read is one failure."""
+    """Count the test cases of a junit file; one that cannot be read is one failure.
+
+    rosunit knows no skipped tests and counts them as passed; such a test prints a line that begins
+    with SKIPPED, which is shown.
+    """
     try:
-        cases = list(ElementTree.parse(path).iter('testcase'))
+        report = ElementTree.parse(path)
     except (OSError, ElementTree.ParseError):
         return Count(failed=1)
+    cases = list(report.iter('testcase'))
     bad = sum(any(case.find(tag) is not None for tag in ('failure', 'error')) for case in cases)
-    skipped = sum(case.find('skipped') is not None for case in cases)
+    told = [line for output in report.iter('system-out')
+            for line in (output.text or '').splitlines() if line.startswith('SKIPPED ')]
+    print(*told, sep='\n', end='\n' if told else '')
+    skipped = len(told) + sum(case.find('skipped') is not None for case in cases)
     return Count(len(cases) - bad - skipped, bad, skipped)
 
 

@@ -12,6 +12,7 @@ find_workspace() {
   local cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache}
   if ! mkdir -p "$cache" 2> /dev/null || [[ ! -w $cache || ! $cache =~ ^[A-Za-z0-9/._+@-]+$ ]]; then
     cache=/var/tmp/rosbots-$UID
+    mkdir -m 700 "$cache" 2> /dev/null || [[ -O $cache ]] || fail "$cache is somebody else's"
   fi
   WORKSPACE=$cache/rosbots-$(sha256sum <<< "$ROOT" | cut -c1-12)
   mkdir -p "$WORKSPACE"
@@ -197,7 +198,8 @@ set_up() {
   mkdir -p "$WORKSPACE" || fail "cannot write to $WORKSPACE"
   trap stop_ticker EXIT
   # One at a time: in a second terminal this waits for the first.
-  exec {lock}> "$WORKSPACE/lock"
+  { exec {lock}> "$WORKSPACE/lock"; } 2> /dev/null ||
+    fail "something is to be set up, and $WORKSPACE cannot be written"
   if ! flock -n "$lock"; then
     echo '==> waiting for the set-up that runs in another terminal'
     flock "$lock"
