@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+"""The server lives, and says what it lacks, where a machine has not what programs expect."""
+
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from urllib.parse import quote
+from xml.sax.saxutils import escape, quoteattr
+
+import rospy
+import rostest
+from gazebo_msgs.srv import GetWorldProperties, SpawnModel
+from server_process import ServerProcess
+from simulator import BOX, DEADLINE, GROUND, pose, wait_until
+
+from rosbots_description.cli.launched import Launched
+
+NAME = '__name:=harsh'
+BLOCK = 4096  # [bytes] in which file systems hand out room
+PACKAGE = Path(__file__).resolve().parents[2]
+NOBODY = ('setpriv', '--reuid=65534', '--regid=65534', '--clear-groups')
+CLOSED = ('sh', '-c', 'exec "$@" <&- >&- 2>&-', 'sh')
+# Root may unshare, unless in a container that forbids it; others need to become root of their own.
+UNSHARE = ('unshare',) if os.geteuid() == 0 else ('unshare', '--map-root-user')
+# Private views of the file system, for the command that follows.
+SMALL = (*UNSHARE, '--mount', 'sh', '-c', 'for place in "$DISK" /dev/shm; do '
+         'mount -t tmpfs -o size=1m small "$place" || exit; done; exec "$@"', 'sh')
+READ_ONLY = (*UNSHARE, '--mount', 'sh', '-c', 'mount --bind "$PACKAGE" "$PACKAGE" && '
+             'mount -o remount,bind,ro "$PACKAGE" && exec "$@"', 'sh', *NOBODY)
+NOWHERE = (*UNSHARE, '--net', '--uts', PACKAGE / 'test' / 'rostest' / 'nowhere.py')
+# Master, server and a model, by programs that nobody has told an address.
+MEET = """
+rosmaster --core -p 11311 > /dev/null & master=$!
+rosrun gazebo_ros gzserver & server=$!
+rosrun gazebo_ros spawn_model -urdf -file "$1" -model box
+code=$?
+kill $server $master
+wait $server && exit $code
+"""
+
+WORLD = """<?xml version="1.0" encoding="utf-8"?>
+<sdf version="1.6"><world name="größe">
+  <include><uri>model://ground_plane</uri></include>
+  <include><uri>model://tür</uri></include>
+  <include><uri>model://fenster</uri></include>
+</world></sdf>"""
+DOOR = """<?xml version="1.0" encoding="utf-8"?>
+<sdf version="1.6"><model name="tür"><static>true</static><link name="blatt">
+  <pose>3 0 0 0 0 0</pose>
+  <collision name="c"><geometry><mesh><uri>file://{}</uri></mesh></geometry></collision>
+</link></model></sdf>"""
+ROBOT = """<?xml version="1.0" encoding="utf-8"?>
+<!-- Größe: 3 Fuß -->
+<robot name="bär"><link name="räumer">
+  <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><mesh filename={}/></geometry></collision>
+</link></robot>"""
+
+
+def service(name, service_type):
+    rospy.wait_for_service(f'/harsh/{name}', DEADLINE)
+    return rospy.ServiceProxy(f'/harsh/{name}', service_type)
+
+
+def world():
+    return service('get_world_properties', GetWorldProperties)()
+
+
+def fill(path):
+    """Write into a file until its disk is full."""
+    with path.open('wb', buffering=0) as file, contextlib.suppress(OSError):
+        while True:
+            file.write(bytes(BLOCK))
+
+
+class EnvironmentsTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.root = Path(tempfile.mkdtemp())
+        cls.root.chmod(0o755)  # also for a user without rights
+        cls.folder = cls.root / "Mein Roboter ä %41 #&'"
+        model = cls.folder / 'models' / 'tür'
+        model.mkdir(parents=True)
+        mesh = cls.folder / 'räder.dae'
+        shutil.copy(PACKAGE / 'meshes' / 'wheel.dae', mesh)
+        (model / 'model.sdf').write_text(DOOR.format(escape(quote(str(mesh)))), encoding='utf-8')
+        (cls.folder / 'größe.world').write_text(WORLD, encoding='utf-8')
+        for name, uri in (('coded', f'file://{quote(str(mesh))}'), ('written', f'file://{mesh}')):
+            (cls.folder / f'bär {name}.urdf').write_text(
+                ROBOT.format(quoteattr(uri)), encoding='utf-8')
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.root)
+
+    def require(self, *command, **environment):
+        """Skip the test where the machine does not let us make such surroundings."""
+        done = subprocess.run(command, env={**os.environ, **environment}, text=True,
+                              capture_output=True, check=False)
+        if done.returncode:
+            reason = f'this machine does not permit it: {done.stderr.strip()}'
+            print(f'SKIPPED {self._testMethodName}: {reason}')  # rosunit would say it has passed
+            self.skipTest(reason)
+
+    def server(self, *arguments, **surroundings):
+        """Return a server that is ready; it is ended with the test."""
+        server = ServerProcess(NAME, *arguments, **surroundings)
+        self.addCleanup(server.__exit__)
+        return server.wait_ready()
+
+    @staticmethod
+    def spawn(name, xml):
+        return service('spawn_urdf_model', SpawnModel)(name, xml, '/', pose(), '')
+
+    def assert_carries_the_robot(self):
+        """Assert that the article's robot, which has meshes, can be spawned, and time runs."""
+        answer = self.spawn('rosbots', rospy.get_param('robot_description'))
+        self.assertTrue(answer.success, answer.status_message)
+        self.assert_lives([GROUND, 'rosbots'])
+
+    def assert_lives(self, models):
+        before = world()
+        self.assertEqual(before.model_names, models)
+        wait_until(lambda: world().sim_time > before.sim_time + 0.1, 'time')
+
+    def assert_ends_well(self, server):
+        code, printed = server.end()
+        self.assertNotIn('Traceback', printed)
+        self.assertEqual(code, 0, printed)
+        return printed
+
+    def test_names_and_folders_of_any_letters_work_in_the_locale_c(self):
+        surroundings = {
+            'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONIOENCODING': 'ascii',
+            'GAZEBO_MODEL_PATH': str(self.folder / 'models'), 'TMPDIR': str(self.folder)}
+        server = self.server(str(self.folder / 'größe.world'), **surroundings)
+        for name in ('coded', 'written'):
+            with ServerProcess('-urdf', '-file', str(self.folder / f'bär {name}.urdf'),
+                               '-model', f'bär {name}', '-gazebo_namespace', '/harsh',
+                               program='spawn_model', **surroundings) as client:
+                code, printed = client.wait()
+            self.assertEqual(code, 0, printed)
+        self.assert_lives([GROUND, 'tür', 'bär coded', 'bär written'])
+        printed = self.assert_ends_well(server)
+        where = ascii(f"{self.folder}/größe.world, line 5: 'model://fenster'").strip('"')
+        self.assertIn(where, printed)
+
+    def test_without_a_home_the_log_is_only_shown(self):
+        nothing = '/dev/null/home'
+        server = self.server(HOME=nothing, ROS_HOME=nothing, ROS_LOG_DIR=f'{nothing}/log')
+        self.assert_carries_the_robot()
+        printed = self.assert_ends_well(server)
+        self.assertIn(f'log file {nothing}/log/harsh.log cannot be written (Not a directory)',
+                      printed)
+        self.assertIn('contradict the collision geometry', printed)
+
+    def test_without_input_and_output_it_works_in_silence(self):
+        server = self.server('worlds/shapes.world', prefix=CLOSED)
+        self.assert_lives([GROUND, 'box', 'sphere', 'cylinder'])
+        self.assertEqual(server.end(), (0, ''))
+
+    def test_when_disk_and_memory_are_full_only_what_needs_them_is_refused(self):
+        disk = self.root / 'disk'
+        disk.mkdir()
+        surroundings = {'DISK': str(disk), 'TMPDIR': str(disk), 'ROS_LOG_DIR': str(disk)}
+        self.require(*SMALL, 'true', **surroundings)
+        server = self.server(prefix=SMALL, **surroundings)
+        self.assert_carries_the_robot()
+        for place in (disk, '/dev/shm'):  # as the server sees them
+            fill(Path(f'/proc/{server.process.pid}/root{place}/filling'))
+        bear = (self.folder / 'bär coded.urdf').read_text(encoding='utf-8')
+        for _ in range(BLOCK // 256):  # until the complaints fill the log's last block, too
+            answer = self.spawn('bear', bear)
+            self.assertFalse(answer.success)
+        self.assertIn(f"räder.dae' cannot be made ready: nothing can be written in {disk} "
+                      '(No space left on device) nor in /dev/shm (No space left on device); ',
+                      answer.status_message)
+        self.assertTrue(self.spawn('box', BOX).success)
+        self.assert_lives([GROUND, 'rosbots', 'box'])
+        printed = self.assert_ends_well(server)
+        self.assertEqual(printed.count(f'log file {disk}/harsh.log cannot be written'), 1, printed)
+
+    def test_a_user_without_rights_needs_nothing_but_to_read(self):
+        # In the home of root, say, nobody can read anything.
+        self.require(*READ_ONLY, 'python3', '-c', 'import rosbots_description, pybullet',
+                     PACKAGE=str(PACKAGE))
+        server = self.server(prefix=READ_ONLY, PACKAGE=str(PACKAGE), HOME='/nonexistent',
+                             ROS_HOME='/nonexistent', ROS_LOG_DIR='/nonexistent/log')
+        self.assert_carries_the_robot()
+        self.assert_ends_well(server)
+
+    def test_without_a_network_and_a_name_programs_still_meet(self):
+        self.require(*NOWHERE, 'true')
+        surroundings = {name: value for name, value in os.environ.items()
+                        if name not in ('ROS_HOSTNAME', 'ROS_IP')}
+        done = subprocess.run(
+            [*NOWHERE, 'sh', '-c', MEET, 'sh', self.folder / 'bär coded.urdf'],
+            env=surroundings | {'ROS_MASTER_URI': 'http://localhost:11311'},
+            capture_output=True, text=True, timeout=3 * DEADLINE, check=False)
+        printed = done.stdout + done.stderr
+        self.assertEqual(done.returncode, 0, printed)
+        self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)
+        self.assertIn("this machine's name, nowhere, leads nowhere", printed)
+
+    def test_without_a_display_the_launch_file_gives_a_sentence_and_a_world(self):
+        surroundings = {name: value for name, value in os.environ.items() if name != 'DISPLAY'}
+        surroundings |= {'WAYLAND_DISPLAY': 'wayland-0', 'HOME': str(self.folder)}
+        log, world_name = self.root / 'launch.log', f'world_name:={self.folder}/größe.world'
+        with Launched(['gazebo_ros', 'empty_world.launch', world_name], log,
+                      surroundings) as launched:
+            rospy.wait_for_service('/gazebo/unpause_physics', 2 * DEADLINE)
+            wait_until(lambda: 'gzclient: no window' in log.read_text(), 'the sentence')
+            models = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)
+            self.assertEqual(models().model_names, [GROUND])
+            self.assertTrue(launched.running)
+        self.assertIn('DISPLAY is not set', log.read_text())
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_environments', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'environments', EnvironmentsTest, sys.argv)

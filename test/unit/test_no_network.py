@@ -1,0 +1,81 @@
+"""Nothing that a description or a command line names makes us open a connection."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from support import ROOT
+
+# Ends the program at the first connection and at the first question for an address. libxml2 would
+# go past Python; its parsers are made with no_network.
+GUARD = """
+import sys
+
+def forbid(event, arguments):
+    if event in ('socket.connect', 'socket.sendto', 'socket.getaddrinfo', 'socket.gethostbyname',
+                 'urllib.Request', 'subprocess.Popen', 'os.exec', 'os.posix_spawn', 'os.system'):
+        raise SystemExit(f'{event} {arguments}')
+
+sys.addaudithook(forbid)
+"""
+LOAD_URDF = 'from rosbots_description.sim.urdf import load_urdf; load_urdf(TEXT, "m")'
+LOAD_SDF = ('from rosbots_description.ros_api.packages import find_model, find_package; '
+            'from rosbots_description.sim.sdf import load_sdf; '
+            'load_sdf(TEXT, "m", find_model=find_model, find_package=find_package)')
+MESH = '<link name="l"><collision><geometry><mesh filename="{}"/></geometry></collision></link>'
+SDF = '<sdf version="1.6"><world name="w"><include><uri>{}</uri></include></world></sdf>'
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<library_images><image id="i"><init_from>http://example.org/i.png</init_from></image></library_images>
+<scene><instance_visual_scene url="http://example.org/scene.dae#s"/></scene></COLLADA>"""
+OBJECT = 'mtllib http://example.org/m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
+
+
+def run(code, text=''):
+    """Run code with TEXT under the guard; return the last line of its complaint."""
+    python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
+    done = subprocess.run(
+        [sys.executable, '-c', f'{GUARD}\nTEXT = {text!r}\n{code}'], capture_output=True, text=True,
+        env={**os.environ, 'PYTHONPATH': python_path}, timeout=60, check=False)
+    return (done.stderr.splitlines() or [''])[-1]
+
+
+def test_the_guard_notices_a_connection():
+    assert run('import urllib.request as r; r.urlopen("http://localhost:9")').startswith('urllib')
+    assert run('import socket; socket.create_connection(("localhost", 9))').startswith('socket.')
+
+
+@pytest.mark.parametrize(('load', 'text', 'said'), [
+    (LOAD_URDF, f'<robot name="r">{MESH.format("http://example.org/m.dae")}</robot>',
+     'http:// addresses are not read here'),
+    (LOAD_URDF, '<!DOCTYPE robot SYSTEM "http://example.org/r.dtd"><robot name="r"/>',
+     'a document type (<!DOCTYPE>) is not accepted'),
+    (LOAD_SDF, SDF.format('http://example.org/m'),
+     'models are not fetched from the network'),
+    (LOAD_SDF, SDF.format('model://coke_can'),
+     "'model://coke_can' is not to be found along the model path"),
+], ids=['mesh', 'document type', 'included address', 'unknown model'])
+def test_an_address_is_refused_without_a_look_at_the_network(load, text, said):
+    assert said in run(load, text)
+
+
+@pytest.mark.parametrize(('name', 'content', 'said'), [
+    ('m.dae', COLLADA, 'm.dae\' '), ('m.obj', OBJECT, ''),
+])
+def test_a_mesh_file_leads_nowhere_else(tmp_path, name, content, said):
+    path = tmp_path / name
+    path.write_text(content, encoding='utf-8')
+    complaint = run(LOAD_URDF, f'<robot name="r">{MESH.format(path)}</robot>')
+    assert said in complaint
+    assert 'socket' not in complaint
+    assert 'urllib' not in complaint
+
+
+@pytest.mark.parametrize('model', ['coke_can', 'http://example.org/coke_can'])
+def test_the_model_database_is_refused_before_anybody_looks_for_it(model):
+    code = (
+        'import argparse\n'
+        'from rosbots_description.ros_api.spawn_client import _fetch\n'
+        f'_fetch(argparse.Namespace(file=None, param=None, database={model!r}))')
+    assert f'no model database can be reached, so {model} cannot be taken from it' in run(code)
