@@ -11,6 +11,7 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from rosbots_description.ros_api.conversions import (
     fill_odometry,
     fill_pose,
+    fill_transform,
     fill_twist,
     joint_state_message,
     read_pose,
@@ -18,7 +19,7 @@ from rosbots_description.ros_api.conversions import (
     transform_message,
 )
 from rosbots_description.sim.pose import Pose, Twist
-from rosbots_description.sim.readings import FrameTransform, JointStates, Odometry
+from rosbots_description.sim.readings import JointStates, Odometry
 
 HALF = math.sqrt(0.5)
 POSE = Pose((1.0, -2.0, 3.0), (HALF, 0.0, 0.0, HALF))
@@ -72,7 +73,8 @@ def test_odometry_keeps_the_frames_of_its_message():
 
 
 def test_a_transform_goes_from_parent_to_child():
-    message = transform_message(7, FrameTransform('odom', 'base', POSE))
+    message = transform_message('odom', 'base')
+    fill_transform(message, 7, POSE)
     assert (message.header.frame_id, message.child_frame_id) == ('odom', 'base')
     assert message.header.stamp.nsecs == 7
     assert (message.transform.translation.z, message.transform.rotation.x) == (3.0, HALF)

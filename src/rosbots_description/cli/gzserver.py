@@ -5,6 +5,7 @@ import logging
 import signal
 import sys
 from collections.abc import Sequence
+from importlib.util import find_spec
 
 from ..sim.errors import SimError
 
@@ -67,18 +68,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _main(arguments: Sequence[str]) -> int:
     own, remappings = split_remappings(arguments)
     given, unknown = parser().parse_known_args(own)
-    try:
-        import collada  # noqa: F401, PLC0415  else only the first mesh would miss it
+    for module, package in _INSTALLED_BY.items():
+        if not _is_installed(module):
+            sys.stderr.write(
+                f'gzserver: the Python module {module} is missing; install it for '
+                f'{sys.executable} with: pip install {package}\n'
+            )
+            return 1
+    from ..ros_api import node  # noqa: PLC0415  needs what may be missing
 
-        from ..ros_api import node  # noqa: PLC0415  needs what may be missing
-    except ModuleNotFoundError as error:
-        if error.name not in _INSTALLED_BY:
-            raise
-        sys.stderr.write(
-            f'gzserver: the Python module {error.name} is missing; install it for '
-            f'{sys.executable} with: pip install {_INSTALLED_BY[error.name]}\n'
-        )
-        return 1
     options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
                            given.verbose)
     try:
@@ -86,6 +84,14 @@ def _main(arguments: Sequence[str]) -> int:
     except SimError as error:
         sys.stderr.write(f'gzserver: {error}\n')
         return 1
+
+
+def _is_installed(module: str) -> bool:
+    """Tell whether a module can be imported, without the time that importing it takes."""
+    try:
+        return find_spec(module) is not None
+    except ValueError:  # somebody forbids it
+        return False
 
 
 def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[int, str], ...]:

@@ -14,7 +14,7 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
 
 from ..sim.pose import Pose, Twist, Vector, normalise
-from ..sim.readings import FrameTransform, JointStates, Odometry
+from ..sim.readings import JointStates, Odometry
 
 
 def stamp(now_ns: int) -> Time:
@@ -67,14 +67,19 @@ def fill_odometry(message: OdometryMessage, now_ns: int, odometry: Odometry) -> 
     fill_twist(message.twist.twist, odometry.twist)
 
 
-def transform_message(now_ns: int, reading: FrameTransform) -> TransformStamped:
-    """Return a transform with the reading's frame names as they are."""
-    message = TransformStamped(child_frame_id=reading.child, transform=Transform())
-    message.header.stamp, message.header.frame_id = stamp(now_ns), reading.parent
-    translation, rotation = message.transform.translation, message.transform.rotation
-    translation.x, translation.y, translation.z = reading.pose.position
-    rotation.x, rotation.y, rotation.z, rotation.w = reading.pose.orientation
+def transform_message(parent: str, child: str) -> TransformStamped:
+    """Return a message for the edge between two frames, to be filled."""
+    message = TransformStamped(child_frame_id=child, transform=Transform())
+    message.header.frame_id = parent
     return message
+
+
+def fill_transform(message: TransformStamped, now_ns: int, pose: Pose) -> None:
+    """Write where the child stands in its parent."""
+    message.header.stamp = stamp(now_ns)
+    translation, rotation = message.transform.translation, message.transform.rotation
+    translation.x, translation.y, translation.z = pose.position
+    rotation.x, rotation.y, rotation.z, rotation.w = pose.orientation
 
 
 def joint_state_message(now_ns: int, reading: JointStates) -> JointState:

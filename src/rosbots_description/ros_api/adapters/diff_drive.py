@@ -22,7 +22,12 @@ from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins.diff_drive import DiffDrive
 from ...sim.readings import FrameTransform, JointStates, Odometry
-from ..conversions import fill_odometry, joint_state_message, transform_message
+from ..conversions import (
+    fill_odometry,
+    fill_transform,
+    joint_state_message,
+    transform_message,
+)
 from ..log_bridge import set_level
 from ..names import find_tf_prefix, frame_name, topic_name
 from ..server import Server
@@ -43,6 +48,7 @@ class DiffDriveAdapter(Adapter):
         super().__init__(server, plugin)
         self._prefix = ''
         self._message = OdometryMessage()
+        self._edges: dict[tuple[str, str], TFMessage] = {}  # by parent and child
         self._publishers: list[rospy.Publisher] = []
         self._odometry = self._tf = self._joint_states = None
         self._commands: rospy.Subscriber | None = None
@@ -115,9 +121,13 @@ class DiffDriveAdapter(Adapter):
         self._odometry.publish(self._message)
 
     def _send_transform(self, reading: FrameTransform) -> None:
-        parent, child = (frame_name(self._prefix, name) for name in reading[:2])
-        edge = FrameTransform(parent, child, reading.pose)
-        self._tf.publish(TFMessage([transform_message(self._now_ns(), edge)]))
+        edge = reading[:2]
+        message = self._edges.get(edge)
+        if message is None:
+            parent, child = (frame_name(self._prefix, name) for name in edge)
+            message = self._edges[edge] = TFMessage([transform_message(parent, child)])
+        fill_transform(message.transforms[0], self._now_ns(), reading.pose)
+        self._tf.publish(message)
 
     def _send_joint_states(self, reading: JointStates) -> None:
         self._joint_states.publish(joint_state_message(self._now_ns(), reading))
