@@ -1,5 +1,6 @@
 """The loop that owns the world: pacing, commands from other threads, pause and end."""
 
+import contextlib
 import threading
 import time
 from types import SimpleNamespace
@@ -13,17 +14,28 @@ JOIN = 5.0  # [s] for what takes milliseconds; slow machines are no failure
 
 
 class CountingWorld:
-    """A world that only counts its steps, and can be made slow."""
+    """A world that only counts its steps, and can be made slow.
 
-    def __init__(self, rate, step_time=0.0):
+    `interest` is the number of steps after which somebody wants to be called.
+    """
+
+    def __init__(self, rate, step_time=0.0, interest=1):
         self.physics = SimpleNamespace(max_update_rate=rate)
         self.paused = False
         self.steps = 0
         self.longest_batch = 0
+        self.batches = 0
+        self.clock = self
+        self.schedule = self
+        self._interest = interest
         self._step_time = step_time
+
+    def next_due(self):
+        return (self.steps // self._interest + 1) * self._interest
 
     def run(self, steps):
         self.steps += steps
+        self.batches += 1
         self.longest_batch = max(self.longest_batch, steps)
         if self._step_time:
             time.sleep(steps * self._step_time)
@@ -55,6 +67,30 @@ def test_makes_as_many_steps_as_time_has_passed(start):
     time.sleep(0.3)  # the measured quantity itself
     made, passed = loop.call(lambda: world.steps) - steps, time.monotonic() - begin
     assert made == pytest.approx(1000.0 * passed, abs=5)
+
+
+def test_steps_that_interest_nobody_are_made_in_one_go_but_a_command_finds_them_made(start):
+    world = CountingWorld(rate=1000.0, interest=100)
+    loop = start(world)
+    steps, begin = loop.call(lambda: world.steps), time.monotonic()
+    _wait_for(lambda: world.steps >= steps + 300)
+    batches, reached = world.batches, world.steps
+    assert batches <= reached / 5
+    made, passed = loop.call(lambda: world.steps) - steps, time.monotonic() - begin
+    assert made == pytest.approx(1000.0 * passed, abs=5)
+
+
+def test_what_surrounds_a_batch_is_there_while_the_world_runs():
+    world, inside = CountingWorld(rate=0.0), []
+
+    @contextlib.contextmanager
+    def batch():
+        inside.append(world.steps)
+        yield
+        inside.append(world.steps)
+
+    Loop(world, batch).run(steps=1)
+    assert inside == [0, 1]
 
 
 def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(start):

@@ -1,14 +1,17 @@
 """The one thread that owns the World: it paces the steps and serves commands between them."""
 
+import contextlib
 import logging
 import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
+from contextlib import AbstractContextManager
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 from ..sim.errors import SimError
+from ..sim.schedule import NEVER
 
 if TYPE_CHECKING:
     from ..sim.world import World
@@ -17,6 +20,7 @@ logger = logging.getLogger(__name__)
 
 DEADLINE = 60.0  # how long a caller waits for its command [s, wall]
 BATCH = 0.002  # longest time without a look at the queue [s, wall]
+BACKLOG = 0.0005  # steps that interest nobody may be put off until they take this long [s, wall]
 MAX_LAG = 0.2  # steps that are later than this are not made up for [s, wall]
 
 
@@ -27,17 +31,30 @@ class LoopError(SimError):
 class Loop:
     """Runs a World on the thread that calls `run`; other threads hand it commands.
 
-    While the world is paused no step is made, and commands are still served.
+    While the world is paused no step is made, and commands are still served. Steps that interest
+    nobody are made later, in one go, but before the next command or task: nobody sees a world that
+    is behind.
     """
 
-    def __init__(self, world: 'World') -> None:
+    def __init__(
+        self,
+        world: 'World',
+        batch: Callable[[], AbstractContextManager] = contextlib.nullcontext,
+    ) -> None:
+        """Own nothing yet; see `run`.
+
+        Args:
+            batch: makes what surrounds every run of steps that go together.
+        """
         self._world = world
+        self._batch = batch
         self._commands: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._tasks: list[_Task] = []
         self._stopping = False
         self._owner: int | None = None
         self._next_step = 0.0  # when the next step is due [s, monotonic]
         self._step_cost = 0.0  # smoothed wall time of one step [s]
+        self._left: int | None = None  # steps still to be made; None: no end
 
     def call(self, command: Callable[[], Any], deadline: float = DEADLINE) -> Any:
         """Carry out `command()` between two steps and return its result, or raise its exception.
@@ -83,15 +100,13 @@ class Loop:
         """Own the world until `stop`, or until `steps` steps were made."""
         self._owner = threading.get_ident()
         self._next_step = time.monotonic()
-        left = steps
-        while not self._stopping and left != 0:
+        self._left = steps
+        self._serve()
+        while not self._stopping and self._left != 0:
+            self._advance()
             self._serve()
             self._run_tasks()
-            made = 0 if self._world.paused else self._advance(left)
-            if left is not None:
-                left -= made
-            if made == 0:
-                self._wait()
+            self._wait()
         self._stopping = True
         self._serve()
 
@@ -114,8 +129,10 @@ class Loop:
                 if task.next_run <= now:  # more than a period late: what was missed is left out
                     task.next_run = now + task.period
 
-    def _advance(self, left: int | None) -> int:
-        """Make the steps that are due, at most for `BATCH`; return how many."""
+    def _advance(self) -> None:
+        """Make the steps that are due, at most for `BATCH`."""
+        if self._world.paused or self._stopping:
+            return
         rate = self._world.physics.max_update_rate
         now = time.monotonic()
         batch = max(1, int(BATCH / self._step_cost)) if self._step_cost else 1
@@ -124,30 +141,44 @@ class Loop:
                 self._next_step = now
             # After a change of rate the next step may stand far ahead.
             self._next_step = min(self._next_step, now + 1.0 / rate)
-            batch = min(batch, int((now - self._next_step) * rate + 1.0))
             if now < self._next_step:
-                return 0
+                return
+            batch = min(batch, int((now - self._next_step) * rate + 1.0))
             self._next_step += batch / rate
-        if left is not None:
-            batch = min(batch, left)
-        self._world.run(batch)
+        if self._left is not None:
+            batch = min(batch, self._left)
+            self._left -= batch
+        with self._batch():
+            self._world.run(batch)
         cost = (time.monotonic() - now) / batch
         self._step_cost += 0.1 * (cost - self._step_cost)
-        return batch
 
     def _wait(self) -> None:
         """Sleep until a step or task is due or a command arrives; serve that command."""
         wakes = [task.next_run for task in self._tasks]
         if not self._world.paused:
-            wakes.append(self._next_step)
+            wakes.append(self._next_needed())
+        timeout = min(wakes) - time.monotonic() if wakes else None
+        if timeout is not None and timeout <= 0.0:
+            return
         try:
-            if wakes:
-                command = self._commands.get(timeout=max(0.0, min(wakes) - time.monotonic()))
-            else:
-                command = self._commands.get()
+            command = self._commands.get(timeout=timeout)
         except Empty:
             return
+        self._advance()
         self._do(command)
+
+    def _next_needed(self) -> float:
+        """Return when the loop has to make steps again [s, monotonic]."""
+        rate, world = self._world.physics.max_update_rate, self._world
+        if rate <= 0.0:
+            return 0.0
+        unnoticed = min(
+            world.schedule.next_due() - world.clock.steps - 1,
+            int(BACKLOG / self._step_cost) if self._step_cost else 0,
+            NEVER if self._left is None else self._left - 1,
+        )
+        return self._next_step + max(0, unnoticed) / rate
 
 
 class _Task:

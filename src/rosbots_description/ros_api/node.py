@@ -8,6 +8,7 @@ Parameters:
     /use_sim_time is set to true if nobody has set it.
 """
 
+import gc
 import logging
 import signal
 import sys
@@ -25,10 +26,12 @@ from .adapters.registry import Adapters
 from .handshake import guard_handshakes
 from .log_bridge import connect_logging, set_level
 from .loop import Loop
+from .master_watch import watch_master
 from .packages import find_model, find_package
 from .performance import advertise_performance
-from .process import end_at_once, print_lines_at_once
+from .process import init_node
 from .registrar import Registrar
+from .sending import Outlets
 from .server import Server
 from .services.registry import EXTENSIONS, SERVICES, advertise
 from .state_commands import subscribe_states
@@ -69,21 +72,21 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
             brought in, and the node has been shut down again.
 
     """
-    print_lines_at_once()
     _on_signals(signal.default_int_handler)
     with held_records() as records:
         spec = read_world(options.world)
     try:
         _wait_for_master()
-        rospy.init_node(
+        guard_handshakes()
+        outlets = Outlets()
+        outlets.serve_publishers()
+        init_node(
             NAME,
-            argv=[sys.argv[0], *ros_arguments],
+            ros_arguments,
             disable_signals=True,  # the loop is stopped between two steps
             disable_rostime=True,  # see log_bridge
         )
-        guard_handshakes()
-        end_at_once()
-        _simulate(options, spec, records)
+        _simulate(options, spec, records, outlets)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         return 0
     finally:
@@ -91,10 +94,12 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
     return 0
 
 
-def _simulate(options: Options, spec: WorldSpec, records: list[logging.LogRecord]) -> None:
+def _simulate(
+    options: Options, spec: WorldSpec, records: list[logging.LogRecord], outlets: Outlets
+) -> None:
     world = World()
     try:
-        loop = Loop(world)
+        loop = Loop(world, outlets.gathered)
         _on_signals(lambda _signal, _frame: loop.stop())
         rospy.on_shutdown(loop.stop)  # another node took the name over
         connect_logging(lambda: world.clock.now_ns)
@@ -105,7 +110,11 @@ def _simulate(options: Options, spec: WorldSpec, records: list[logging.LogRecord
             logger.log(level, '%s', text)
         replay(records)
         world.paused = options.paused
-        _connect(Server(world, loop, Registrar(), find_package, find_model), spec)
+        server = Server(world, loop, Registrar(), find_package, find_model)
+        _connect(server, spec)
+        watch_master(server)
+        gc.freeze()  # else each full collection looks at all modules, for tens of steps
+        gc.collect()  # else the next waits until a quarter of all those objects has come anew
         loop.run(options.steps)
     finally:
         world.close()
@@ -125,14 +134,19 @@ def _connect(server: Server, spec: WorldSpec) -> None:
             advertise_view(server)
     server.world.listeners.append(Adapters(server))
     fill_world(server.world, spec)
-    if not rospy.has_param('/use_sim_time'):
-        rospy.set_param('/use_sim_time', True)
+    server.parameters.append(_use_simulated_time)
+    _use_simulated_time()
     if networked:
         subscribe_states(server)
         advertise(server, SERVICES)
         if extensions:
             advertise(server, EXTENSIONS)
         server.registrar.post(lambda: _advertise_reconfigure(server))
+
+
+def _use_simulated_time() -> None:
+    if not rospy.has_param('/use_sim_time'):
+        rospy.set_param('/use_sim_time', True)
 
 
 def _advertise_reconfigure(server: Server) -> None:

@@ -1,0 +1,124 @@
+"""Sends messages from the thread that publishes them, and never waits for a reader.
+
+rospy hands every message to a thread of the reader's connection and yields to it. The two threads
+wake each other for each message, which costs several times what sending it does; and to the system
+each send costs as much as ten steps, however little it sends.
+"""
+
+import contextlib
+import logging
+import socket
+import threading
+from collections import deque
+from collections.abc import Iterator
+
+import rospy.topics
+from rospy.exceptions import TransportTerminated
+from rospy.impl.tcpros_base import TCPROSTransport
+
+logger = logging.getLogger(__name__)
+
+
+class Outlets:
+    """The connections to all readers of this process."""
+
+    def __init__(self) -> None:
+        self.lock = threading.RLock()  # closing a connection may log, and so publish
+        self.gathering = False
+        self.filled: list[Outlet] = []  # those that have gathered something
+
+    def serve_publishers(self) -> None:
+        """Let all publishers of this process send so; call once before `init_node`.
+
+        rospy has no public place for this.
+        """
+        rospy.topics.QueuedConnection = lambda *arguments: Outlet(self, *arguments)
+
+    @contextlib.contextmanager
+    def gathered(self) -> Iterator[None]:
+        """Send what is published meanwhile at the end, to each reader in one piece."""
+        self.gathering = True
+        try:
+            yield
+        finally:
+            with self.lock:
+                self.gathering = False
+                for outlet in self.filled:
+                    outlet.flush()
+                self.filled.clear()
+
+
+class Outlet:
+    """A reader's connection, in the place of rospy's QueuedConnection.
+
+    What the reader has no room for now waits for a thread that lives only until all is sent. Of the
+    messages that come meanwhile the newest `queue_size` wait, too; 0 means any number.
+    """
+
+    def __init__(self, outlets: Outlets, connection: TCPROSTransport, queue_size: int) -> None:
+        self._outlets = outlets
+        self._connection = connection
+        self._gathered: list[bytes] = []
+        self._waiting: deque[bytes] = deque(maxlen=queue_size or None)
+        self._draining = False
+
+    def __getattr__(self, name: str) -> object:
+        """Be the connection in everything else."""
+        return getattr(self._connection, name)
+
+    def write_data(self, data: bytes) -> bool:
+        """Send a message now, with others at the end of a batch, or after those that wait already.
+
+        Raises:
+            TransportTerminated: the reader has gone.
+        """
+        if self._connection.done:
+            raise TransportTerminated('connection closed')
+        with self._outlets.lock:
+            if self._draining:
+                self._waiting.append(data)
+            elif self._outlets.gathering:
+                if not self._gathered:
+                    self._outlets.filled.append(self)
+                self._gathered.append(data)
+            else:
+                self._send(data)
+        return True
+
+    def flush(self) -> None:
+        """Send what was gathered; the caller holds the lock."""
+        data = b''.join(self._gathered)
+        self._gathered.clear()
+        self._send(data)
+
+    def _send(self, data: bytes) -> None:
+        """Send what there is room for, and leave the rest to a thread."""
+        connection = self._connection
+        try:
+            sent = connection.socket.send(data, socket.MSG_DONTWAIT)
+        except BlockingIOError:
+            sent = 0
+        except (OSError, AttributeError):  # closed meanwhile by another thread it has no socket
+            connection.close()  # the next message hears of it
+            return
+        connection.stat_bytes += sent
+        connection.stat_num_msg += 1
+        if sent < len(data):
+            self._draining = True
+            threading.Thread(target=self._drain, args=(data[sent:],), daemon=True).start()
+
+    def _drain(self, data: bytes) -> None:
+        """Send the rest, and what came meanwhile, at the pace of the reader."""
+        while True:
+            try:
+                self._connection.write_data(data)
+            except Exception as error:
+                logger.debug('%s stopped reading: %s', self._connection.endpoint_id, error)
+                self._connection.close()
+                return
+            with self._outlets.lock:
+                if not self._waiting:
+                    self._draining = False
+                    return
+                data = b''.join(self._waiting)
+                self._waiting.clear()

@@ -1,0 +1,101 @@
+"""Messages leave on the publisher's own thread; a slow reader loses messages, never their bytes."""
+
+import socket
+import time
+
+import pytest
+from rospy.exceptions import TransportTerminated
+from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
+
+from rosbots_description.ros_api.sending import Outlet, Outlets
+
+DEADLINE = 5.0  # [s] for what takes milliseconds; slow machines are no failure
+SIZE = 1000  # of a message [bytes]; each is one number again and again
+
+
+@pytest.fixture
+def wire():
+    """Give the outlets of a process and the two ends of a connection with little room."""
+    ours, theirs = socket.socketpair()
+    ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 10 * SIZE)
+    theirs.settimeout(DEADLINE)
+    transport = TCPROSTransport(TCPROSTransportProtocol('t', None), 't')
+    transport.set_socket(ours, 'reader')
+    yield Outlets(), transport, theirs
+    transport.close()
+    theirs.close()
+
+
+def message(number):
+    return bytes([number]) * SIZE
+
+
+def read(theirs, until):
+    """Return the numbers of the messages that arrive, up to the message `until`."""
+    numbers = []
+    with theirs.makefile('rb', buffering=0) as stream:
+        while not numbers or numbers[-1] != until:
+            data = b''
+            while len(data) < SIZE:
+                data += stream.read(SIZE - len(data))
+            assert data == message(data[0]), 'messages are torn'
+            numbers.append(data[0])
+    return numbers
+
+
+def test_a_message_is_there_when_the_publisher_goes_on(wire):
+    outlets, transport, theirs = wire
+    Outlet(outlets, transport, 1).write_data(message(7))
+    theirs.setblocking(False)
+    assert theirs.recv(2 * SIZE) == message(7)
+
+
+def test_what_is_published_during_a_batch_comes_at_its_end_in_order(wire):
+    outlets, transport, theirs = wire
+    outlet = Outlet(outlets, transport, 1)
+    with outlets.gathered():
+        for number in (1, 2, 3):
+            outlet.write_data(message(number))
+        theirs.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            theirs.recv(SIZE)
+    assert theirs.recv(10 * SIZE) == message(1) + message(2) + message(3)
+
+
+@pytest.mark.parametrize('batch', [1, 5])
+@pytest.mark.parametrize('queue', [1, 4, 0])
+def test_a_reader_that_stops_keeps_nobody_waiting_and_loses_only_whole_messages(wire, queue, batch):
+    outlets, transport, theirs = wire
+    outlet = Outlet(outlets, transport, queue)
+    begin = time.monotonic()
+    for first in range(0, 200, batch):
+        with outlets.gathered():
+            for number in range(first, first + batch):
+                outlet.write_data(message(number))
+    assert time.monotonic() - begin < DEADLINE
+    numbers = read(theirs, until=199)
+    assert numbers == sorted(set(numbers))
+    assert (len(numbers) == 200) == (queue == 0)
+    _wait_until_drained(outlet, theirs, 200)
+
+
+def _wait_until_drained(outlet, theirs, number):
+    """Check that messages come as before: at once."""
+    end = time.monotonic() + DEADLINE
+    while outlet._draining:
+        assert time.monotonic() < end
+        time.sleep(0.001)
+    outlet.write_data(message(number))
+    assert read(theirs, until=number) == [number]
+
+
+@pytest.mark.parametrize('queue', [1, 0])
+def test_a_reader_that_has_gone_is_reported_to_the_publisher(wire, queue):
+    outlets, transport, theirs = wire
+    outlet, closed = Outlet(outlets, transport, queue), []
+    outlet.set_cleanup_callback(closed.append)
+    theirs.close()
+    outlet.write_data(message(1))
+    assert closed == [transport]
+    with pytest.raises(TransportTerminated):
+        outlet.write_data(message(2))
