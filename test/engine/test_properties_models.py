@@ -1,0 +1,91 @@
+"""What the parsers let through, the engine survives: no crash, no chatter, no harm to others."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support import box_urdf, empty_world, package_directory, robot_urdf, urdf_spec
+from support.descriptions import sdfs, urdfs
+from support.invariants import check_sentence, numbers_in
+from support.isolation import isolated
+from support.mutations import damaged
+
+from rosbots_description.sim.errors import SimError
+from rosbots_description.sim.guard import PERIOD
+from rosbots_description.sim.markup import root_tag
+from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.sdf import load_sdf
+from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.uris import UnknownPackage
+
+STEPS = 20
+ASIDE = Pose((1e4, 1e4, 0.5))  # [m] further away than anything that moves gets
+RIGHT = Pose((0.0, 0.0, 100.0))
+
+
+def read(text):
+    if root_tag(text) == 'robot':
+        return load_urdf(text, 'model', find_package=package_directory)
+    return load_sdf(text, 'model', find_model=lambda _: None, find_package=package_directory)
+
+
+@pytest.fixture(scope='module')
+def world():
+    """Open the world that every example begins with: ground and, far away, a box at rest."""
+    with empty_world() as world:
+        world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'bystander', ASIDE)
+        live(world, robot_urdf(), 100)  # the children inherit its meshes, read and converted
+        yield world
+
+
+def live(world, text, steps):
+    """Spawn, simulate and delete a model; return whether it stayed finite, and the bystander."""
+    spec, pose = read(text)
+    model = world.spawn(spec, 'model', pose if math.hypot(*pose.position) < 1e3 else RIGHT)
+    world.run(steps)
+    states = [link.state() for link in model.links.values()]
+    states += [joint.state() for joint in model.joints.values()]
+    states.append(model.state())
+    numbers = list(numbers_in(states))
+    finite = all(map(math.isfinite, numbers))
+    world.delete('model')
+    assert list(world.models) == ['ground_plane', 'bystander']
+    return finite, world.models['bystander'].state()
+
+
+def survive(world, text):
+    """Do the same with what may be refused; return where the bystander is then."""
+    try:
+        return live(world, text, 2 * PERIOD)[1]
+    except (SimError, UnknownPackage) as error:
+        check_sentence(error)
+        world.run(1)
+        return world.models['bystander'].state()
+
+
+def check_bystander(state):
+    (position, _), (linear, angular) = state
+    assert math.dist(position, ASIDE.position) < 1e-2
+    assert math.hypot(*linear, *angular) < 1e-2
+
+
+@given(st.one_of(urdfs(), sdfs()))
+def test_a_model_that_is_right_is_simulated(world, description):
+    finite, bystander = isolated(lambda: live(world, description.text, STEPS))
+    assert finite
+    check_bystander(bystander)
+
+
+@given(st.data())
+def test_a_damaged_model_harms_nobody(world, data):
+    description = data.draw(st.one_of(urdfs(), sdfs()))
+    text = data.draw(damaged(description.text))
+    check_bystander(isolated(lambda: survive(world, text)))
+
+
+@given(st.data())
+@settings(max_examples=settings.default.max_examples // 2)
+def test_the_damaged_robot_harms_nobody(world, data):
+    text = data.draw(damaged(robot_urdf()))
+    check_bystander(isolated(lambda: survive(world, text)))

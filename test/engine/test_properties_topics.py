@@ -1,0 +1,81 @@
+"""Whatever comes by a topic, nobody else notices, and the next good message counts."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+from gazebo_msgs.msg import LinkState, ModelState
+from geometry_msgs.msg import Twist
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.bench import BYSTANDER, NAMES, PLACE, Bench, furnished_world
+from support.invariants import numbers_in
+from support.isolation import isolated
+from support.requests import messages
+
+from rosbots_description.ros_api import state_commands
+from rosbots_description.ros_api.adapters import diff_drive
+from rosbots_description.sim.guard import PERIOD
+
+NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood
+KINDS = {'set_model_state': ModelState, 'set_link_state': LinkState, 'cmd_vel': Twist}
+SENT = st.sampled_from(sorted(KINDS)).flatmap(
+    lambda kind: st.tuples(st.just(kind), messages(KINDS[kind], NAMES)))
+
+
+@pytest.fixture(scope='module')
+def bench():
+    with furnished_world() as world:
+        world.run(PERIOD)
+        yield Bench(world)
+
+
+@pytest.fixture
+def listeners(bench, monkeypatch):
+    """Return what is called with the messages of a topic, by the last part of its name."""
+    heard = {}
+
+    def subscribe(name, _message_class, callback, **_options):
+        heard[name.rpartition('/')[2].lstrip('~')] = callback
+        return SimpleNamespace(unregister=lambda: None)
+
+    wire = SimpleNamespace(
+        Subscriber=subscribe,
+        Publisher=lambda *_, **__: SimpleNamespace(get_num_connections=lambda: 0),
+    )
+    monkeypatch.setattr(state_commands, 'rospy', wire)
+    monkeypatch.setattr(diff_drive, 'rospy', wire)
+    monkeypatch.setattr(diff_drive, 'find_tf_prefix', lambda _: '')
+    state_commands.subscribe_states(bench.server)
+    (drive,) = bench.world.models['rosbots'].plugins
+    diff_drive.DiffDriveAdapter(bench.server, drive).open()
+    assert sorted(heard) == sorted(KINDS)
+    return heard
+
+
+def live(bench, listeners, sent):
+    """Hand messages over, with some steps after each, then drive; return what has become of all."""
+    world = bench.world
+    for kind, message in sent:
+        listeners[kind](message)
+        world.run(3)
+    world.run(2 * PERIOD)
+    bystander = world.models[BYSTANDER].pose.position
+    world.reset_simulation()
+    world.run(PERIOD)
+    good = Twist()
+    good.linear.x = 0.5
+    listeners['cmd_vel'](good)
+    world.run(PERIOD)
+    wheels = [joint.velocity for joint in world.models['rosbots'].joints.values()]
+    finite = all(math.isfinite(x) for m in world.models.values() for x in numbers_in(m.state()))
+    return bystander, wheels, finite
+
+
+@given(sent=st.lists(SENT, min_size=1, max_size=6))
+@settings(max_examples=settings.default.max_examples // 2)
+def test_topics_take_whatever_is_sent(bench, listeners, sent):
+    bystander, wheels, finite = isolated(lambda: live(bench, listeners, sent))
+    assert math.dist(bystander, PLACE.position) < NEAR
+    assert finite
+    assert min(wheels) > 0.1  # [rad/s], on the way to 1.9

@@ -1,0 +1,86 @@
+"""Any model that can be simulated is read whole; anything else is refused in one sentence."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from support import package_directory, robot_urdf
+from support.descriptions import sdfs, urdfs
+from support.invariants import check_sentence, check_spec, total
+from support.mutations import RAW, damaged, spoiled
+
+from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.markup import parse, root_tag
+from rosbots_description.sim.sdf import load_sdf, load_sdf_light
+from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.uris import UnknownPackage
+
+ROUNDING = 1e-6  # relative; masses differ by up to six orders of magnitude
+
+
+def read_urdf(text):
+    return load_urdf(text, 'model', find_package=package_directory)[0]
+
+
+def read_sdf(text):
+    return load_sdf(text, 'model', find_model=lambda _: None, find_package=package_directory)[0]
+
+
+def read_any(text):
+    """Return the model, or None if the text is refused as it should be."""
+    read = read_urdf if root_tag(text) == 'robot' else read_sdf
+    try:
+        spec = read(text)
+    except (ModelError, UnknownPackage) as error:
+        check_sentence(error)
+        return None
+    check_spec(spec)
+    return spec
+
+
+@given(urdfs())
+def test_of_a_urdf_all_mass_is_simulated_where_it_was(description):
+    spec = read_urdf(description.text)
+    check_spec(spec)
+    if not spec.static:
+        mass, centre = total(spec)
+        assert mass == pytest.approx(description.mass, rel=ROUNDING)
+        assert centre == pytest.approx(description.centre, rel=ROUNDING, abs=1e-6)
+    assert len(spec.links) + len(spec.lumped) == description.links
+
+
+@given(sdfs())
+def test_of_an_sdf_all_links_are_simulated_where_they_were(description):
+    spec = read_sdf(description.text)
+    check_spec(spec)
+    mass, centre = total(spec)
+    assert len(spec.links) == description.links
+    assert mass == pytest.approx(description.mass, rel=ROUNDING)
+    assert centre == pytest.approx(description.centre, rel=ROUNDING, abs=1e-6)
+
+
+@given(st.data())
+def test_a_damaged_description_is_a_model_or_a_refusal(data):
+    description = data.draw(st.one_of(urdfs(), sdfs()))
+    read_any(data.draw(damaged(description.text)))
+
+
+@given(st.data())
+def test_one_wrong_value_makes_a_model_or_a_refusal(data):
+    description = data.draw(st.one_of(urdfs(), sdfs()))
+    read_any(data.draw(spoiled(description.text)))
+
+
+@given(st.data())
+def test_the_damaged_robot_is_a_model_or_a_refusal(data):
+    read_any(data.draw(damaged(robot_urdf())))
+
+
+@given(RAW)
+def test_any_text_is_a_model_or_a_refusal(text):
+    root_tag(text)
+    for read in (parse, load_sdf_light, load_urdf):
+        try:
+            read(text, 'it')
+        except ModelError as error:
+            check_sentence(error)
+    read_any(text)
