@@ -1,6 +1,8 @@
 """The article's robot for the benchmarks."""
 
+import contextlib
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import xacro
@@ -8,16 +10,25 @@ import xacro
 from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.spec import ModelSpec
 from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.world import World
+from rosbots_description.sim.worlds import add_empty_world
 
 ROOT = Path(__file__).resolve().parents[1]
+OUTPUT = ROOT / '.ws' / 'benchmark'  # pictures and logs
 SPAWN_POSE = Pose((0.0, 0.0, 0.5))  # of spawn.launch
 SETTLED = 2500  # steps after which the robot has fallen from there and stands
+FORWARD = 0.5  # [m/s] at which robots drive where only the cost of driving counts
 
 
-def robot_urdf() -> str:
-    """Return the URDF text of the article's robot, its meshes as plain paths."""
-    os.environ['ROS_PACKAGE_PATH'] = str(ROOT)
-    document = xacro.process_file(str(ROOT / 'urdf' / 'rosbots.xacro'), mappings={})
+def robot_urdf(**arguments: str) -> str:
+    """Return the URDF text of the article's robot, its meshes as plain paths.
+
+    Args:
+        arguments: of the xacro file.
+    """
+    # xacro asks rospack for packages
+    os.environ.setdefault('ROS_PACKAGE_PATH', str(ROOT))
+    document = xacro.process_file(str(ROOT / 'urdf' / 'rosbots.xacro'), mappings=arguments)
     text = document.toprettyxml(indent=' ')
     return text.replace('package://rosbots_description', str(ROOT))
 
@@ -25,3 +36,18 @@ def robot_urdf() -> str:
 def robot_spec() -> ModelSpec:
     """Return the article's robot as the simulator takes it."""
     return load_urdf(robot_urdf(), 'rosbots', robot_namespace='/')[0]
+
+
+@contextlib.contextmanager
+def driven_world(robots: int, distance: float, driving: bool) -> Iterator[World]:
+    """Give an empty world with robots side by side, `distance` [m] apart; free it at the end."""
+    world = World()
+    try:
+        add_empty_world(world)
+        spec = robot_spec() if robots else None
+        for i in range(robots):
+            model = world.spawn(spec, f'robot{i}', Pose((0.0, distance * i, 0.5)))
+            model.plugins[0].command(FORWARD if driving else 0.0, 0.0)
+        yield world
+    finally:
+        world.close()

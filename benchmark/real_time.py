@@ -1,98 +1,135 @@
 #!/usr/bin/env python3
-"""Measure the whole server on the wire, at its default rate, with a robot that drives.
+"""Measure the whole server at its default rate: its processor time, its haste and its size.
 
-odom, tf, joint_states and model_states are subscribed. Printed: real-time factor (to be 1.00 +-
-0.01), messages per simulated second, the server's share of a core and its memory, how long start
-and spawn take, and how long services take to answer.
+Processor time is compared with what Gazebo needed, times how much slower the bare PyBullet loop
+runs now than it ran beside Gazebo. The least of several windows counts, and the soonest of several
+starts: whatever else the machine does can only add. The rest is printed as it is.
 """
 
-import os
-import socket
-import statistics
-import subprocess
-import sys
-import tempfile
-import time
-from collections import Counter
-from pathlib import Path
+from __future__ import annotations
 
-import rosgraph
+import json
+import statistics
+import sys
+import threading
+import time
+from itertools import cycle
+
 import rospy
 import rosservice
-from gazebo_msgs.msg import ModelStates
-from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry
-from sensor_msgs.msg import JointState
-from tf2_msgs.msg import TFMessage
+from article import FORWARD, ROOT
+from gazebo_msgs.msg import LinkStates
+from gazebo_msgs.srv import GetLinkState, GetModelState, GetWorldProperties
+from lateness import RESULT
+from loops import Loop
+from server import Server, in_a_process_of_its_own, wait_until
 
-from rosbots_description.cli.launched import Launched
-
-SECONDS = 10.0  # [s, wall]
+WINDOW = 3.0  # [s, wall]
+ROUNDS = 4
+GAZEBO_CPU = {0: 10.0, 1: 13.0}  # [% of a core] by robots, /clock at every step
+GAZEBO_MEMORY = {1: 174.0, 20: 343.0}  # [MB] by robots
+GAZEBO_BARE = 25_300.0  # steps/s of the bare loop beside Gazebo, one robot driving
+SPAWNS = 20
+COMMANDS = 50
+SLOW = 0.1  # [m/s] of the commands whose effect is awaited
+TURNING = 0.02  # [rad/s] at which a wheel has begun to turn; the first step gives it twice as much
+HAMMER_RATE, HAMMER_SECONDS = 200.0, 10.0  # [Hz], [s, wall] of service calls
 CALLS = 50  # of each service
 SLOWEST = 5  # services to be named
 # What an empty request would change for what comes after.
 NOT_CALLED = {'spawn_urdf_model', 'spawn_sdf_model', 'set_physics_properties', 'pause_physics',
               'reset_world', 'reset_simulation', 'step'}
-TOPICS = {
-    '/odom': Odometry,
-    '/tf': TFMessage,
-    '/joint_states': JointState,
-    '/gazebo/model_states': ModelStates,
-}
+WHEEL = 'robot0::wheel_left_link'
 
 
-def server_process() -> int:
-    """Return the process number of the simulator of this master."""
-    listing = subprocess.run(
-        ['rosnode', 'info', '/gazebo'], capture_output=True, text=True, check=True
-    )
-    return int(listing.stdout.rsplit('Pid:', 1)[1].split()[0])
+def measure_cost(frequency: int, slowness: float) -> float:
+    """Print what the server costs with /clock at that rate [Hz]; return how long it took to start.
+
+    Args:
+        slowness: of this machine, against the one that Gazebo was measured on.
+    """
+    arguments = ('use_clock_frequency:=true', f'pub_clock_frequency:={frequency}')
+    with Server(*arguments) as server:
+        for robots, share in GAZEBO_CPU.items():
+            if robots:
+                server.spawn()
+                server.drive()
+            server.settle(2.0)
+            used, factor = _least_share(server)
+            scaled = share * slowness
+            print(f'/clock {frequency:4} Hz, robots driving {robots}: {used:5.1f} % of a core, '
+                  f'Gazebo {share:g} % then, {scaled:.1f} % here: {used / scaled:.2f} of it; '
+                  f'real-time factor {factor:.4f}')
+        print(f'memory with 1 robot: {server.memory():.0f} MB (Gazebo {GAZEBO_MEMORY[1]:.0f})')
+        return server.seconds_to_spawn_service
 
 
-def cpu_seconds(process: int) -> float:
-    """Return the processor time that a process has used so far [s]."""
-    fields = Path(f'/proc/{process}/stat').read_text(encoding='ascii').rsplit(')', 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+def _least_share(server: Server) -> tuple[float, float]:
+    """Return the least share of a core [%] and the real-time factor over all windows."""
+    shares, begin, simulated = [], time.monotonic(), server.simulated()
+    for _ in range(ROUNDS):
+        used, before = server.cpu_seconds(), time.monotonic()
+        time.sleep(WINDOW)
+        shares.append(100.0 * (server.cpu_seconds() - used) / (time.monotonic() - before))
+    return min(shares), (server.simulated() - simulated) / (time.monotonic() - begin)
 
 
-def measure() -> None:
-    """Drive the robot and print what was measured; simulator and robot are there."""
-    counts, stamps = Counter(), []
-    for name, message_class in TOPICS.items():
-        rospy.Subscriber(name, message_class, lambda _, name=name: counts.update([name]))
-    rospy.Subscriber(
-        '/odom', Odometry, lambda m: stamps.append((time.monotonic(), m.header.stamp.to_sec()))
-    )
-    publisher = rospy.Publisher('/part2_cmr/cmd_vel', Twist, queue_size=1)
-    while not publisher.get_num_connections() or len(stamps) < 100:
-        time.sleep(0.05)
-    command = Twist()
-    command.linear.x, command.angular.z = 0.5, 0.5
-    publisher.publish(command)
-    process = server_process()
-    counts.clear()
-    stamps.clear()
-    used, begin = cpu_seconds(process), time.monotonic()
-    time.sleep(SECONDS)
-    used, elapsed = cpu_seconds(process) - used, time.monotonic() - begin
-    simulated = stamps[-1][1] - stamps[0][1]
-    print(f'real-time factor      {simulated / (stamps[-1][0] - stamps[0][0]):.4f}')
-    for name in TOPICS:
-        print(f'{name:21} {counts[name] / simulated:.0f} /s')
-    print(f'processor             {100 * used / elapsed:.0f} % of a core')
-    publisher.publish(Twist())  # what is measured after this is not to find it driving
-    pages = int(Path(f'/proc/{process}/statm').read_text(encoding='ascii').split()[1])
-    print(f'memory                {pages * os.sysconf("SC_PAGE_SIZE") / 1e6:.0f} MB')
+def measure_answers() -> float:
+    """Print how soon spawns, commands and services take effect; return the time to start."""
+    with Server() as server:
+        print_times('command to wheel', _command_times(server), 'one period of 10 ms and 3 ms')
+        print_times('spawn of the robot', [server.spawn() for _ in range(SPAWNS)], '100 ms')
+        print(f'memory with {SPAWNS + 1} robots: {server.memory():.0f} MB '
+              f'(Gazebo with 20: {GAZEBO_MEMORY[20]:.0f})')
+        _print_services()
+        return server.seconds_to_spawn_service
 
 
-def measure_services() -> None:
-    """Print how long services take to answer while all stands; each is to stay below 10 ms."""
+def _command_times(server: Server) -> list[float]:
+    """Return how long after each of several commands a wheel of a standing robot turns [s, wall].
+
+    What is seen is a step later than the wheel's target, and has come over the wire.
+    """
+    speed, moved = [0.0], threading.Event()
+
+    def see(message: LinkStates) -> None:
+        twist = message.twist[message.name.index(WHEEL)].angular
+        speed[0] = max(abs(twist.x), abs(twist.y), abs(twist.z))
+        if speed[0] > TURNING:
+            moved.set()
+
+    server.spawn()
+    server.settle(2.0)
+    subscriber = rospy.Subscriber('/gazebo/link_states', LinkStates, see, tcp_nodelay=True)
+    wait_until(subscriber.get_num_connections, 'link_states')
+    times = []
+    for _ in range(COMMANDS):
+        server.drive(0.0)
+        wait_until(lambda: speed[0] < TURNING / 10.0, 'a standing wheel')
+        time.sleep(0.1 + 0.01 * len(times) / COMMANDS)  # at all phases of the plugin's period
+        moved.clear()
+        begin = time.monotonic()
+        server.drive(SLOW)
+        if not moved.wait(1.0):
+            raise TimeoutError('the wheel did not turn within 1 s of the command')
+        times.append(time.monotonic() - begin)
+    subscriber.unregister()
+    return times
+
+
+def print_times(what: str, times: list[float], aim: str) -> None:
+    """Print the middle and the longest of some times [s]."""
+    print(f'{what}: median {1000 * statistics.median(times):.1f} ms, '
+          f'longest of {len(times)} {1000 * max(times):.1f} ms (aim {aim})')
+
+
+def _print_services() -> None:
+    """Print how long services take to answer while robots stand."""
     times = []
     for name in rosservice.get_service_list(node='/gazebo'):
         if name.rsplit('/', 1)[1] in NOT_CALLED:
             continue
-        service_class = rosservice.get_service_class_by_name(name)
-        call = rospy.ServiceProxy(name, service_class, persistent=True)
+        call = rospy.ServiceProxy(name, rosservice.get_service_class_by_name(name), persistent=True)
         call()
         taken = []
         for _ in range(CALLS):
@@ -105,32 +142,46 @@ def measure_services() -> None:
         print(f'{name:37} answers in {1000 * median:.2f} ms (median)')
 
 
-def main() -> int:
-    """Start everything on a master of its own, measure, end it; return the exit code."""
-    with socket.socket() as probe:
-        probe.bind(('localhost', 0))
-        port = probe.getsockname()[1]
-    os.environ.update(ROS_MASTER_URI=f'http://localhost:{port}', ROS_HOSTNAME='localhost')
-    with tempfile.TemporaryDirectory() as folder:
-        logs = Path(folder)
+def measure_lateness() -> None:
+    """Print how late steps are while one robot drives and a client calls services."""
+    with Server(launch=[str(ROOT / 'benchmark' / 'recorded.launch')]) as server:
+        server.spawn()
+        server.settle(2.0)
+        server.drive(FORWARD)
+        model = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
+        link = rospy.ServiceProxy('/gazebo/get_link_state', GetLinkState)
+        world = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)
+        requests = cycle((lambda: model('robot0', ''), lambda: link(WHEEL, ''), world))
         begin = time.monotonic()
-        world = ['gazebo_ros', 'empty_world.launch', 'gui:=false']
-        with Launched(world, logs / 'server.log', os.environ):
-            while not rosgraph.is_master_online():
-                time.sleep(0.02)
-            rospy.init_node('real_time', disable_rostime=True, disable_signals=True)
-            rospy.wait_for_service('/gazebo/spawn_urdf_model', 30.0)
-            print(f'spawn service up      {time.monotonic() - begin:.2f} s after roslaunch')
-            begin = time.monotonic()
-            robot = ['rosbots_description', 'spawn.launch']
-            with Launched(robot, logs / 'spawn.log', os.environ) as spawn:
-                if not spawn.wait(30.0):
-                    print(spawn.complaint(), file=sys.stderr)
-                    return 1
-            print(f'spawn.launch          {time.monotonic() - begin:.2f} s in all')
-            measure()
-            measure_services()
-            rospy.signal_shutdown('measured')
+        for i in range(int(HAMMER_RATE * HAMMER_SECONDS)):
+            next(requests)()
+            time.sleep(max(0.0, begin + (i + 1) / HAMMER_RATE - time.monotonic()))
+        rate = HAMMER_RATE * HAMMER_SECONDS / (time.monotonic() - begin)
+    late = json.loads(RESULT.read_text(encoding='utf-8'))
+    print(f'steps late, at {rate:.0f} calls/s: '
+          + ', '.join(f'{share} {1000 * seconds:.2f} ms' for share, seconds in late.items())
+          + ' (aim: p99 below 2 ms)')
+
+
+def slowness() -> float:
+    """Return how much slower the bare loop runs here and now than beside Gazebo."""
+    with Loop('bare', 1, driving=True) as loop:
+        loop.speed(0.0)  # until it is ready
+        return GAZEBO_BARE / max(loop.speed(0.5) for _ in range(2 * ROUNDS))
+
+
+def main() -> int:
+    """Measure each in a process of its own; return the exit code."""
+    slower = slowness()
+    print(f'bare PyBullet takes {slower:.2f} times as long as it did beside Gazebo')
+    starts = [
+        in_a_process_of_its_own(measure_cost, 100, slower),
+        in_a_process_of_its_own(measure_cost, 1000, slower),
+        in_a_process_of_its_own(measure_answers),
+    ]
+    print(f'spawn service up {min(starts):.2f} s after roslaunch, which starts the master too '
+          '(aim 1.1 s; Gazebo 0.9 to 1.5 s)')
+    in_a_process_of_its_own(measure_lateness)
     return 0
 
 

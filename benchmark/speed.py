@@ -1,96 +1,189 @@
 #!/usr/bin/env python3
-"""Measure steps per wall second, beside a bare PyBullet loop in the same run.
+"""Measure steps per wall second of the whole server, beside a bare PyBullet loop in the same run.
 
-The bare loop takes the article's URDF as it is (17 links) and does nothing but step. Ours does
-everything the simulator does for a driving robot with nobody subscribed. The quotient of the two
-does not depend on the machine; Gazebo's, measured once against the same bare loop, stands beside.
+The server is roscore, rosout and gzserver, as fast as it can, with /clock at 100 Hz and nobody else
+subscribed; robots carry the diff-drive plugin at 100 Hz. The bare loop, in a process of its own,
+takes the article's URDF as it is (17 links) and does nothing but step. Gazebo was once measured
+beside that loop; the bare loop's speed times the quotient of then is what Gazebo would do here.
+
+The loops take turns in short windows and the best of each counts: whatever else the machine does
+can only slow a loop down.
 """
 
-import logging
+from __future__ import annotations
+
 import sys
-import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
 
-from article import SETTLED, robot_spec, robot_urdf
+from article import OUTPUT
+from loops import Loop
+from plot import plot_speed
+from reader import PER_SECOND, Reader
+from server import Server, in_a_process_of_its_own
 
-from rosbots_description.sim.engine import pybullet
-from rosbots_description.sim.pose import Pose
-from rosbots_description.sim.silence import silent
-from rosbots_description.sim.world import World
-from rosbots_description.sim.worlds import add_empty_world
-
-ROBOTS = (0, 1, 5, 10, 20)
-GAZEBO = {0: 0.072, 1: 0.87, 5: 0.98, 10: 1.04, 20: 1.05}  # its steps / those of the bare loop
-SECONDS = 2.0  # [s, wall] for each measurement
-DISTANCE = 3.0  # [m] between robots
-
-
-def measure(step: Callable[[int], None], batch: int) -> float:
-    """Return steps per second."""
-    steps, begin = 0, time.perf_counter()
-    while (elapsed := time.perf_counter() - begin) < SECONDS:
-        step(batch)
-        steps += batch
-    return steps / elapsed
+WINDOW = 0.5  # [s, wall]
+ROUNDS = 5  # windows of each loop
+SETTLE = 1.0  # [s, simulated] until robots that were spawned stand, or drive steadily
+LOOPS = ('bare', 'engine', 'world')
+COLUMNS = (*LOOPS, 'server', 'read')
+PICTURE = OUTPUT / 'speed.png'
 
 
-def bare(robots: int) -> float:
-    """Return the steps per second of PyBullet alone, robots driving."""
-    client = pybullet.connect(pybullet.DIRECT)
-    try:
-        pybullet.setGravity(0, 0, -9.8, client)
-        pybullet.setTimeStep(0.001, client)
-        ground = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
-        pybullet.createMultiBody(0, ground, physicsClientId=client)
-        with tempfile.NamedTemporaryFile('w', suffix='.urdf') as file:
-            file.write(robot_urdf())
-            file.flush()
-            for i in range(robots):
-                place = [0.0, DISTANCE * i, 0.2]
-                with silent():
-                    body = pybullet.loadURDF(file.name, place, physicsClientId=client)
-                for joint in range(pybullet.getNumJoints(body, client)):
-                    if pybullet.getJointInfo(body, joint, client)[2] == pybullet.JOINT_REVOLUTE:
-                        pybullet.setJointMotorControl2(
-                            body, joint, pybullet.VELOCITY_CONTROL, targetVelocity=1.9, force=5.0,
-                            physicsClientId=client,
-                        )
+@dataclass
+class Case:
+    """So many robots, what Gazebo made of them, and what was measured.
 
-        def step(count: int) -> None:
-            for _ in range(count):
-                pybullet.stepSimulation(client)
+    Gazebo's quotient beside 5 robots and more is that of standing robots; its own speed was the
+    same with 20 that drove, but the bare loop's was not. So the bare loop's robots stand there.
+    """
 
-        step(SETTLED)
-        return measure(step, 100 if robots else 10_000)
-    finally:
-        pybullet.disconnect(client)
+    robots: int
+    driving: bool
+    quotient: float | None = None  # Gazebo's steps per second / those of the bare loop
+    aim: float | None = None  # ours / Gazebo's
+    aim_read: float | None = None  # the same with odom, tf and joint_states subscribed
+    bare_drives: bool = False
+    best: dict[str, float] = field(default_factory=dict)  # column -> steps per second
+    arrived: float = 0.0  # share of the messages that reached their reader
+
+    @property
+    def name(self) -> str:
+        """Return what a row of the table is called."""
+        return f'{self.robots} {"driving" if self.driving else "idle"}' if self.robots else 'empty'
+
+    @property
+    def gazebo(self) -> float | None:
+        """Return the steps per second that Gazebo would make here."""
+        return self.quotient * self.best['bare'] if self.quotient else None
+
+    def saw(self, column: str, speed: float) -> None:
+        """Take note of a window."""
+        self.best[column] = max(speed, self.best.get(column, 0.0))
 
 
-def ours(robots: int) -> float:
-    """Return the steps per second of the simulator, robots driving."""
-    world = World()
-    try:
-        add_empty_world(world)
-        spec = robot_spec()
-        for i in range(robots):
-            model = world.spawn(spec, f'robot{i}', Pose((0.0, DISTANCE * i, 0.5)))
-            model.plugins[0].command(0.5, 0.0)
-        world.run(SETTLED)
-        return measure(world.run, 100 if robots else 10_000)
-    finally:
-        world.close()
+def cases() -> list[Case]:
+    """Return what is measured, in an order in which robots are only added."""
+    return [
+        Case(0, False, 0.072, aim=3.0),
+        Case(1, False, 0.58),
+        Case(1, True, 0.87, aim=3.0, aim_read=1.2, bare_drives=True),
+        Case(5, True, 0.98),
+        Case(10, True, 1.04),
+        Case(20, True, 1.05, aim=2.0),
+        Case(50, True),
+    ]
+
+
+def measure() -> list[Case]:
+    """Return all cases, measured; starts a server and needs a process of its own."""
+    measured = cases()
+    with Server('use_clock_frequency:=true', 'pub_clock_frequency:=100') as server:
+        server.unthrottle()
+        spawned = 0
+        for case in measured:
+            while spawned < case.robots:
+                server.spawn()
+                spawned += 1
+            server.settle(SETTLE)
+            if case.driving:
+                server.drive()
+                server.settle(SETTLE)
+            server.pause()
+            _take_turns(case, server)
+            server.unpause()
+    return measured
+
+
+def _take_turns(case: Case, server: Server) -> None:
+    with ExitStack() as stack:
+        loops = {}
+        for kind in LOOPS:
+            driving = case.bare_drives if kind == 'bare' else case.driving
+            loops[kind] = stack.enter_context(Loop(kind, case.robots, driving))
+        for loop in loops.values():
+            loop.speed(0.0)  # until it is ready
+        for _ in range(ROUNDS):
+            for kind, loop in loops.items():
+                case.saw(kind, loop.speed(WINDOW))
+            case.saw('server', _speed(server))
+            if case.robots:
+                speed, arrived = _speed_read(server, case.robots)
+                case.saw('read', speed)
+                case.arrived = max(case.arrived, arrived)
+
+
+def _speed(server: Server) -> float:
+    """Return the server's steps per second over a window; it is paused before and after."""
+    server.unpause()
+    begin, simulated = time.monotonic(), server.simulated()
+    time.sleep(WINDOW)
+    end, simulated = time.monotonic(), server.simulated() - simulated
+    server.pause()
+    return 1000.0 * simulated / (end - begin)
+
+
+def _speed_read(server: Server, robots: int) -> tuple[float, float]:
+    """Return the steps per second with a reader, and the share of the messages that reached it."""
+    with Reader(robots) as reader:
+        before, simulated = reader.messages(), server.simulated()
+        speed = _speed(server)
+        simulated = server.simulated() - simulated
+        return speed, (reader.messages() - before) / (PER_SECOND * robots * simulated)
+
+
+def table(measured: Sequence[Case]) -> str:
+    """Return the measured cases as text."""
+    rows = ['robots        bare  engine   world  server    read  Gazebo  server/bare  '
+            'server/Gazebo        read/Gazebo  arrived']
+    for case in measured:
+        speeds = [*(case.best.get(column) for column in COLUMNS), case.gazebo]
+        row = f'{case.name:10}'
+        row += ''.join(f'{speed:8.0f}' if speed else 8 * ' ' for speed in speeds)
+        row += f'{case.best["server"] / case.best["bare"]:13.3f}'
+        row += f'{_against(case, "server", case.aim):>20}'
+        row += f'{_against(case, "read", case.aim_read):>18}'
+        row += f'{case.arrived:9.0%}' if case.robots else ''
+        rows.append(row)
+    real_time = next(case.best['read'] for case in measured if case.robots == 20) / 1000.0
+    rows.append(f'20 robots with readers run at {real_time:.2f} of real time (aim 1)')
+    return '\n'.join(rows)
+
+
+def _against(case: Case, column: str, aim: float | None) -> str:
+    """Return a quotient with Gazebo's speed, and whether it is what was aimed at."""
+    if not case.gazebo or column not in case.best:
+        return ''
+    ratio = case.best[column] / case.gazebo
+    return f'{ratio:.2f}' + (f' ({"met" if ratio >= aim else "NOT met"}: {aim:g})' if aim else '')
+
+
+def draw(measured: Sequence[Case], path: Path) -> None:
+    """Save the speeds of driving robots as a picture."""
+    shown = [case for case in measured if case.driving]
+    names = {
+        'server': 'nobody subscribed',
+        'read': 'odom, tf and joint_states subscribed',
+        'bare': 'bare PyBullet',
+    }
+    curves = {
+        name: [(case.robots, case.best[column]) for case in shown] for column, name in names.items()
+    }
+    curves['Gazebo, nobody subscribed'] = [
+        (case.robots, case.gazebo) for case in shown if case.gazebo
+    ]
+    plot_speed(path, curves)
 
 
 def main() -> int:
-    """Print the table; return the exit code."""
-    logging.disable(logging.WARNING)
-    print('robots driving   bare PyBullet       ours   ours/bare   Gazebo/bare   ours/Gazebo')
-    for robots in ROBOTS:
-        reference, own = bare(robots), ours(robots)
-        ratio = own / reference
-        print(f'{robots:14} {reference:11.0f} /s {own:8.0f} /s {ratio:11.2f} '
-              f'{GAZEBO[robots]:13.3f} {ratio / GAZEBO[robots]:13.2f}')
+    """Print the table, save the picture; return the exit code."""
+    measured = in_a_process_of_its_own(measure)
+    print(table(measured))
+    draw(measured, PICTURE)
+    print(f'picture: {PICTURE}')
     return 0
 
 

@@ -1,15 +1,18 @@
 """./rosbots passes exit codes on and says in one sentence what it does not know."""
 
+import os
 import subprocess
 
 import pytest
 from support import ROOT
+from support.surroundings import unshare
 
 
-def rosbots(*arguments, script=''):
+def rosbots(*arguments, script='', prefix=(), **environment):
     return subprocess.run(
-        [ROOT / 'rosbots', *arguments],
+        [*prefix, ROOT / 'rosbots', *arguments],
         input=script,
+        env={**os.environ, **environment},
         capture_output=True,
         text=True,
         timeout=60,
@@ -47,3 +50,23 @@ def test_a_shell_reads_commands_and_knows_roscd():
     result = rosbots('shell', script='roscd rosbots_description\npwd -P\nexit 3\n')
     assert result.returncode == 3, result.stderr
     assert result.stdout.strip() == str(ROOT)
+
+
+def test_logs_have_a_folder_without_a_home():
+    nothing = '/dev/null/home'
+    result = rosbots('exec', 'sh', '-c', 'test -w "$ROS_HOME/log"', HOME=nothing, ROS_HOME='')
+    assert result.returncode == 0, result.stderr
+
+
+def test_names_and_files_are_utf8_in_every_locale():
+    program = 'import sys; print(sys.getfilesystemencoding(), open(0).encoding)'
+    result = rosbots('exec', 'python3', '-c', program, LC_ALL='C', PYTHONUTF8='0')
+    assert result.stdout.split() == ['utf-8', 'utf-8']
+
+
+@pytest.mark.parametrize(('name', 'address'), [('localhost', ''), ('leads.nowhere', 'localhost')])
+def test_a_machine_whose_name_leads_nowhere_is_called_localhost(name, address):
+    rename = f'hostname {name} && exec "$@"'
+    renamed = (*unshare('uts'), 'sh', '-c', rename, 'sh')
+    result = rosbots('exec', 'printenv', 'ROS_HOSTNAME', prefix=renamed, ROS_HOSTNAME='', ROS_IP='')
+    assert result.stdout.strip() == address, result.stderr

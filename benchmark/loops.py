@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Loops that make steps without ROS, each in a process of its own, a window of time at a time.
+
+    bare    PyBullet alone with the article's URDF as it is (17 links); it steps and nothing else
+    engine  our engine alone, with the robot as the simulator describes it (3 links)
+    world   the simulator without ROS: engine, clock, plugins; nobody reads what they report
+
+The process is told the kind, the number of robots and 1 if they drive. Each line on its standard
+input is a window [s, wall]; it answers with the steps per second.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+
+from article import driven_world, robot_urdf
+
+from rosbots_description.sim.bullet import pybullet
+from rosbots_description.sim.silence import silent
+
+STANDING = 1000  # steps after which robots have fallen and stand
+DISTANCE = 3.0  # [m] between robots
+WHEEL_SPEED = 1.9  # [rad/s] of a robot that drives at 0.5 m/s
+WHEEL_TORQUE = 5.0  # [N m]
+BATCH = 0.01  # [s, wall] between two looks at the clock
+
+Steps = Callable[[int], None]
+
+
+class Loop:
+    """One of the loops, in a process of its own that waits between windows."""
+
+    def __init__(self, kind: str, robots: int, driving: bool) -> None:
+        """Start the process; the first window waits until its robots stand."""
+        self._process = subprocess.Popen(
+            [sys.executable, __file__, kind, str(robots), str(int(driving))],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        )
+
+    def __enter__(self) -> Loop:
+        return self
+
+    def __exit__(self, *_exception) -> None:
+        self._process.communicate()
+
+    def speed(self, seconds: float) -> float:
+        """Return the steps per second over a window [s, wall]."""
+        self._process.stdin.write(f'{seconds}\n')
+        self._process.stdin.flush()
+        return float(self._process.stdout.readline())
+
+
+@contextlib.contextmanager
+def bare(robots: int, driving: bool) -> Iterator[Steps]:
+    """Give the step function of PyBullet alone."""
+    client = pybullet.connect(pybullet.DIRECT)
+    pybullet.setGravity(0, 0, -9.8, client)
+    pybullet.setTimeStep(0.001, client)
+    ground = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
+    pybullet.createMultiBody(0, ground, physicsClientId=client)
+    with tempfile.NamedTemporaryFile('w', suffix='.urdf') as file, silent():
+        file.write(robot_urdf())
+        file.flush()
+        bodies = [
+            pybullet.loadURDF(file.name, [0.0, DISTANCE * i, 0.2], physicsClientId=client)
+            for i in range(robots)
+        ]
+
+    def step(count: int) -> None:
+        for _ in range(count):
+            pybullet.stepSimulation(client)
+
+    step(STANDING)  # motors that start in the air overturn this robot
+    for body in bodies if driving else ():
+        _drive(body, client)
+    yield step
+    pybullet.disconnect(client)
+
+
+def _drive(body: int, client: int) -> None:
+    for joint in range(pybullet.getNumJoints(body, client)):
+        if pybullet.getJointInfo(body, joint, client)[2] == pybullet.JOINT_REVOLUTE:
+            pybullet.setJointMotorControl2(
+                body, joint, pybullet.VELOCITY_CONTROL, targetVelocity=WHEEL_SPEED,
+                force=WHEEL_TORQUE, physicsClientId=client,
+            )
+
+
+@contextlib.contextmanager
+def world(robots: int, driving: bool) -> Iterator[Steps]:
+    """Give the step function of the simulator without ROS."""
+    with driven_world(robots, DISTANCE, driving) as made:
+        made.run(STANDING)
+        yield made.run
+
+
+@contextlib.contextmanager
+def engine(robots: int, driving: bool) -> Iterator[Steps]:
+    """Give the step function of our engine, its motors as the plugins left them."""
+    with driven_world(robots, DISTANCE, driving) as made:
+        made.run(STANDING)
+        yield made.engine.step
+
+
+def measure(step: Steps, seconds: float, batch: int) -> float:
+    """Return the steps per second over a window [s, wall], counted in batches."""
+    steps, begin = 0, time.perf_counter()
+    while (elapsed := time.perf_counter() - begin) < seconds:
+        step(batch)
+        steps += batch
+    return steps / elapsed
+
+
+def main() -> int:
+    """Serve windows until the input ends; return the exit code."""
+    logging.disable(logging.WARNING)
+    kind, robots, driving = sys.argv[1:]
+    loop = {'bare': bare, 'engine': engine, 'world': world}[kind]
+    with loop(int(robots), driving == '1') as step:
+        batch = max(1, round(BATCH * measure(step, BATCH, 10)))
+        for line in sys.stdin:
+            print(measure(step, float(line), batch), flush=True)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,183 @@
+"""A whole server for the benchmarks: roscore and gzserver on a master of their own.
+
+A process can have one ROS master in its life, so each server is to be measured by a process of its
+own: `in_a_process_of_its_own`.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import rosgraph
+import rospy
+from article import FORWARD, OUTPUT, robot_urdf
+from gazebo_msgs.srv import (
+    DeleteModel,
+    GetPhysicsProperties,
+    GetWorldProperties,
+    SetPhysicsProperties,
+    SetPhysicsPropertiesRequest,
+    SpawnModel,
+)
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist
+from std_srvs.srv import Empty
+
+from rosbots_description.cli.launched import Launched
+
+PATIENCE = 30.0  # [s, wall] for what takes a second
+EMPTY_WORLD = ('gazebo_ros', 'empty_world.launch', 'gui:=false')
+DISTANCE = 3.0  # [m] between robots
+COMMANDS = 'cmd_vel'  # below a robot's namespace, where the article's robot has /part2_cmr/cmd_vel
+
+
+def in_a_process_of_its_own(function: Callable, *arguments: object) -> object:
+    """Return what a module's function returns in a fresh process."""
+    with ProcessPoolExecutor(1, get_context('spawn')) as pool:
+        return pool.submit(function, *arguments).result()
+
+
+class Server:
+    """What `roslaunch gazebo_ros empty_world.launch gui:=false` starts, its own master included.
+
+    This process is the node /benchmark beside it, which does not listen to /clock.
+    `seconds_to_spawn_service` [s, wall] is how long after roslaunch the spawn service was there.
+    """
+
+    def __init__(self, *arguments: str, launch: Sequence[str] = EMPTY_WORLD) -> None:
+        """Start it, with further arguments for roslaunch, and wait for its services."""
+        os.environ.update(ROS_MASTER_URI=_free_master(), ROS_HOSTNAME='localhost')
+        logging.getLogger('rosout').setLevel(logging.WARNING)
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        begin = time.monotonic()
+        self._launched = Launched(
+            [*launch, *arguments], OUTPUT / 'server.log', os.environ
+        )
+        try:
+            self.seconds_to_spawn_service = self._wait_for('spawn_urdf_model') - begin
+            self._wait_for('step')  # the last one
+        except TimeoutError:
+            self._launched.stop()
+            raise TimeoutError(f'no simulator: {self._launched.complaint()}') from None
+        rospy.init_node('benchmark', disable_rostime=True, disable_signals=True)
+        self._world = self.service('get_world_properties', GetWorldProperties)
+        self._pause = self.service('pause_physics', Empty)
+        self._unpause = self.service('unpause_physics', Empty)
+        self._spawn = self.service('spawn_urdf_model', SpawnModel)
+        self._delete = self.service('delete_model', DeleteModel)
+        self._urdf = robot_urdf(command_topic=COMMANDS)
+        self._drivers: list[rospy.Publisher] = []
+        self.process = _process_of('/gazebo')
+
+    def __enter__(self) -> Server:
+        return self
+
+    def __exit__(self, *_exception) -> None:
+        rospy.signal_shutdown('measured')
+        self._launched.stop()
+
+    def service(self, name: str, service_class: type) -> rospy.ServiceProxy:
+        """Return one of its services over a lasting connection."""
+        return rospy.ServiceProxy(f'/gazebo/{name}', service_class, persistent=True)
+
+    def simulated(self) -> float:
+        """Return the simulated time [s]."""
+        return self._world().sim_time
+
+    def unthrottle(self) -> None:
+        """Let it step as fast as it can."""
+        now = self.service('get_physics_properties', GetPhysicsProperties)()
+        self.service('set_physics_properties', SetPhysicsProperties)(
+            SetPhysicsPropertiesRequest(now.time_step, 0.0, now.gravity, now.ode_config)
+        )
+
+    def pause(self) -> None:
+        """Let time stand still."""
+        self._pause()
+
+    def unpause(self) -> None:
+        """Let time go on."""
+        self._unpause()
+
+    def spawn(self) -> float:
+        """Put one more robot beside the others, ready for commands; return how long it took [s]."""
+        number = len(self._drivers)
+        place = Pose(Point(0.0, DISTANCE * number, 0.5), Quaternion(0.0, 0.0, 0.0, 1.0))
+        begin = time.monotonic()
+        answer = self._spawn(f'robot{number}', self._urdf, f'robot{number}', place, '')
+        took = time.monotonic() - begin
+        if not answer.success:
+            raise RuntimeError(answer.status_message)
+        self._drivers.append(rospy.Publisher(f'/robot{number}/{COMMANDS}', Twist, queue_size=1))
+        return took
+
+    def settle(self, seconds: float) -> None:
+        """Let simulated time [s] pass."""
+        end, deadline = self.simulated() + seconds, time.monotonic() + PATIENCE
+        while self.simulated() < end:
+            if time.monotonic() > deadline:
+                raise TimeoutError(f'{seconds:g} simulated seconds take longer than {PATIENCE:g} s')
+            time.sleep(0.01)
+
+    def drive(self, forward: float = FORWARD) -> None:
+        """Let all robots drive straight on [m/s]."""
+        command = Twist()
+        command.linear.x = forward
+        for driver in self._drivers:
+            wait_until(driver.get_num_connections, f'a subscriber of {driver.name}')
+            driver.publish(command)
+
+    def cpu_seconds(self) -> float:
+        """Return the processor time that it has used so far [s]."""
+        stat = Path(f'/proc/{self.process}/stat').read_text(encoding='ascii')
+        fields = stat.rsplit(')', 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+    def memory(self) -> float:
+        """Return the memory that it has resident [MB]."""
+        pages = Path(f'/proc/{self.process}/statm').read_text(encoding='ascii').split()[1]
+        return int(pages) * os.sysconf('SC_PAGE_SIZE') / 1e6
+
+    def _wait_for(self, service: str) -> float:
+        """Wait until a service is registered; return when that was [s, monotonic]."""
+        master = rosgraph.Master('/benchmark')
+
+        def registered() -> bool:
+            try:
+                return bool(master.lookupService(f'/gazebo/{service}'))
+            except (OSError, rosgraph.MasterError):
+                return False
+
+        wait_until(registered, f'/gazebo/{service}')
+        return time.monotonic()
+
+
+def wait_until(condition: Callable[[], object], what: str) -> None:
+    """Wait by wall time.
+
+    Raises:
+        TimeoutError: it took longer than `PATIENCE`.
+    """
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        if time.monotonic() > end:
+            raise TimeoutError(f'not within {PATIENCE:g} s: {what}')
+        time.sleep(0.002)
+
+
+def _free_master() -> str:
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        return f'http://localhost:{probe.getsockname()[1]}'
+
+
+def _process_of(node: str) -> int:
+    listing = subprocess.run(['rosnode', 'info', node], capture_output=True, text=True, check=True)
+    return int(listing.stdout.rsplit('Pid:', 1)[1].split()[0])

@@ -1,0 +1,27 @@
+#!/usr/bin/env python3
+"""Half a minute of everything at once: nothing leaks, nothing fails that should not."""
+
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rostest
+
+SOAK = Path(__file__).resolve().parents[2] / 'benchmark' / 'soak.py'
+SECONDS = 30.0
+LIMIT = 200.0  # [s, wall] for start, end and what is slow on a busy machine, too
+
+
+class SoakTest(unittest.TestCase):
+
+    def test_half_a_minute_of_everything_at_once(self):
+        ended = subprocess.run(
+            [sys.executable, str(SOAK), '--seconds', str(SECONDS)], stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, timeout=LIMIT, check=False)
+        print(ended.stdout)
+        self.assertEqual(ended.returncode, 0, ended.stdout[-3000:])
+
+
+if __name__ == '__main__':
+    rostest.rosrun('rosbots_description', 'soak', SoakTest, sys.argv)
