@@ -14,6 +14,7 @@ from rosbots_description.sim import mesh_reading
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.mesh_reading import GREY, read_mesh
 from rosbots_description.sim.meshes import HULL_DIRECTIONS, MeshStore, check_mesh, visual_parts
+from rosbots_description.sim.stl import read_stl
 
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 ASCII_STL = ('solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n'
@@ -214,6 +215,11 @@ def read_obj(path):
     return points, faces
 
 
+def read_hull(path):
+    """Return the points that a hull's file spans."""
+    return np.unique(read_stl(Path(path).read_bytes()).reshape(-1, 3), axis=0).astype(float)
+
+
 def sphere(count):
     """Return an .obj whose vertices lie on a unit sphere."""
     angles = np.random.default_rng(1).normal(size=(count, 3))
@@ -223,18 +229,16 @@ def sphere(count):
 
 
 def test_the_hull_of_few_points_is_exact_and_scaled(write, store):
-    points, faces = read_obj(store.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
-    assert sorted(points.tolist()) == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
-    assert set(faces.ravel()) == {0, 1, 2}
+    points = read_hull(store.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
+    assert points.tolist() == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
 
 
 def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, store):
     path = write('ball.obj', sphere(6000))
-    points, faces = read_obj(store.collision_hull(path))
+    points = read_hull(store.collision_hull(path))
     assert len(points) <= HULL_DIRECTIONS + 6
-    assert set(faces.ravel()) == set(range(len(points)))
     full, _ = read_mesh(path).triangles()
-    np.testing.assert_allclose(points.max(axis=0), full.max(axis=0), rtol=1e-8)
+    np.testing.assert_allclose(points.max(axis=0), full.max(axis=0), rtol=1e-6)
     directions = np.random.default_rng(2).normal(size=(500, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     lost = (full @ directions.T).max(axis=0) - (points @ directions.T).max(axis=0)
@@ -243,8 +247,7 @@ def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, s
 
 def test_the_hull_leaves_out_points_no_triangle_uses(write, store):
     path = write('m.obj', 'v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n')
-    points, _ = read_obj(store.collision_hull(path))
-    assert points.max() == 1.0
+    assert read_hull(store.collision_hull(path)).max() == 1.0
 
 
 def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, store):

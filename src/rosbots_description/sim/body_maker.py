@@ -81,6 +81,8 @@ class BodyMaker:
         """Let those links of a model pass through each other that do so in Gazebo."""
         if len(body.bodies) == 1 and not any(link.self_collide for link in spec.links):
             return  # one body without the self-collision flag never touches itself
+        if spec.static:
+            return  # what stands does not touch what stands
         for a, b in untouching_links(spec):
             one, other = body.parts[a], body.parts[b]
             pybullet.setCollisionFilterPair(

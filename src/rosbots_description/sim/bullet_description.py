@@ -37,7 +37,7 @@ _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody descri
 
 WORLD_LINK = LinkSpec('world')  # what models are bolted to
 
-MeshFile = Callable[[Mesh], str]  # a mesh -> the path of a clean .obj at the mesh's scale
+MeshFile = Callable[[Mesh], str]  # a mesh -> the path of a clean file at the mesh's scale
 
 
 class Tree(NamedTuple):

@@ -1,7 +1,7 @@
 """Mesh files for the physics engine: clean, reduced, written once and used again.
 
-Collisions of moving bodies are convex hulls, those of standing ones exact surfaces. Both are
-written as plain .obj files named by what they hold, so that respawning finds them ready.
+Collisions of moving bodies are convex hulls, those of standing ones exact surfaces. They are
+written as plain .stl and .obj files named by what they hold, so that respawning finds them ready.
 """
 
 import hashlib
@@ -14,6 +14,7 @@ from .inertia import settle
 from .mesh_reading import check_mesh, read_mesh, visual_parts
 from .pose import Vector
 from .scratch import ScratchFolder
+from .stl import write_stl
 
 __all__ = ['MeshStore', 'check_mesh', 'visual_parts']
 
@@ -29,7 +30,7 @@ class MeshStore:
         self._scratch = ScratchFolder('rosbots_meshes_')
 
     def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> str:
-        """Return the .obj file of the convex hull of the whole mesh, for bodies that move.
+        """Return the .stl file of the convex hull of the whole mesh, for bodies that move.
 
         The file holds the points to be hulled, which the engine does itself; its faces only
         make every point count. At most HULL_DIRECTIONS + 6 points, exact where there are few.
@@ -54,16 +55,20 @@ class MeshStore:
     def _file(self, kind: str, path: str, scale: Vector) -> str:
         mesh = read_mesh(path)
         key = hashlib.sha256(repr((kind, mesh.digest, *map(float, scale))).encode())
-        name = f'{kind}_{key.hexdigest()[:32]}.obj'
+        # Of an .obj PyBullet makes a compound with the hull in it, of a .stl the hull itself.
+        name = f'{kind}_{key.hexdigest()[:32]}.{"stl" if kind == "hull" else "obj"}'
         file = self._scratch.find(name)
         if file is None:
             vertices, faces = mesh.triangles()
             vertices = vertices * np.asarray(scale)
             if kind == 'hull':
                 vertices, faces = _hull(vertices[np.unique(faces)])
-            elif np.prod(np.sign(scale)) < 0.0:
-                faces = faces[:, ::-1]  # a mirror turns the triangles inside out
-            file = self._scratch.write(name, _obj(vertices, faces).encode(), path)
+                content = write_stl(vertices[faces])
+            else:
+                if np.prod(np.sign(scale)) < 0.0:
+                    faces = faces[:, ::-1]  # a mirror turns the triangles inside out
+                content = _obj(vertices, faces).encode()
+            file = self._scratch.write(name, content, path)
         return str(file)
 
 

@@ -1,4 +1,4 @@
-"""Read STL files, binary and text: plain triangles, no colours."""
+"""Read STL files, binary and text, and write binary ones: plain triangles, no colours."""
 
 import re
 
@@ -7,6 +7,13 @@ import numpy as np
 _HEADER = 84  # bytes: a title and the number of triangles
 _TRIANGLE = np.dtype([('normal', '<f4', 3), ('corners', '<f4', (3, 3)), ('attribute', '<u2')])
 _VERTEX = re.compile(r'\bvertex\s+(\S+)\s+(\S+)\s+(\S+)', re.IGNORECASE)
+
+
+def write_stl(corners: np.ndarray) -> bytes:
+    """Return a binary STL file of triangles (n, 3, 3); their normals are left to the reader."""
+    triangles = np.zeros(len(corners), _TRIANGLE)
+    triangles['corners'] = corners
+    return bytes(80) + len(corners).to_bytes(4, 'little') + triangles.tobytes()
 
 
 def read_stl(content: bytes) -> np.ndarray:
