@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from rosbots_description.sim.clock import SimClock
-from rosbots_description.sim.schedule import NEVER, Hook, Schedule
+from rosbots_description.sim.schedule import LEFT_OUT, NEVER, Herald, Hook, Schedule
 
 
 def test_time_is_exact_after_a_million_steps():
@@ -85,3 +85,66 @@ def test_hooks_keep_their_time_when_the_step_size_changes(ratio, due):
     schedule.add(busy)
     schedule.change_step(10, ratio)
     assert (busy.due, idle.due) == (due, NEVER)
+
+
+class Broken(Hook):
+    """Fails whenever it is run."""
+
+    due = 1
+    runs = 0
+
+    def update(self):
+        self.runs += 1
+        raise RuntimeError('out of order')
+
+
+def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):
+    schedule, log, broken = Schedule(), [], Broken()
+    schedule.add(broken)
+    schedule.add(Every(1, log, 'a'))
+    for step in range(1, 2 + LEFT_OUT):
+        schedule.run(step)
+    assert len(log) == 1 + LEFT_OUT
+    assert broken.runs == 2
+    assert [r.getMessage() for r in caplog.records] == [
+        f'internal fault of Broken; the simulation goes on, without it for {LEFT_OUT} steps'] * 2
+
+
+class Crier(Herald):
+    """Tells of every third step."""
+
+    due = 3
+
+    def __init__(self):
+        self.told = []
+
+    def announce(self, last):
+        while self.due <= last:
+            self.told.append(self.due)
+            self.due += 3
+
+
+def test_heralds_tell_of_many_steps_at_once_and_of_each_one_once():
+    schedule, crier = Schedule(), Crier()
+    schedule.add_herald(crier)
+    for last in (1, 2, 7, 7, 12):
+        schedule.announce(last)
+    assert crier.told == [3, 6, 9, 12]
+
+
+def test_what_is_wanted_next_is_so_by_hooks_and_heralds():
+    schedule, crier = Schedule(), Crier()
+    assert schedule.next_wanted() == NEVER
+    schedule.add_herald(crier)
+    assert (schedule.next_wanted(), schedule.next_due()) == (3, NEVER)
+    schedule.add(Every(2, [], 'a'))
+    assert schedule.next_wanted() == 2
+
+
+def test_a_herald_that_fails_is_left_out_for_a_while(caplog):
+    schedule, crier = Schedule(), Crier()
+    crier.told = None
+    schedule.add_herald(crier)
+    schedule.announce(5)
+    assert crier.due == 5 + LEFT_OUT
+    assert 'internal fault of Crier' in caplog.text

@@ -30,7 +30,7 @@ class CountingWorld:
         self._interest = interest
         self._step_time = step_time
 
-    def next_due(self):
+    def next_wanted(self):
         return (self.steps // self._interest + 1) * self._interest
 
     def run(self, steps):

@@ -174,7 +174,7 @@ class Loop:
         if rate <= 0.0:
             return 0.0
         unnoticed = min(
-            world.schedule.next_due() - world.clock.steps - 1,
+            world.schedule.next_wanted() - world.clock.steps - 1,
             int(BACKLOG / self._step_cost) if self._step_cost else 0,
             NEVER if self._left is None else self._left - 1,
         )

@@ -12,6 +12,7 @@ import threading
 from collections import deque
 from collections.abc import Iterator
 
+import rospy
 import rospy.topics
 from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport
@@ -122,3 +123,19 @@ class Outlet:
                     return
                 data = b''.join(self._waiting)
                 self._waiting.clear()
+
+
+def publish_serialized(publisher: rospy.Publisher, messages: bytes) -> None:
+    """Publish messages that are serialized, each behind its length, as they go over the wire.
+
+    rospy has no public place for this: it serializes a message at a time.
+    """
+    topic = publisher.impl
+    if topic is None:  # the node is shutting down
+        return
+    topic.message_data_sent += len(messages)
+    for connection in topic.connections:
+        try:
+            connection.write_data(messages)
+        except TransportTerminated:
+            connection.close()

@@ -7,6 +7,7 @@ Publishes:
 """
 
 import logging
+import struct
 from collections.abc import Iterable
 
 import rospy
@@ -17,12 +18,15 @@ from rosgraph_msgs.msg import Clock
 
 from ..sim.clock import NANOSECONDS
 from ..sim.model import Link, Model
-from ..sim.schedule import NEVER, Hook
-from .conversions import fill_pose, fill_twist, stamp
+from ..sim.schedule import NEVER, Herald, Hook
+from .conversions import fill_pose, fill_twist
+from .sending import publish_serialized
 from .server import Server
 
 logger = logging.getLogger(__name__)
 
+_CLOCK = struct.Struct('<3I')  # on the wire: size of what follows [bytes], seconds, nanoseconds
+_CLOCK_SIZE = 8
 QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
 
 
@@ -42,30 +46,19 @@ class _Subscribers(rospy.SubscribeListener):
         self._server.loop.post(self._topic.schedule)
 
 
-class Topic(Hook):
-    """A topic with a place in the step; it costs nothing while nobody subscribes."""
+class Topic:
+    """A topic with a place in time; it costs nothing while nobody subscribes."""
 
-    def __init__(self, server: Server, name: str, message: Message) -> None:
+    def __init__(self, server: Server, name: str, message_class: type[Message]) -> None:
         self._world = server.world
-        self._message = message
         self._publisher = rospy.Publisher(
-            name, type(message), _Subscribers(server, self), queue_size=QUEUE
+            name, message_class, _Subscribers(server, self), queue_size=QUEUE
         )
 
     def schedule(self) -> None:
         """Publish from the next step on, if there is anyone to read it."""
         wanted = self._publisher.get_num_connections() > 0
         self.due = self._world.clock.steps + 1 if wanted else NEVER
-
-    def update(self) -> None:
-        """Publish, and come again at the next step."""
-        self.fill()
-        self._publisher.publish(self._message)
-        self.schedule()
-
-    def fill(self) -> None:
-        """Write what is to be published into the message."""
-        raise NotImplementedError
 
     # What the world tells its listeners.
 
@@ -80,31 +73,52 @@ class Topic(Hook):
         """Nothing changes for a topic as such."""
 
 
-class ClockTopic(Topic):
+class ClockTopic(Topic, Herald):
     """/clock, at every step or, with a frequency, at the first step a period after the last one."""
 
     def __init__(self, server: Server, frequency: int) -> None:
-        super().__init__(server, '/clock', Clock())
+        super().__init__(server, '/clock', Clock)
         self._period_ns = NANOSECONDS // frequency if frequency > 0 else 0
         self._last_ns = 0
 
-    def fill(self) -> None:
-        """Write the time."""
-        self._last_ns = self._world.clock.now_ns
-        self._message.clock = stamp(self._last_ns)
+    def announce(self, last: int) -> None:
+        """Publish the times of all steps that want it, up to `last`."""
+        clock, messages = self._world.clock, []
+        while self.due <= last:
+            self._last_ns = clock.ns_at(self.due)
+            messages.append(_CLOCK.pack(_CLOCK_SIZE, *divmod(self._last_ns, NANOSECONDS)))
+            self.due = self._first_after(self.due)
+        publish_serialized(self._publisher, b''.join(messages))
 
     def schedule(self) -> None:
         """Publish when the period has passed, if there is anyone to read it."""
         super().schedule()
-        if self.due != NEVER and self._period_ns:
-            clock = self._world.clock
-            # Time that jumped back counts as never published: upstream would stay silent for long.
-            last_ns = self._last_ns if self._last_ns <= clock.now_ns else 0
-            self.due = max(self.due, clock.first_step_after(last_ns + self._period_ns - 1))
+        clock = self._world.clock
+        # Time that jumped back counts as never published: upstream would stay silent for long.
+        self._last_ns = self._last_ns if self._last_ns <= clock.now_ns else 0
+        if self.due != NEVER:
+            self.due = self._first_after(clock.steps)
+
+    def _first_after(self, step: int) -> int:
+        """Return the first step after `step` that is a period after the last one told of."""
+        clock = self._world.clock
+        if not self._period_ns:
+            return step + 1
+        return max(step + 1, clock.first_step_after(self._last_ns + self._period_ns - 1))
 
 
-class StatesTopic(Topic):
-    """Names, world poses and world velocities of models or links."""
+class StatesTopic(Topic, Hook):
+    """Names, world poses and world velocities of models or links, in the step they belong to."""
+
+    def __init__(self, server: Server, name: str, message: Message) -> None:
+        super().__init__(server, name, type(message))
+        self._message = message
+
+    def update(self) -> None:
+        """Publish, and come again at the next step."""
+        self.fill()
+        self._publisher.publish(self._message)
+        self.schedule()
 
     def entities(self) -> Iterable[Model | Link]:
         """Return what is to be listed, in order."""
@@ -155,8 +169,11 @@ class ModelStatesTopic(StatesTopic):
 
 
 def advertise_clock(server: Server) -> None:
-    """Publish /clock, the first thing in every step."""
-    _add(server, ClockTopic(server, clock_frequency(rospy.get_param('~pub_clock_frequency', 0))))
+    """Publish /clock, before anything that happens at the time it tells."""
+    topic = ClockTopic(server, clock_frequency(rospy.get_param('~pub_clock_frequency', 0)))
+    server.world.schedule.add_herald(topic)
+    server.world.listeners.append(topic)
+    topic.schedule()
 
 
 def clock_frequency(value: object) -> int:
@@ -173,11 +190,7 @@ def clock_frequency(value: object) -> int:
 
 def advertise_states(server: Server) -> None:
     """Publish link and model states, after the clock and before any plugin."""
-    _add(server, LinkStatesTopic(server))
-    _add(server, ModelStatesTopic(server))
-
-
-def _add(server: Server, topic: Topic) -> None:
-    server.world.schedule.add(topic)
-    server.world.listeners.append(topic)
-    topic.schedule()
+    for topic in (LinkStatesTopic(server), ModelStatesTopic(server)):
+        server.world.schedule.add(topic)
+        server.world.listeners.append(topic)
+        topic.schedule()

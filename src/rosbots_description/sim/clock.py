@@ -18,12 +18,16 @@ class SimClock:
     @property
     def now_ns(self) -> int:
         """Return the simulated time [ns]."""
-        return self._origin_ns + (self.steps - self._origin_steps) * self.step_ns
+        return self.ns_at(self.steps)
 
     @property
     def now(self) -> float:
         """Return the simulated time [s]."""
         return self.now_ns / NANOSECONDS
+
+    def ns_at(self, step: int) -> int:
+        """Return the time [ns] of a step to come, or of one since the last change of step size."""
+        return self._origin_ns + (step - self._origin_steps) * self.step_ns
 
     def set_step_size(self, step_size: float) -> None:
         """Let every step from now on last `step_size` [s]."""

@@ -1,9 +1,13 @@
 """What happens at which step: hooks say when they want to run next, the rest runs straight."""
 
+import logging
 import math
 from fractions import Fraction
 
+logger = logging.getLogger(__name__)
+
 NEVER = 1 << 62  # a step count that no simulation reaches
+LEFT_OUT = 1000  # steps that something that failed is not run, so that it does not fill the log
 
 
 class Hook:
@@ -20,11 +24,25 @@ class Hook:
         raise NotImplementedError
 
 
+class Herald:
+    """Something that tells of steps and takes no part in them, so that it can tell of many at once.
+
+    `due` is the first step that it has not told of and wants to.
+    """
+
+    due = NEVER
+
+    def announce(self, last: int) -> None:
+        """Tell of the steps that are about to be made, up to `last`, and set the next `due`."""
+        raise NotImplementedError
+
+
 class Schedule:
     """Hooks in the order they were added; they run in that order within a step."""
 
     def __init__(self) -> None:
         self._hooks: list[Hook] = []
+        self._heralds: list[Herald] = []
 
     def add(self, hook: Hook) -> None:
         """Let `hook` run from now on, after those that were added before it."""
@@ -34,21 +52,54 @@ class Schedule:
         """Let `hook` run no more."""
         self._hooks.remove(hook)
 
+    def add_herald(self, herald: Herald) -> None:
+        """Let `herald` tell of the steps from now on."""
+        self._heralds.append(herald)
+
+    def announce(self, last: int) -> None:
+        """Let heralds tell of the steps up to `last`, which are about to be made."""
+        for herald in self._heralds:
+            if herald.due <= last:
+                try:
+                    herald.announce(last)
+                except Exception:
+                    _leave_out(herald, last)
+
+    def next_wanted(self) -> int:
+        """Return the earliest step count that is of interest to a hook or a herald."""
+        return min(self.next_due(), *(herald.due for herald in self._heralds), NEVER)
+
     def next_due(self) -> int:
         """Return the earliest step count at which a hook wants to run."""
         return min((hook.due for hook in self._hooks), default=NEVER)
 
     def run(self, step: int) -> None:
-        """Run every hook that is due at `step` or was due before."""
+        """Run every hook that is due at `step` or was due before.
+
+        One that fails is told of in the log and left out for a while; the others go on.
+        """
         for hook in self._hooks:
             if hook.due <= step:
-                hook.update()
+                try:
+                    hook.update()
+                except Exception:
+                    _leave_out(hook, step)
 
     def change_step(self, now: int, ratio: Fraction) -> None:
-        """Keep every hook due at its time, now that steps last `ratio` times as long.
+        """Keep all due at their time, now that steps last `ratio` times as long.
 
         What falls between two steps of the new size happens at the later one.
         """
-        for hook in self._hooks:
+        for hook in (*self._hooks, *self._heralds):
             if hook.due != NEVER:
                 hook.due = now + max(1, math.ceil((hook.due - now) / ratio))
+
+
+def _leave_out(failed: Hook | Herald, step: int) -> None:
+    """Log the fault that is being handled, and let whose it is wait."""
+    logger.exception(
+        'internal fault of %s; the simulation goes on, without it for %d steps',
+        type(failed).__name__,
+        LEFT_OUT,
+    )
+    failed.due = step + LEFT_OUT

@@ -84,6 +84,7 @@ class World:
         """Advance by exactly `steps`: in each, time first, then hooks, then physics."""
         clock, schedule, engine = self.clock, self.schedule, self.engine
         end = clock.steps + steps
+        schedule.announce(end)
         while clock.steps < end:
             quiet = min(schedule.next_due() - 1, end) - clock.steps
             if quiet > 0:
