@@ -2,6 +2,7 @@
 
 import argparse
 import logging
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -75,6 +76,8 @@ def _main(arguments: Sequence[str]) -> int:
                 f'{sys.executable} with: pip install {package}\n'
             )
             return 1
+    # The threads of numpy's library would find nothing to do, and spin for it.
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     from ..ros_api import node  # noqa: PLC0415  needs what may be missing
 
     options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
