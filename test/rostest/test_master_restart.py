@@ -87,7 +87,7 @@ class MasterRestartTest(unittest.TestCase):
         code, printed = self.server.end()
         self.assertEqual(code, 0)
         self.assertNotIn('Traceback', printed)
-        self.assertIn('the ROS master is gone', printed)
+        self.assertIn('registered with a new ROS master', printed)
         self.assertEqual(self._of_server(), [set(), set(), set()])
 
     def _x(self):
