@@ -81,7 +81,7 @@ def cases() -> list[Case]:
 def measure() -> list[Case]:
     """Return all cases, measured; starts a server and needs a process of its own."""
     measured = cases()
-    with Server('use_clock_frequency:=true', 'pub_clock_frequency:=100') as server:
+    with Server() as server:
         server.unthrottle()
         spawned = 0
         for case in measured:
