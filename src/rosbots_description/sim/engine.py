@@ -247,6 +247,8 @@ class Engine:
     def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
         velocity = max(-ANY_SPEED, min(ANY_SPEED, velocity))
+        if body.motors.get(joint) == (velocity, effort):
+            return  # it does so already
         body.motors[joint] = (velocity, effort)
         pybullet.setJointMotorControl2(
             *body.joints[joint],

@@ -11,7 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 from .bullet_description import friction
-from .clock import SimClock
+from .clock import NANOSECONDS, SimClock
 from .pose import Vector, compose, rotate
 from .spec import Cylinder, LinkSpec, Sphere
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 CREEP = 0.085
 # Time in which creep follows the force [s]; a tyre's follows over a length. Without it the force,
 # which a rigid contact lets jump from step to step, would shake the wheels.
-RELAXATION = 0.05
+RELAXATION = 0.1
+LOOK = 0.05  # time between two looks at force and load, half of what steering costs [s]
 
 
 class Wheel:
@@ -47,8 +48,8 @@ class Wheel:
         self._torque = torque
         self._clock = clock
         self._creep = 0.0  # hub speed minus tyre speed [rad/s]
-        self._lead = 0.0  # how far the hub had turned more than the tyre at `_noted` [rad]
-        self._noted = 0.0  # [s]
+        self._lead = 0.0  # how far the hub had turned more than the tyre at `_noted_ns` [rad]
+        self._noted_ns = 0
 
     def release(self) -> None:
         """Forget speed and way; the motor holds the wheel."""
@@ -64,8 +65,7 @@ class Wheel:
     @property
     def position(self) -> float:
         """Return how far the hub has turned [rad]."""
-        since = self._clock.now - self._noted
-        return self.joint.position + self._lead + self._creep * since
+        return self.joint.position + self._lead + self._creep * self._since_noted()
 
     @property
     def velocity(self) -> float:
@@ -74,17 +74,21 @@ class Wheel:
 
     def drive(self, velocity: float) -> None:
         """Turn the hub at `velocity` [rad/s] from now on."""
-        elapsed = self._note_lead()
-        self._creep += (self._steady_creep() - self._creep) * min(1.0, elapsed / RELAXATION)
+        if self._since_noted() >= LOOK:
+            elapsed = self._note_lead()
+            self._creep += (self._steady_creep() - self._creep) * min(1.0, elapsed / RELAXATION)
         self.joint.set_motor(velocity - self._creep, self._torque)
 
     def _note_lead(self) -> float:
         """Add up the creep since it was last done; return the time since then [s]."""
-        now = self._clock.now
-        elapsed = now - self._noted
-        self._noted = now
+        elapsed = self._since_noted()
+        self._noted_ns = self._clock.now_ns
         self._lead += self._creep * elapsed
         return elapsed
+
+    def _since_noted(self) -> float:
+        # A difference of whole nanoseconds: the same at any time of day, so the motion is, too.
+        return (self._clock.now_ns - self._noted_ns) / NANOSECONDS
 
     def place_on_axle(self) -> Vector:
         """Return where the touching shape stands along the axle, in the model frame [m].
