@@ -6,6 +6,8 @@ from collections.abc import Callable
 import rospy
 from rospy.rostime import _set_rostime
 
+from ..sim.errors import one_line
+
 _ROOT = 'rosbots_description'
 _LEVELS = {
     'debug': logging.DEBUG,
@@ -26,7 +28,7 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
 
     """
     ours, rosout = logging.getLogger(_ROOT), logging.getLogger('rosout')
-    for handler in (_SimulatedTime(now_ns), *_console_and_file(rosout)):
+    for handler in (Preparation(now_ns), *_console_and_file(rosout)):
         ours.addHandler(handler)
     ours.setLevel(rosout.level)
     ours.propagate = False
@@ -51,17 +53,19 @@ def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
     return handlers
 
 
-class _SimulatedTime(logging.Handler):
-    """Sets rospy's idea of the time before the other handlers stamp the message.
+class Preparation(logging.Handler):
+    """Makes each message ready for the handlers behind it: one printable line, at simulated time.
 
     The simulator does not listen to its own /clock: at 1000 messages per second that would cost
     more than the physics. rospy offers no public way to set the time.
     """
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
+        """Take the simulated time [ns] from `now_ns`."""
         super().__init__()
         self._now_ns = now_ns
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Take over the simulated time."""
+        """Escape what a user's names bring into the text, and take over the simulated time."""
+        record.msg, record.args = one_line(record.getMessage()), ()
         _set_rostime(rospy.Time(nsecs=self._now_ns()))
