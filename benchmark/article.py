@@ -15,8 +15,6 @@ from rosbots_description.sim.worlds import add_empty_world
 
 ROOT = Path(__file__).resolve().parents[1]
 OUTPUT = ROOT / '.ws' / 'benchmark'  # pictures and logs
-SPAWN_POSE = Pose((0.0, 0.0, 0.5))  # of spawn.launch
-SETTLED = 2500  # steps after which the robot has fallen from there and stands
 FORWARD = 0.5  # [m/s] at which robots drive where only the cost of driving counts
 
 

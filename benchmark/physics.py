@@ -11,8 +11,7 @@ import sys
 import time
 from dataclasses import replace
 
-from article import SETTLED, SPAWN_POSE, robot_spec
-from support import empty_world, urdf_spec
+from support import SETTLED, SPAWN_POSE, empty_world, robot_spec, urdf_spec
 from support.motion import COMMANDS, RECORDED, drive_as_recorded, measure
 from support.scenes import SCENES, SPEED, box, forward_speed
 
