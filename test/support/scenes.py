@@ -29,32 +29,33 @@ DRIVE_PLUGIN = (
 Scene = Callable[[Tuning | None], float]
 
 
-def link(name: str, shape: str, mass: float, inertia: tuple[float, float, float], at: str = '0 0 0',
-         rpy: str = '0 0 0') -> str:
-    """Return a link with one shape and its centre of mass at `at` [m]."""
+def link(name: str, shape: str, mass: float, inertia: tuple[float, float, float]) -> str:
+    """Return a link with one shape: mass [kg], moments of inertia about x, y and z [kg m^2]."""
     ixx, iyy, izz = inertia
-    origin = f'<origin xyz="{at}" rpy="{rpy}"/>'
     return (
-        f'<link name="{name}"><inertial>{origin}<mass value="{mass}"/><inertia ixx="{ixx}" '
+        f'<link name="{name}"><inertial><mass value="{mass}"/><inertia ixx="{ixx}" '
         f'iyy="{iyy}" izz="{izz}" ixy="0" ixz="0" iyz="0"/></inertial>'
-        f'<collision>{origin}<geometry>{shape}</geometry></collision></link>'
+        f'<collision><geometry>{shape}</geometry></collision></link>'
     )
 
 
-def box(name: str, size: tuple[float, float, float], mass: float, at: str = '0 0 0') -> str:
-    """Return a link that is a solid box."""
+def box(name: str, size: tuple[float, float, float], mass: float) -> str:
+    """Return a link that is a solid box: size [m], mass [kg]."""
     x, y, z = size
     inertia = tuple(mass / 12.0 * s for s in (y * y + z * z, x * x + z * z, x * x + y * y))
-    return link(name, f'<box size="{x} {y} {z}"/>', mass, inertia, at)
+    return link(name, f'<box size="{x} {y} {z}"/>', mass, inertia)
 
 
-def ball(name: str, radius: float, mass: float, at: str = '0 0 0') -> str:
-    """Return a link that is a solid ball."""
-    return link(name, f'<sphere radius="{radius}"/>', mass, (0.4 * mass * radius**2,) * 3, at)
+def ball(name: str, radius: float, mass: float) -> str:
+    """Return a link that is a solid ball: radius [m], mass [kg]."""
+    return link(name, f'<sphere radius="{radius}"/>', mass, (0.4 * mass * radius**2,) * 3)
 
 
 def wheel(name: str, joint: str, radius: float, width: float, mass: float, place: str) -> str:
-    """Return a wheel on a joint at `place` [m] of the link `base`, positive forward."""
+    """Return a wheel on a joint at `place` [m] of the link `base`, positive forward.
+
+    Radius and width are in m, the mass is in kg.
+    """
     across = mass * (3.0 * radius**2 + width**2) / 12.0
     shape = f'<cylinder radius="{radius}" length="{width}"/>'
     about = f'{-math.pi / 2} 0 0'
