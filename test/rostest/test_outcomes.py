@@ -10,6 +10,7 @@ import rostest
 from gazebo_msgs.msg import LinkState, ModelState, ODEJointProperties
 from genpy.message import fill_message_args
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from sensor_msgs.msg import Image
 from simulator import BOX, GROUND, SimulatorTest, pose, proxy, wait_until
 from std_msgs.msg import ColorRGBA
 
@@ -31,6 +32,7 @@ INCLUDE = """<sdf version="1.6"><world name="w"><include><uri>model://ground_pla
 </world></sdf>"""
 LIGHT = """<sdf version="1.6"><light type="point" name="other"><diffuse>1 0.5 0 1</diffuse></light>
 </sdf>"""
+PICTURE = 20.0  # [s, wall] in which one comes
 SPAWNED = 'SpawnModel: Successfully spawned entity'
 NO_LINK = '{}: link not found, did you forget to scope the link by model name?'
 NAN = 'nan; it must be a finite number'
@@ -215,6 +217,14 @@ class OutcomesTest(SimulatorTest):
                 return abs(state.pose.position.x - x) < 1e-6
 
             wait_until(there, f'{link} where {topic} put it')
+
+    def test_the_first_picture_is_taken_from_where_the_parameters_say(self):
+        sky = {'eye': [50.0, 50.0, 5.0], 'target': [60.0, 50.0, 60.0]}
+        for name, place in sky.items():
+            rospy.set_param(f'/gazebo/view/{name}', place)
+            self.addCleanup(rospy.delete_param, f'/gazebo/view/{name}')
+        picture = rospy.wait_for_message('/gazebo/view/image_raw', Image, PICTURE)
+        self.assertEqual(set(picture.data), {255})  # nothing is up there
 
     def test_a_link_is_moved_and_seen_from_another(self):
         self._done('set_link_state', link_state={

@@ -86,3 +86,26 @@ def test_the_registrar_reads_and_is_asked_once_at_a_time(parameters):
     assert camera.sight == (EYE, (0.0, 0.0, 9.0))
     camera.read_soon(registrar)
     assert len(registrar.jobs) == 1
+
+
+def test_what_was_set_before_someone_looks_counts_for_the_first_picture(parameters):
+    camera, registrar = Camera(), FakeRegistrar()
+    camera.read()
+    camera.rest()
+    parameters['~view/eye'] = [3, 0, 1]
+    camera.read_soon(registrar)
+    assert not camera.ready
+    registrar.jobs.pop()()
+    assert camera.ready
+    assert camera.sight == ((3.0, 0.0, 1.0), TARGET)
+
+
+def test_pictures_come_also_without_a_master(monkeypatch):
+    def gone(*_arguments):
+        raise ConnectionRefusedError
+
+    monkeypatch.setattr(rospy, 'get_param', gone)
+    camera = Camera()
+    camera.read()
+    assert camera.ready
+    assert camera.sight == (EYE, TARGET)

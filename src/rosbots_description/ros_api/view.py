@@ -6,7 +6,8 @@ Publishes:
         sensing.
 Parameters:
     ~view/eye, ~view/target (lists of three numbers) [m]: from where to where the camera looks;
-        read again with each picture, and what is read counts from the next one on.
+        what is set before someone looks counts for the first picture; they are read again with
+        each picture, and what is read then counts from the next one on.
 """
 
 import logging
@@ -37,8 +38,11 @@ def advertise_view(server: Server) -> None:
     def show() -> None:
         if publisher.get_num_connections() == 0:
             view.close()
+            camera.rest()
             return
         camera.read_soon(server.registrar)
+        if not camera.ready:
+            return
         pixels = view.picture(*camera.sight)
         height, width, _ = pixels.shape
         image = Image(height=height, width=width, encoding='rgb8', step=3 * width)
@@ -51,12 +55,20 @@ def advertise_view(server: Server) -> None:
 
 
 class Camera:
-    """Keeps what the parameters said last, so that no picture waits for the ROS master."""
+    """Keeps what the parameters said last, so that no picture waits for the ROS master.
+
+    `ready` tells whether they have been asked since someone began to look.
+    """
 
     def __init__(self) -> None:
+        self.ready = False
         self.sight: tuple[Vector, Vector] = (EYE, TARGET)  # eye and target [m, world]
         self._asked = False
         self._complaint = ''  # said once, not with every picture
+
+    def rest(self) -> None:
+        """Take note that nobody looks."""
+        self.ready = False
 
     def read_soon(self, registrar: Registrar) -> None:
         """Let the registrar's thread read the parameters, unless it is about to."""
@@ -79,6 +91,7 @@ class Camera:
             self._complaint = ''
         finally:
             self._asked = False
+            self.ready = True
 
 
 def line_of_sight(eye: object, target: object) -> tuple[Vector, Vector]:
