@@ -15,7 +15,7 @@ from support.motion import (
 )
 
 SPEED_SHARE = 0.01  # of Gazebo's steady speed
-WHEEL_SHARE = 0.02  # of the speed of Gazebo's wheels
+WHEEL_SHARE = 0.006  # of the speed of Gazebo's wheels
 T90_SHARE = 0.05  # of the time to 90 % of the steady speed
 DISPLACEMENT_SHARE = 0.02  # of the way Gazebo's robot has gone at rest
 TURN_TOLERANCE = 0.05  # [rad] after five seconds of turning

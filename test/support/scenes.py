@@ -9,14 +9,15 @@ from dataclasses import replace
 
 from rosbots_description.sim.model import Model
 from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy, yaw_of
-from rosbots_description.sim.spec import ModelSpec
+from rosbots_description.sim.spec import ModelSpec, Sphere
 from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.world import World
 
-from . import empty_world, urdf_spec
+from . import SETTLED, empty_world, robot_spec, urdf_spec
 
 GRAVITY = 9.8  # [m/s^2]
 SPEED = 0.5  # [m/s] commanded
+ABOVE = 1e-3  # height from which robots are let down [m]
 RADIUS = 0.1  # of the skid steer's wheels [m]
 DRIVE_PLUGIN = (
     '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
@@ -107,16 +108,16 @@ def forward_speed(model: Model) -> float:
 def drive(world: World, spec: ModelSpec, seconds: int = 4) -> Model:
     """Return the model after it has driven straight ahead for so long."""
     model = world.spawn(spec, 'robot', Pose((0.0, 0.0, spec_height(spec))))
-    world.run(1000)
+    world.run(SETTLED)
     model.plugins[0].command(SPEED, 0.0)
     world.run(1000 * seconds)
     return model
 
 
 def spec_height(spec: ModelSpec) -> float:
-    """Return how high the base of a robot of `castered` stands [m]."""
-    wheels = [one for one in spec.links if one.name == 'left_wheel']
-    return wheels[0].collisions[0].geometry.radius
+    """Return how high the model frame of a robot on two wheels stands, or a little more [m]."""
+    wheel = spec.links[-1]
+    return wheel.collisions[0].geometry.radius - wheel.pose.position[2] + ABOVE
 
 
 def speed_error(spec: ModelSpec) -> Scene:
@@ -129,10 +130,44 @@ def speed_error(spec: ModelSpec) -> Scene:
     return scene
 
 
-def veer(tuning: Tuning | None = None) -> float:
-    """Return by how much a symmetric robot turns while it drives straight for 20 s [rad]."""
-    with empty_world(tuning) as world:
-        return abs(yaw_of(drive(world, castered(casters=1), 20).pose.orientation))
+def veer(spec: ModelSpec) -> Scene:
+    """Return a scene: by how much a symmetric robot turns in a straight drive of 20 s [rad]."""
+
+    def scene(tuning: Tuning | None = None) -> float:
+        with empty_world(tuning) as world:
+            return abs(yaw_of(drive(world, spec, 20).pose.orientation))
+
+    return scene
+
+
+def mirrored(spec: ModelSpec) -> ModelSpec:
+    """Return the article's robot with what touches the ground made symmetric.
+
+    Its wheels are broad, and a sixth of its weight rests on the caster that it drags.
+    """
+
+    def centred(pose: Pose) -> Pose:
+        x, _, z = pose.position
+        return Pose((x, 0.0, z), pose.orientation)
+
+    base, *wheels = spec.links
+    links = [replace(
+        base,
+        inertial=replace(base.inertial, pose=centred(base.inertial.pose)),
+        collisions=tuple(
+            replace(one, pose=centred(one.pose)) if isinstance(one.geometry, Sphere) else one
+            for one in base.collisions
+        ),
+    )]
+    for link, side in zip(wheels, (1.0, -1.0), strict=True):
+        x, _, z = link.pose.position
+        links.append(replace(
+            link,
+            pose=Pose((x, 0.44 * side, z), from_rpy(-math.pi / 2, 0.0, 0.0)),
+            inertial=replace(link.inertial, pose=Pose()),
+            collisions=tuple(replace(one, pose=Pose()) for one in link.collisions),
+        ))
+    return replace(spec, links=tuple(links))
 
 
 def skid_steer(mass: float = 14.0) -> ModelSpec:
@@ -194,14 +229,18 @@ def on_slope(frame: Pose, height: float) -> Pose:
     return compose(frame, Pose((0.0, 0.0, height)))
 
 
-def parked_on_slope(tuning: Tuning | None = None) -> float:
-    """Return how far the robot creeps in 10 s on a slope of 10 degrees, wheels held [m]."""
-    with empty_world(tuning) as world:
-        model = world.spawn(castered(), 'robot', on_slope(slope(world), 0.1))
-        world.run(1000)
-        before = model.pose.position
-        world.run(10_000)
-        return math.dist(before, model.pose.position)
+def parked_on_slope(spec: ModelSpec) -> Scene:
+    """Return a scene: how far a robot creeps in 10 s on a slope of 10 degrees, wheels held [m]."""
+
+    def scene(tuning: Tuning | None = None) -> float:
+        with empty_world(tuning) as world:
+            model = world.spawn(spec, 'robot', on_slope(slope(world), 0.1))
+            world.run(1000)
+            before = model.pose.position
+            world.run(10_000)
+            return math.dist(before, model.pose.position)
+
+    return scene
 
 
 def sliding_on_slope(tuning: Tuning | None = None) -> float:
@@ -248,18 +287,23 @@ def rolling_ball(tuning: Tuning | None = None) -> float:
         return abs(math.hypot(*model.twist.linear[:2]) * 7.0 / 5.0 - 1.0)
 
 
-# What each tells is an error that is best at 0, but for `skid steer turns`.
+# What each tells is an error that is best at 0, but for `skid steer turns`; a veer is that of 20 s
+# [rad].
 SCENES: dict[str, Scene] = {
     'one dragging caster': speed_error(castered(casters=1)),
     'two casters, mu 1': speed_error(castered(mu=1.0)),
     'two casters, mu 0.1': speed_error(castered(mu=0.1)),
     '50 kg': speed_error(castered(50.0, 1.0, casters=1)),
     '0.2 kg': speed_error(castered(0.2, 0.12, casters=1)),
-    'veer in 20 s [rad]': veer,
+    'veer, one caster': veer(castered(casters=1)),
+    'veer, two casters': veer(castered()),
+    'veer, 0.2 kg': veer(castered(0.2, 0.12, casters=1)),
+    'veer, broad wheels': veer(mirrored(robot_spec())),
     'skid steer straight': skid_straight,
     'skid steer turns': skid_turn,
     'step of 3 cm [m]': step_climbed,
-    'parked on 10 deg [m]': parked_on_slope,
+    'parked on casters [m]': parked_on_slope(castered()),
+    'parked on wheels [m]': parked_on_slope(castered(casters=1, mu=0.0)),
     'slides on 10 deg': sliding_on_slope,
     'five boxes [m]': stack,
     'half sunk box [m]': half_sunk,

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .pose import Pose, Twist
+from .pose import Pose, Quaternion, Twist
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,9 @@ class Body:
         self.weightless: list[tuple[int, int, float]] = []
         self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
+        # What each link touches with: PyBullet's body and index, and the turn of that one's axes.
+        self.surfaces: dict[str, list[tuple[int, int, Quaternion]]] = {}
+        self.holds: dict[str, float] = {}  # last share of each link's friction along an axis
 
 
 @dataclass(frozen=True)

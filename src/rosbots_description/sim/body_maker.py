@@ -11,12 +11,12 @@ from .bullet_description import (
     contact_spring,
     describe_tree,
     friction,
-    rider_surfaces,
+    surface_groups,
     untouching_links,
 )
 from .inertia import principal_axes
-from .pose import Pose, Vector, compose, inverse
-from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from .pose import NO_ROTATION, Pose, Vector, compose, inverse
+from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
 from .tuning import Tuning
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
@@ -71,7 +71,8 @@ class BodyMaker:
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
             part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
             body.parts[link.name] = part
-            self._set_dynamics(part, index_of, i, link, moments[i], joint, step_size)
+            self._set_inertia(part, moments[i], joint)
+            self._set_surfaces(body, tree, i, index_of, step_size)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
@@ -117,16 +118,7 @@ class BodyMaker:
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
         return indices
 
-    def _set_dynamics(
-        self,
-        part: Part,
-        index_of: dict[str, int],
-        i: int,
-        link: LinkSpec,
-        inertia: Vector,
-        joint: JointSpec | None,
-        step_size: float,
-    ) -> None:
+    def _set_inertia(self, part: Part, inertia: Vector, joint: JointSpec | None) -> None:
         pybullet.changeDynamics(
             part.body,
             part.index,
@@ -134,17 +126,28 @@ class BodyMaker:
             jointDamping=joint.damping if joint else 0.0,
             physicsClientId=self._client,
         )
-        for k, collision in enumerate(rider_surfaces(link)):
-            index = part.index
-            if k > 0:
+
+    def _set_surfaces(
+        self, body: Body, tree: Tree, i: int, index_of: dict[str, int], step_size: float
+    ) -> None:
+        """Set up what link `i` touches with, itself and its riders, and note it in `body`."""
+        link, joint = tree.links[i], tree.joints[i]
+        part = body.parts[link.name]
+        body.surfaces[link.name] = surfaces = []
+        for k, group in enumerate(surface_groups(tree, i)):
+            index, turn = part.index, part.com_in_origin.orientation
+            if k:  # a rider stands in the frame of the joint above its link
                 index = index_of[f'l{i}r{k}']
+                turn = joint.pose.orientation if joint else NO_ROTATION
                 pybullet.changeDynamics(
                     part.body,
                     index,
                     localInertiaDiagonal=(RIDER_MASS,) * 3,
                     physicsClientId=self._client,
                 )
-            self._set_surface(part.body, index, collision.surface, step_size)
+            if group:
+                self._set_surface(part.body, index, group[0].surface, step_size)
+                surfaces.append((part.body, index, turn))
 
     def _set_surface(self, number: int, index: int, surface: Surface, step_size: float) -> None:
         pybullet.changeDynamics(

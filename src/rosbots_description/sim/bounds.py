@@ -1,6 +1,6 @@
 """How much of everything a model may consist of, so that adding it ends in good time."""
 
-from .bullet_description import Tree, kinematic_trees, rider_surfaces
+from .bullet_description import Tree, kinematic_trees, surface_groups
 from .spec import ModelSpec
 
 # PyBullet handles a tree of more joints only up to the first question about it.
@@ -38,7 +38,7 @@ def _excess_of_joints(tree: Tree) -> str | None:
             'physics engine, which holds no more: split the model'
         )
     # Every surface of its own rides on its link by a joint of the engine's.
-    riders = sum(max(1, len(rider_surfaces(link))) - 1 for link in tree.links)
+    riders = sum(len(surface_groups(tree, i)) - 1 for i in range(len(tree.links)))
     if joints + riders > MAX_JOINTS:
         return (
             f'links that hang together have {riders} collisions with a surface of their own and '

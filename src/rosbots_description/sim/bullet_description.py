@@ -12,7 +12,8 @@ from itertools import combinations
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from .pose import Pose, compose, inverse, relative, to_rpy
+from .inertia import principal_axes
+from .pose import Pose, compose, inverse, relative, rotate, to_rpy
 from .spec import (
     FIXED,
     PRISMATIC,
@@ -20,6 +21,7 @@ from .spec import (
     Collision,
     Cylinder,
     Geometry,
+    Inertial,
     JointSpec,
     LinkSpec,
     Mesh,
@@ -34,6 +36,8 @@ from .spec import (
 RIDER_MASS = 1e-9
 
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
+
+ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is that axis
 
 WORLD_LINK = LinkSpec('world')  # what models are bolted to
 
@@ -71,7 +75,7 @@ def describe_tree(tree: Tree, inertial_poses: Sequence[Pose], mesh_file: MeshFil
     for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
         mass = 0.0 if tree.fixed_base and i == 0 else link.inertial.mass
         back = inverse(joint.pose) if joint else Pose()
-        groups = _by_surface(link.collisions) or [()]
+        groups = surface_groups(tree, i)
         inertial = compose(back, inertial_poses[i])
         lines += _link(f'l{i}', mass, inertial, back, groups[0], mesh_file)
         for k, group in enumerate(groups[1:], start=1):
@@ -85,9 +89,31 @@ def describe_tree(tree: Tree, inertial_poses: Sequence[Pose], mesh_file: MeshFil
     return '\n'.join(lines) + '\n'
 
 
-def rider_surfaces(link: LinkSpec) -> list[Collision]:
-    """Return one collision of each group of equal surfaces: first the link's own, then riders'."""
-    return [group[0] for group in _by_surface(link.collisions)]
+def surface_groups(tree: Tree, i: int) -> list[tuple[Collision, ...]]:
+    """Return the collisions of link `i` by equal surface: first the link's own, then the riders'.
+
+    PyBullet takes the axes of the inertia for a body's own. Where those of a robot's root are
+    askew, all of its collisions ride, with the axes of the link: what a robot drags over the ground
+    has to hold sideways and ahead differently (dragging.py).
+    """
+    groups = _by_surface(tree.links[i].collisions)
+    if groups and i == 0 and _drives(tree) and _is_askew(tree.links[0].inertial):
+        return [(), *groups]
+    return groups or [()]
+
+
+def _drives(tree: Tree) -> bool:
+    """Tell whether a tree can be a robot: its root moves, and so do links on it."""
+    if tree.fixed_base or any(link.self_collide for link in tree.links):
+        return False
+    return any(joint is not None and joint.type != FIXED for joint in tree.joints)
+
+
+def _is_askew(inertial: Inertial) -> bool:
+    """Tell whether the principal axes are none of the link's."""
+    _, turn = principal_axes(inertial)
+    axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    return any(max(map(abs, rotate(turn, axis))) < ALONG for axis in axes)
 
 
 def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:

@@ -10,9 +10,9 @@ cap on joint speed) are switched off, so that bodies move as rigid-body mechanic
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
-from .bullet_description import MeshFile, kinematic_trees, overlap_share
+from .bullet_description import ALONG, MeshFile, kinematic_trees, overlap_share
 from .physics import PhysicsSettings
-from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from .pose import Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
 from .spec import ModelSpec
 from .tuning import Tuning
 
@@ -237,6 +237,21 @@ class Engine:
                 if contact[2] == part.body:  # it touches itself
                     forces[contact[4]] = forces.get(contact[4], 0.0) + contact[9]
         return forces.get(part.index, 0.0)
+
+    def set_hold(self, body: Body, link: str, axis: Vector, share: float) -> None:
+        """Let a link's surfaces hold only `share` of their friction along `axis` of its frame.
+
+        Surfaces none of whose own axes it is hold as they did.
+        """
+        if body.holds.get(link, 1.0) == share:
+            return  # it does so already
+        body.holds[link] = share
+        for number, index, axes in body.surfaces[link]:
+            parts = rotate(conjugate(axes), axis)
+            scales = [share if abs(part) > ALONG else 1.0 for part in parts]
+            pybullet.changeDynamics(
+                number, index, anisotropicFriction=scales, physicsClientId=self._client
+            )
 
     def set_joint_position(self, body: Body, joint: str, position: float) -> None:
         """Put a joint at `position` [rad or m], at rest."""

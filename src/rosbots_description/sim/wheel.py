@@ -1,10 +1,14 @@
-"""A driven wheel: a motor, a tyre that creeps, and what the motor side sees of it.
+"""A driven wheel: a motor that gives way, a tyre that creeps, and what the motor side sees of it.
 
-A tyre that passes on a force creeps: its rim is faster than the ground passes under it. Gazebo's
-trace of the article's robot shows by how much: at any speed alike, and with the square of the share
-of the grip in use (doc/physics.md). PyBullet's contacts never creep, so the creep sits between
-motor and wheel here: the motor is asked for the hub's speed, the joint turns at the tyre's, and
-position and velocity are reported for the hub.
+A tyre that passes on a force creeps: its rim is faster than the ground passes under it. And the
+motor before it turns a little slower than it is asked to. Gazebo's traces of the article's robot
+show by how much (doc/physics.md): at any speed alike, the lag goes with the share of the grip in
+use, the creep with its square.
+
+PyBullet's contacts never creep, so the creep sits between motor and wheel here: the motor is asked
+for the hub's speed, the joint turns at the tyre's, and position and velocity are reported for the
+hub. PyBullet's motors lag by what its solver leaves undone, on one side more than on the other,
+which would turn the robot; so each is asked for more or less, until it lags as the force tells.
 """
 
 import math
@@ -18,12 +22,16 @@ from .spec import Cylinder, LinkSpec, Sphere
 if TYPE_CHECKING:
     from .model import Joint
 
-# Creep of a tyre that uses all of its grip [m/s], before it slides.
-CREEP = 0.085
+# At the rim of a wheel whose tyre uses all of its grip, before it slides:
+LAG = 0.0125  # how much slower the motor turns than asked [m/s]
+CREEP = 0.092  # how much faster the tyre turns than the ground passes [m/s]
 # Time in which creep follows the force [s]; a tyre's follows over a length. Without it the force,
 # which a rigid contact lets jump from step to step, would shake the wheels.
 RELAXATION = 0.1
+TRIMMING = 0.33  # time in which the motor comes to its lag [s]; a ramp passes before
+TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
 LOOK = 0.05  # time between two looks at force and load, half of what steering costs [s]
+ALL = 0.999  # of its torque: a motor that gives as much cannot do more
 
 
 class Wheel:
@@ -47,6 +55,8 @@ class Wheel:
         self._grip = _grip(self._link())
         self._torque = torque
         self._clock = clock
+        self._asked = 0.0  # hub speed [rad/s]
+        self._trim = 0.0  # what the motor is asked for beyond that [rad/s]
         self._creep = 0.0  # hub speed minus tyre speed [rad/s]
         self._lead = 0.0  # how far the hub had turned more than the tyre at `_noted_ns` [rad]
         self._noted_ns = 0
@@ -60,7 +70,7 @@ class Wheel:
     def rest(self) -> None:
         """Take note that the wheel stands still; how far it has turned, and the motor, stay."""
         self._note_lead()
-        self._creep = 0.0
+        self._asked = self._trim = self._creep = 0.0
 
     @property
     def position(self) -> float:
@@ -75,9 +85,21 @@ class Wheel:
     def drive(self, velocity: float) -> None:
         """Turn the hub at `velocity` [rad/s] from now on."""
         if self._since_noted() >= LOOK:
-            elapsed = self._note_lead()
-            self._creep += (self._steady_creep() - self._creep) * min(1.0, elapsed / RELAXATION)
-        self.joint.set_motor(velocity - self._creep, self._torque)
+            # One that is asked to stand neither lags nor creeps: a parked robot stays where it is.
+            self._adapt(self._grip_in_use() if velocity else 0.0)
+        self._asked = velocity
+        self.joint.set_motor(velocity + self._trim - self._creep, self._torque)
+
+    def _adapt(self, use: float) -> None:
+        """Bring creep and lag towards what belongs to the share of the grip in use."""
+        elapsed = self._note_lead()
+        radius = self.radius or math.inf
+        steady = CREEP * use * abs(use) / radius
+        self._creep += (steady - self._creep) * min(1.0, elapsed / RELAXATION)
+        if abs(self.joint.effort) < ALL * self._torque:
+            missing = self._asked - self.velocity - LAG * use / radius
+            trim = self._trim + missing * min(1.0, elapsed / TRIMMING)
+            self._trim = max(-TRIM, min(TRIM, trim))
 
     def _note_lead(self) -> float:
         """Add up the creep since it was last done; return the time since then [s]."""
@@ -90,6 +112,12 @@ class Wheel:
         # A difference of whole nanoseconds: the same at any time of day, so the motion is, too.
         return (self._clock.now_ns - self._noted_ns) / NANOSECONDS
 
+    @property
+    def axle(self) -> Vector:
+        """Return the direction of the axis, in the frame of the model as it was spawned."""
+        spec = self.joint.spec
+        return rotate(self._link().pose.orientation, rotate(spec.pose.orientation, spec.axis))
+
     def place_on_axle(self) -> Vector:
         """Return where the touching shape stands along the axle, in the model frame [m].
 
@@ -98,19 +126,17 @@ class Wheel:
         """
         link = self._link()
         x, y, z = compose(link.pose, link.collisions[0].pose).position
-        spec = self.joint.spec
-        ax, ay, az = rotate(link.pose.orientation, rotate(spec.pose.orientation, spec.axis))
+        ax, ay, az = self.axle
         along = ax * x + ay * y + az * z
         return (along * ax, along * ay, along * az)
 
-    def _steady_creep(self) -> float:
-        """Return the creep [rad/s] that belongs to the present force; it points along the force."""
+    def _grip_in_use(self) -> float:
+        """Return the share of the tyre's grip that the present force uses, -1 to 1 as it points."""
         load = self.joint.normal_force() * self._grip if self.radius else 0.0
         if load <= 0.0:
             return 0.0
         effort = self.joint.effort
-        use = min(1.0, abs(effort) / (self.radius * load))
-        return math.copysign(CREEP * use * use / self.radius, effort)
+        return math.copysign(min(1.0, abs(effort) / (self.radius * load)), effort)
 
     def _link(self) -> LinkSpec:
         return self.joint.model.spec.link(self.joint.spec.child)

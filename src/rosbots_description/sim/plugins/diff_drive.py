@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass
 
 from ..clock import NANOSECONDS
+from ..dragging import Dragged
 from ..errors import NotFoundError, PluginError
 from ..pose import Pose, Twist, from_rpy, relative, yaw_of
 from ..readings import FrameTransform, JointStates, Odometry, Port
@@ -121,6 +122,7 @@ class DiffDrive(ModelPlugin):
         self.config = read_config(self.params)
         self.odometry, self.wheel_transform, self.joint_states = Port(), Port(), Port()
         self.wheels = (self._wheel(self.config.left_joint), self._wheel(self.config.right_joint))
+        self._dragged = Dragged(self.model, self.wheels[0])
         self._warn_unread()
         self._warn_geometry()
         rate = self.config.update_rate
@@ -137,6 +139,7 @@ class DiffDrive(ModelPlugin):
         self.reset()
         for wheel in self.wheels:
             wheel.release()
+        self._dragged.follow(0.0, 0.0)
 
     def reset(self) -> None:
         """Forget command, encoder odometry and the time of the last update."""
@@ -186,6 +189,7 @@ class DiffDrive(ModelPlugin):
             target = self._setpoint
         for wheel, rim_speed in zip(self.wheels, target, strict=True):
             wheel.drive(rim_speed / radius)
+        self._dragged.follow(*target)
 
     def _publish(self) -> None:
         config = self.config

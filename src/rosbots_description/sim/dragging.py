@@ -1,0 +1,54 @@
+"""What a driven robot drags over the ground: a caster that slides, a skid, its belly.
+
+Friction is limited along the world's axes each (tuning.py). What slides along one of them is held
+sideways as by a rail, and a rail behind the wheels turns the robot away from it, faster and faster.
+But friction points against the slip: what slides straight on is not held sideways at all. So the
+straighter a robot is asked to drive, the less of its friction holds its body along the axle.
+"""
+
+from typing import TYPE_CHECKING
+
+from .pose import conjugate, rotate
+from .spec import FIXED, ModelSpec
+from .wheel import Wheel
+
+if TYPE_CHECKING:
+    from .model import Model
+
+# In a curve where the speeds of the rims differ by this share of their sum, all friction holds.
+BEND = 0.1
+
+
+class Dragged:
+    """The links that move with the one which carries the wheels."""
+
+    def __init__(self, model: 'Model', wheel: Wheel) -> None:
+        """Find them.
+
+        Args:
+            model: what is driven.
+            wheel: one of the wheels; the others turn about the same axle.
+        """
+        self._model = model
+        links = [model.spec.link(name) for name in _fixed_to(wheel.joint.spec.parent, model.spec)]
+        # Each with the direction of the axle in its frame.
+        self._links = [
+            (link.name, rotate(conjugate(link.pose.orientation), wheel.axle)) for link in links
+        ]
+
+    def follow(self, left: float, right: float) -> None:
+        """Let them hold what they hold while the rims are asked for these speeds [m/s]."""
+        bend, straight = abs(right - left), BEND * abs(right + left)
+        share = bend / straight if bend < straight else 1.0
+        for name, axle in self._links:
+            self._model.engine.set_hold(self._model.body, name, axle, share)
+
+
+def _fixed_to(name: str, spec: ModelSpec) -> list[str]:
+    """Return the names of the links that fixed joints connect to one, itself first."""
+    names = [name]
+    for one in names:  # it grows while we walk it
+        for joint in spec.joints:
+            if joint.type == FIXED and one in (joint.parent, joint.child):
+                names += [end for end in (joint.parent, joint.child) if end not in names]
+    return [name for name in names if name in {link.name for link in spec.links}]

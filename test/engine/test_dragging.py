@@ -1,0 +1,94 @@
+"""What a robot drags holds along some axes more than along others, whatever its inertia is."""
+
+import math
+
+import pytest
+from support import empty_world
+
+from rosbots_description.sim.dragging import Dragged
+from rosbots_description.sim.pose import Pose, from_rpy
+from rosbots_description.sim.spec import (
+    FIXED,
+    Box,
+    Collision,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    ModelSpec,
+)
+from rosbots_description.sim.wheel import Wheel
+
+SIDEWAYS, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
+ROUND = Inertial(2.0, ixx=0.02, iyy=0.02, izz=0.02)
+ASKEW = Inertial(2.0, ixx=0.02, iyy=0.03, izz=0.04, ixy=0.005, ixz=0.004)
+PUSH = 10.0  # [N], half of what holds the sledge
+SHAPE = (Collision('c', Box((0.4, 0.4, 0.1))),)
+
+
+def sledge(inertial, turn=0.0):
+    """Return a box on the ground with a weightless wheel in the air, its axle along y.
+
+    Args:
+        turn: how far the box's frame is turned about z, away from the model's [rad].
+    """
+    base = LinkSpec('base', Pose(orientation=from_rpy(0.0, 0.0, turn)), inertial, SHAPE)
+    wheel = LinkSpec('wheel', Pose((0.0, 0.0, 0.3)), Inertial(1e-3, ixx=1e-6, iyy=1e-6, izz=1e-6))
+    return ModelSpec('sledge', (base, wheel), (JointSpec('axle', 'revolute', 'base', 'wheel',
+                                                         axis=SIDEWAYS),))
+
+
+def speed_after_a_push(spec, direction, rims):
+    """Return how fast the sledge is after it was pushed for 0.1 s, its rims asked for so much."""
+    with empty_world() as world:
+        model = world.spawn(spec, 'sledge', Pose((0.0, 0.0, 0.05)))
+        Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock)).follow(*rims)
+        world.run(100)
+        for _ in range(100):
+            force = tuple(PUSH * part for part in direction)
+            model.links['base'].push(force, (0.0, 0.0, 0.0))
+            world.run(1)
+        return math.hypot(*model.twist.linear[:2])
+
+
+@pytest.mark.parametrize('turn', [0.0, math.pi / 2])
+@pytest.mark.parametrize('inertial', [ROUND, ASKEW])
+def test_on_the_straight_nothing_is_held_sideways_but_ahead(inertial, turn):
+    spec = sledge(inertial, turn)
+    assert speed_after_a_push(spec, SIDEWAYS, (1.0, 1.0)) == pytest.approx(0.5, rel=0.02)
+    assert speed_after_a_push(spec, AHEAD, (1.0, 1.0)) < 1e-3
+
+
+@pytest.mark.parametrize('rims', [(0.5, 1.0), (0.0, 0.0)])
+def test_in_curves_and_at_rest_all_holds(rims):
+    assert speed_after_a_push(sledge(ASKEW), SIDEWAYS, rims) < 1e-3
+    assert speed_after_a_push(sledge(ASKEW), AHEAD, rims) < 1e-3
+
+
+def test_what_was_free_holds_again():
+    with empty_world() as world:
+        model = world.spawn(sledge(ASKEW), 'sledge', Pose((0.0, 0.0, 0.05)))
+        dragged = Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock))
+        dragged.follow(1.0, 1.0)
+        world.run(100)
+        dragged.follow(0.0, 0.0)
+        for _ in range(100):
+            model.links['base'].push((0.0, PUSH, 0.0), (0.0, 0.0, 0.0))
+            world.run(1)
+        assert math.hypot(*model.twist.linear[:2]) < 1e-3
+
+
+def test_what_is_fixed_to_the_base_is_dragged_with_it():
+    base = LinkSpec('base', Pose(), ROUND)
+    skid = LinkSpec('skid', Pose(), ROUND, SHAPE)
+    spec = sledge(ROUND)
+    spec = ModelSpec('sledge', (base, spec.links[1], skid),
+                     (*spec.joints, JointSpec('bolt', FIXED, 'base', 'skid')))
+    assert speed_after_a_push(spec, SIDEWAYS, (1.0, 1.0)) > 0.2
+    assert speed_after_a_push(spec, AHEAD, (1.0, 1.0)) < 1e-3
+
+
+def test_a_robot_bolted_to_the_world_has_nothing_to_drag_but_itself():
+    spec = sledge(ROUND)
+    spec = ModelSpec('sledge', spec.links, (JointSpec('bolt', FIXED, 'world', 'base'),
+                                            *spec.joints))
+    assert speed_after_a_push(spec, SIDEWAYS, (1.0, 1.0)) == 0.0
