@@ -71,10 +71,6 @@ class FakeModel:
         self.holds = []  # shares of the friction along the axle, as they were asked for
         self.engine = SimpleNamespace(set_hold=lambda *call: self.holds.append(call[-1]))
 
-    @property
-    def pose(self):
-        return self.now[0]
-
     def state(self):
         return self.now
 
@@ -270,6 +266,16 @@ def test_what_is_switched_off_is_not_sent(tag, port):
     readings = collect(getattr(plugin, port))
     run(plugin, 50)
     assert readings == []
+
+
+def test_the_model_is_asked_once_for_all_that_is_published():
+    plugin = make(publishWheelTF='true', publishWheelJointState='true')
+    for port in (plugin.odometry, plugin.wheel_transform, plugin.joint_states):
+        collect(port)
+    model, looks = plugin.model, []
+    model.state = lambda: looks.append(1) or model.now
+    run(plugin, PERIOD_STEPS + 1)
+    assert looks == [1]
 
 
 def test_nothing_is_computed_while_nobody_listens():

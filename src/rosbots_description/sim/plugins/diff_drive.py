@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from ..clock import NANOSECONDS
 from ..dragging import Dragged
 from ..errors import NotFoundError, PluginError
-from ..pose import Pose, Twist, from_rpy, relative, yaw_of
+from ..pose import Pose, Twist, compose, from_rpy, inverse, yaw_of
 from ..readings import FrameTransform, JointStates, Odometry, Port
 from ..wheel import Wheel
 from .base import ModelPlugin
@@ -193,26 +193,28 @@ class DiffDrive(ModelPlugin):
 
     def _publish(self) -> None:
         config = self.config
-        if config.publish_tf and self.odometry.wanted():
+        odometry = config.publish_tf and self.odometry.wanted()
+        wheels = config.publish_wheel_tf and self.wheel_transform.wanted()
+        if odometry or wheels:
+            pose, twist = self.model.state()  # once: the engine takes its time to tell
+        if odometry:
             encoder = config.odometry_source == ENCODER
-            self.odometry.send(self._encoder_odometry() if encoder else self._world_odometry())
-        if config.publish_wheel_tf and self.wheel_transform.wanted():
-            model_pose = self.model.pose
-            for spec in (wheel.joint.spec for wheel in self.wheels):
-                pose = relative(self.model.links[spec.child].pose, model_pose)
-                self.wheel_transform.send(FrameTransform(spec.parent, spec.child, pose))
+            self.odometry.send(
+                self._encoder_odometry() if encoder else _world_odometry(pose, twist)
+            )
+        if wheels:
+            self._send_wheel_transforms(pose)
         if config.publish_wheel_joint_state and self.joint_states.wanted():
             left, right = self.wheels
             self.joint_states.send(
                 JointStates((right.name, left.name), (right.position, left.position))
             )
 
-    def _world_odometry(self) -> Odometry:
-        pose, ((vx, vy, _), (_, _, yaw_rate)) = self.model.state()
-        yaw = yaw_of(pose.orientation)
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        linear = (cos * vx + sin * vy, cos * vy - sin * vx, 0.0)
-        return Odometry(pose, Twist(linear, (0.0, 0.0, yaw_rate)))
+    def _send_wheel_transforms(self, model_pose: Pose) -> None:
+        world_in_model = inverse(model_pose)
+        for spec in (wheel.joint.spec for wheel in self.wheels):
+            pose = compose(world_in_model, self.model.links[spec.child].pose)
+            self.wheel_transform.send(FrameTransform(spec.parent, spec.child, pose))
 
     def _encoder_odometry(self) -> Odometry:
         x, y, yaw = self._encoder_pose
@@ -284,3 +286,12 @@ class DiffDrive(ModelPlugin):
                 forward,
                 turn,
             )
+
+
+def _world_odometry(pose: Pose, twist: Twist) -> Odometry:
+    """Return the model's true pose, and its twist in the plane in the model's own axes."""
+    (vx, vy, _), (_, _, yaw_rate) = twist
+    yaw = yaw_of(pose.orientation)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    linear = (cos * vx + sin * vy, cos * vy - sin * vx, 0.0)
+    return Odometry(pose, Twist(linear, (0.0, 0.0, yaw_rate)))
