@@ -7,14 +7,11 @@ there already, which is what makes publishing at 1000 Hz cheap.
 import math
 
 from genpy import Time
-from geometry_msgs.msg import Point, Transform, TransformStamped, Vector3
+from geometry_msgs.msg import Point, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Twist as TwistMessage
-from nav_msgs.msg import Odometry as OdometryMessage
-from sensor_msgs.msg import JointState
 
 from ..sim.pose import Pose, Twist, Vector, normalise
-from ..sim.readings import JointStates, Odometry
 
 
 def stamp(now_ns: int) -> Time:
@@ -58,32 +55,3 @@ def read_vector(message: Point | Vector3) -> Vector:
 def read_twist(message: TwistMessage) -> Twist:
     """Return a message's velocities."""
     return Twist(read_vector(message.linear), read_vector(message.angular))
-
-
-def fill_odometry(message: OdometryMessage, now_ns: int, odometry: Odometry) -> None:
-    """Write a reading into a message whose frames and covariances are set."""
-    message.header.stamp = stamp(now_ns)
-    fill_pose(message.pose.pose, odometry.pose)
-    fill_twist(message.twist.twist, odometry.twist)
-
-
-def transform_message(parent: str, child: str) -> TransformStamped:
-    """Return a message for the edge between two frames, to be filled."""
-    message = TransformStamped(child_frame_id=child, transform=Transform())
-    message.header.frame_id = parent
-    return message
-
-
-def fill_transform(message: TransformStamped, now_ns: int, pose: Pose) -> None:
-    """Write where the child stands in its parent."""
-    message.header.stamp = stamp(now_ns)
-    translation, rotation = message.transform.translation, message.transform.rotation
-    translation.x, translation.y, translation.z = pose.position
-    rotation.x, rotation.y, rotation.z, rotation.w = pose.orientation
-
-
-def joint_state_message(now_ns: int, reading: JointStates) -> JointState:
-    """Return names and positions; velocity and effort stay empty, as Gazebo's plugin has it."""
-    message = JointState(name=list(reading.names), position=list(reading.positions))
-    message.header.stamp = stamp(now_ns)
-    return message

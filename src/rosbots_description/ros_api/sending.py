@@ -19,6 +19,8 @@ from rospy.impl.tcpros_base import TCPROSTransport
 
 logger = logging.getLogger(__name__)
 
+_LARGEST_NUMBER = 0xFFFFFFFF  # that a header has room for; then it begins at 0 again
+
 
 class Outlets:
     """The connections to all readers of this process."""
@@ -125,10 +127,20 @@ class Outlet:
                 self._waiting.clear()
 
 
-def publish_serialized(publisher: rospy.Publisher, messages: bytes) -> None:
-    """Publish messages that are serialized, each behind its length, as they go over the wire.
+def next_number(publisher: rospy.Publisher) -> int:
+    """Return what the header of the publisher's next message has as `seq`, as rospy counts."""
+    topic = publisher.impl
+    if topic is None:  # the node is shutting down
+        return 0
+    topic.seq = (topic.seq + 1) & _LARGEST_NUMBER
+    return topic.seq
 
-    rospy has no public place for this: it serializes a message at a time.
+
+def publish_serialized(publisher: rospy.Publisher, messages: bytes) -> None:
+    """Publish messages that are serialized, each behind its size, as they go over the wire.
+
+    Only one thread may publish on a topic so. rospy has no public place for this: it serializes a
+    message at a time.
     """
     topic = publisher.impl
     if topic is None:  # the node is shutting down

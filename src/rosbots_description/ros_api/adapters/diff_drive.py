@@ -22,21 +22,17 @@ from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins.diff_drive import DiffDrive
 from ...sim.readings import FrameTransform, JointStates, Odometry
-from ..conversions import (
-    fill_odometry,
-    fill_transform,
-    joint_state_message,
-    transform_message,
-)
+from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
 from ..log_bridge import set_level
 from ..names import find_tf_prefix, frame_name, topic_name
+from ..sending import next_number, publish_serialized
 from ..server import Server
 from .registry import Adapter, adapter
 
 logger = logging.getLogger(__name__)
 
-# Row-major 6x6: x, y [m^2], the three that a plane has not, yaw [rad^2]; as upstream.
-POSE_COVARIANCE_DIAGONAL = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
+# x, y [m^2], the three that a plane has not, yaw [rad^2]; as upstream.
+POSE_VARIANCES = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
 COMPLAINT_PERIOD = 5.0  # least time between two complaints about bad commands [s, wall]
 
 
@@ -47,8 +43,10 @@ class DiffDriveAdapter(Adapter):
     def __init__(self, server: Server, plugin: DiffDrive) -> None:
         super().__init__(server, plugin)
         self._prefix = ''
-        self._message = OdometryMessage()
-        self._edges: dict[tuple[str, str], TFMessage] = {}  # by parent and child
+        # How the messages are laid out: once their frames and joints are known they stay.
+        self._odometry_layout: OdometryLayout | None = None
+        self._edges: dict[tuple[str, str], TransformLayout] = {}  # by parent and child
+        self._joints: dict[tuple[str, ...], JointStatesLayout] = {}  # by names
         self._publishers: list[rospy.Publisher] = []
         self._odometry = self._tf = self._joint_states = None
         self._commands: rospy.Subscriber | None = None
@@ -70,7 +68,11 @@ class DiffDriveAdapter(Adapter):
         self._commands = rospy.Subscriber(topic, Twist, self._on_command, queue_size=1)
         logger.info('%sSubscribe to %s', prefix, config.command_topic)
         if config.publish_tf:
-            self._prepare_message()
+            self._odometry_layout = OdometryLayout(
+                frame_name(self._prefix, config.odometry_frame),
+                frame_name(self._prefix, config.robot_base_frame),
+                POSE_VARIANCES,
+            )
             self._odometry = self._publisher(config.odometry_topic, OdometryMessage, 1)
             logger.info('%sAdvertise odom on %s ', prefix, config.odometry_topic)
 
@@ -105,32 +107,32 @@ class DiffDriveAdapter(Adapter):
         self._publishers.append(publisher)
         return publisher
 
-    def _prepare_message(self) -> None:
-        config, message = self.plugin.config, self._message
-        message.header.frame_id = frame_name(self._prefix, config.odometry_frame)
-        message.child_frame_id = frame_name(self._prefix, config.robot_base_frame)
-        for i, variance in enumerate(POSE_COVARIANCE_DIAGONAL):
-            message.pose.covariance[7 * i] = variance
-
     def _send_odometry(self, reading: Odometry) -> None:
         config = self.plugin.config
-        if config.publish_odom_tf:
+        if config.publish_odom_tf and _has_readers(self._tf):
             edge = FrameTransform(config.odometry_frame, config.robot_base_frame, reading.pose)
             self._send_transform(edge)
-        fill_odometry(self._message, self._now_ns(), reading)
-        self._odometry.publish(self._message)
+        if _has_readers(self._odometry):
+            number = next_number(self._odometry)
+            message = self._odometry_layout.pack(number, self._now_ns(), reading)
+            publish_serialized(self._odometry, message)
 
     def _send_transform(self, reading: FrameTransform) -> None:
-        edge = reading[:2]
-        message = self._edges.get(edge)
-        if message is None:
-            parent, child = (frame_name(self._prefix, name) for name in edge)
-            message = self._edges[edge] = TFMessage([transform_message(parent, child)])
-        fill_transform(message.transforms[0], self._now_ns(), reading.pose)
-        self._tf.publish(message)
+        parent, child, pose = reading
+        layout = self._edges.get((parent, child))
+        if layout is None:
+            frames = frame_name(self._prefix, parent), frame_name(self._prefix, child)
+            layout = self._edges[parent, child] = TransformLayout(*frames)
+        publish_serialized(self._tf, layout.pack(self._now_ns(), pose))
 
     def _send_joint_states(self, reading: JointStates) -> None:
-        self._joint_states.publish(joint_state_message(self._now_ns(), reading))
+        names, positions = reading
+        layout = self._joints.get(names)
+        if layout is None:
+            layout = self._joints[names] = JointStatesLayout(names)
+        number = next_number(self._joint_states)
+        message = layout.pack(number, self._now_ns(), positions)
+        publish_serialized(self._joint_states, message)
 
     def _now_ns(self) -> int:
         return self.server.world.clock.now_ns

@@ -1,0 +1,89 @@
+"""Messages of which only numbers change, as they go over the wire.
+
+Most of such a message is the same each time, so that writing it all again, as genpy does, costs
+several times what the numbers cost. On the wire a message is its size and its fields in order;
+numbers are little-endian, and a text or a list stands behind its length.
+"""
+
+import struct
+from collections.abc import Sequence
+
+from ..sim.clock import NANOSECONDS
+from ..sim.pose import Pose
+from ..sim.readings import Odometry
+
+_SIZE = 4  # of the number at the beginning, which does not count itself [bytes]
+_COVARIANCE = struct.Struct('<36d')  # row-major 6x6: x, y, z, then rotations about x, y, z
+_NO_COVARIANCE = bytes(_COVARIANCE.size)
+
+
+class OdometryLayout:
+    """nav_msgs/Odometry between two frames."""
+
+    def __init__(self, frame: str, child: str, pose_variances: Sequence[float]) -> None:
+        """Note what stays the same.
+
+        Args:
+            frame: in which the pose is given.
+            child: the frame that moves, in which the twist is given.
+            pose_variances: six, the diagonal of the pose's covariance.
+        """
+        self._frames = _text(frame) + _text(child)
+        self._pose_covariance = _diagonal(pose_variances)
+        covariance = f'{_COVARIANCE.size}s'
+        self._layout = struct.Struct(f'<4I{len(self._frames)}s7d{covariance}6d{covariance}')
+        self._size = self._layout.size - _SIZE
+
+    def pack(self, seq: int, now_ns: int, reading: Odometry) -> bytes:
+        """Return the message with the number `seq`, stamped `now_ns` [ns]."""
+        pose, twist = reading
+        return self._layout.pack(
+            self._size, seq, *divmod(now_ns, NANOSECONDS), self._frames,
+            *pose.position, *pose.orientation, self._pose_covariance,
+            *twist.linear, *twist.angular, _NO_COVARIANCE,
+        )
+
+
+class TransformLayout:
+    """tf2_msgs/TFMessage with one transform."""
+
+    def __init__(self, parent: str, child: str) -> None:
+        """Note the names of the two frames."""
+        self._frames = _text(parent) + _text(child)
+        self._layout = struct.Struct(f'<5I{len(self._frames)}s7d')
+        self._size = self._layout.size - _SIZE
+
+    def pack(self, now_ns: int, pose: Pose) -> bytes:
+        """Return the message for the child standing so in its parent at `now_ns` [ns]."""
+        return self._layout.pack(  # one transform, whose header nobody counts
+            self._size, 1, 0, *divmod(now_ns, NANOSECONDS), self._frames,
+            *pose.position, *pose.orientation,
+        )
+
+
+class JointStatesLayout:
+    """sensor_msgs/JointState with positions; velocity and effort are empty, as in Gazebo."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """Note the names of the joints."""
+        frame, count = _text(''), struct.pack('<I', len(names))
+        self._names = frame + count + b''.join(map(_text, names)) + count
+        self._layout = struct.Struct(f'<4I{len(self._names)}s{len(names)}d2I')
+        self._size = self._layout.size - _SIZE
+
+    def pack(self, seq: int, now_ns: int, positions: Sequence[float]) -> bytes:
+        """Return the message with the number `seq`, stamped `now_ns` [ns]."""
+        return self._layout.pack(
+            self._size, seq, *divmod(now_ns, NANOSECONDS), self._names, *positions, 0, 0
+        )
+
+
+def _text(text: str) -> bytes:
+    data = text.encode()
+    return struct.pack('<I', len(data)) + data
+
+
+def _diagonal(variances: Sequence[float]) -> bytes:
+    matrix = [0.0] * 36
+    matrix[::7] = variances
+    return _COVARIANCE.pack(*matrix)

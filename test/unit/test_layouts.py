@@ -1,0 +1,76 @@
+"""Messages laid out by hand have the bytes that rospy gives them."""
+
+import io
+import math
+from types import SimpleNamespace
+
+import pytest
+from genpy import Time
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry as OdometryMessage
+from rospy.msg import serialize_message
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
+
+from rosbots_description.ros_api.conversions import fill_pose, fill_twist
+from rosbots_description.ros_api.layouts import (
+    JointStatesLayout,
+    OdometryLayout,
+    TransformLayout,
+)
+from rosbots_description.ros_api.sending import next_number
+from rosbots_description.sim.pose import Pose, Twist
+from rosbots_description.sim.readings import Odometry
+
+SEQ, NOW_NS = 258, 12_000_000_345
+STAMP = Time(12, 345)
+POSE = Pose((1.0, -2.0, 3.0), (0.1, 0.2, 0.3, math.nan))
+TWIST = Twist((0.1, 0.2, 0.3), (0.4, 0.5, math.inf))
+FRAMES = [('odom', 'base_link'), ('', ''), ('r1/odöm', 'b')]
+
+
+def on_the_wire(message):
+    buffer = io.BytesIO()
+    serialize_message(buffer, SEQ, message)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(('frame', 'child'), FRAMES)
+def test_odometry(frame, child):
+    message = OdometryMessage(child_frame_id=child)
+    message.header.frame_id, message.header.stamp = frame, STAMP
+    fill_pose(message.pose.pose, POSE)
+    fill_twist(message.twist.twist, TWIST)
+    message.pose.covariance = [0.0] * 36
+    variances = message.pose.covariance[::7] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+    layout = OdometryLayout(frame, child, variances)
+    assert layout.pack(SEQ, NOW_NS, Odometry(POSE, TWIST)) == on_the_wire(message)
+
+
+@pytest.mark.parametrize(('parent', 'child'), FRAMES)
+def test_a_transform(parent, child):
+    edge = TransformStamped(child_frame_id=child)
+    edge.header.frame_id, edge.header.stamp = parent, STAMP
+    translation, rotation = edge.transform.translation, edge.transform.rotation
+    translation.x, translation.y, translation.z = POSE.position
+    rotation.x, rotation.y, rotation.z, rotation.w = POSE.orientation
+    assert TransformLayout(parent, child).pack(NOW_NS, POSE) == on_the_wire(TFMessage([edge]))
+
+
+@pytest.mark.parametrize('names', [('right', 'left'), ('rädchen',), ()])
+def test_joint_states_have_positions_only(names):
+    positions = [0.5 + i for i in range(len(names))]
+    message = JointState(name=names, position=positions)
+    message.header.stamp = STAMP
+    assert JointStatesLayout(names).pack(SEQ, NOW_NS, positions) == on_the_wire(message)
+
+
+def test_numbers_follow_those_that_rospy_gave_and_begin_again_when_there_is_no_room():
+    publisher = SimpleNamespace(impl=SimpleNamespace(seq=7))
+    assert [next_number(publisher), next_number(publisher)] == [8, 9]
+    publisher.impl.seq = 2**32 - 1
+    assert next_number(publisher) == 0
+
+
+def test_a_publisher_that_was_closed_counts_nothing():
+    assert next_number(SimpleNamespace(impl=None)) == 0
