@@ -1,0 +1,24 @@
+"""Nodes begin at once: rospy's own waits are cut short."""
+
+from types import SimpleNamespace
+
+import rospy.impl.init
+
+from rosbots_description.ros_api import process
+
+
+def test_a_node_that_the_master_has_taken_in_goes_on_at_once(monkeypatch):
+    init, slept = rospy.impl.init, []
+    answers = iter((False, False, True))
+    node = SimpleNamespace(uri='http://here', start=lambda: None)
+    monkeypatch.setattr(init, 'init_tcpros', lambda _port: None)
+    monkeypatch.setattr(init, '_set_caller_id', lambda _name: None)
+    monkeypatch.setattr(
+        init, 'ROSHandler', lambda *_: SimpleNamespace(_is_registered=lambda: next(answers)))
+    monkeypatch.setattr(init.rosgraph.xmlrpc, 'XmlRpcNode', lambda *_, **__: node)
+    monkeypatch.setattr(init, 'time', init.time)  # is put back after the test
+    process._begin_at_once()
+    monkeypatch.setattr(process.time, 'sleep', slept.append)
+    assert init.start_node({}, '/node', 'http://master') is node
+    assert len(slept) == 2
+    assert sum(slept) < 0.01  # [s]
