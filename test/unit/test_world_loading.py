@@ -4,6 +4,7 @@ import logging
 import os
 
 import pytest
+import rospkg
 from support import ROOT
 
 from rosbots_description.ros_api import packages
@@ -83,6 +84,17 @@ def test_packages_export_worlds_and_models(tmp_path, places):
     places(folder)
     world = read_world('worlds/house.world')
     assert [model.name for model, _ in world.models] == ['door']
+
+
+def test_only_manifests_that_export_folders_are_parsed(tmp_path, places, monkeypatch):
+    exporting(tmp_path / 'packages' / 'houses', 'gazebo_media_path="${prefix}"')
+    exporting(tmp_path / 'packages' / 'doors', 'gazebo_model_path="${prefix}"')
+    places(tmp_path / 'packages')
+    parsed, parse = [], rospkg.RosPack.get_manifest
+    monkeypatch.setattr(rospkg.RosPack, 'get_manifest',
+                        lambda self, name: parsed.append(name) or parse(self, name))
+    found = packages.exported_directories('gazebo_media_path')
+    assert (found, parsed) == ((str(tmp_path / 'packages' / 'houses'),), ['houses'])
 
 
 def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):

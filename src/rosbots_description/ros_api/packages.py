@@ -1,11 +1,15 @@
 """Where ROS packages lie, and the models and files that they offer to the simulator."""
 
+import contextlib
 import os
 from functools import cache
+from pathlib import Path
 
 import rospkg
 
 from ..sim.model_search import ModelSearch, path_directories
+
+_MANIFESTS = ('manifest.xml', 'package.xml')  # of a package; the first one there is counts
 
 
 def find_package(name: str) -> str | None:
@@ -33,10 +37,12 @@ def _packages() -> rospkg.RosPack:
 def exported_directories(attribute: str) -> tuple[str, ...]:
     """Return what packages export by <gazebo_ros ATTRIBUTE="..."/>, e.g. gazebo_model_path.
 
-    Reading every manifest takes a while, so it is done once, when first needed.
+    Looking at every manifest takes a while, so it is done once, when first needed.
     """
     packages, found = _packages(), []
     for name in packages.list():
+        if not _mentions(packages.get_path(name), attribute):
+            continue
         try:
             values = packages.get_manifest(name).get_export('gazebo_ros', attribute)
         except rospkg.InvalidManifest:
@@ -44,6 +50,14 @@ def exported_directories(attribute: str) -> tuple[str, ...]:
         for value in values:
             found += path_directories(value.replace('${prefix}', packages.get_path(name)))
     return tuple(found)
+
+
+def _mentions(package: str, word: str) -> bool:
+    """Tell whether a word stands in a package's manifest, which takes far less than to parse it."""
+    for name in _MANIFESTS:
+        with contextlib.suppress(OSError):
+            return word.encode() in Path(package, name).read_bytes()
+    return False
 
 
 def find_model(inner: str) -> str | None:
