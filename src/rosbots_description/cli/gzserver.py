@@ -1,6 +1,7 @@
 """The simulator's command line, as Gazebo's gzserver has it."""
 
 import argparse
+import gc
 import logging
 import os
 import signal
@@ -78,8 +79,11 @@ def _main(arguments: Sequence[str]) -> int:
             return 1
     # The threads of numpy's library would find nothing to do, and spin for it.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+    gc.disable()  # modules stay to the end; looking for garbage among them takes time
     from ..ros_api import node  # noqa: PLC0415  needs what may be missing
 
+    gc.freeze()
+    gc.enable()
     options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
                            given.verbose)
     try:
