@@ -2,6 +2,7 @@
 
 import errno
 import os
+import select
 import socket
 import struct
 import threading
@@ -33,6 +34,19 @@ def test_a_header_is_recognised_and_left_to_be_read(ends):
     assert speaks_tcpros(ours, PATIENCE)
     assert ours.gettimeout() is None
     assert ours.recv(100) == header
+
+
+def test_a_header_that_is_there_is_taken_without_a_pause(ends, monkeypatch):
+    class Poll:
+        def register(self, _connection, _events):
+            pass
+
+        def poll(self, _milliseconds):
+            pytest.fail('paused')
+
+    monkeypatch.setattr(select, 'poll', Poll)
+    ends[1].sendall(struct.pack('<I', 3) + b'a=b')
+    assert speaks_tcpros(ends[0], PATIENCE)
 
 
 def test_silence_is_not_waited_for(ends):

@@ -66,22 +66,20 @@ def _receive(server: TCPServer, connection: socket.socket, address: tuple) -> No
 def speaks_tcpros(connection: socket.socket, patience: float = PATIENCE) -> bool:
     """Tell whether a whole header arrives within `patience` [s, wall]; nothing is consumed."""
     deadline = time.monotonic() + patience
-    wanted, pause = _LENGTH.size, _FIRST_PAUSE
+    pause = _FIRST_PAUSE
     hangup = select.poll()
     hangup.register(connection, select.POLLRDHUP)
     while True:
         connection.settimeout(max(_FIRST_PAUSE, deadline - time.monotonic()))
         try:
-            # With a timeout Python's recv returns what is there, whatever MSG_WAITALL says.
-            there = connection.recv(wanted, socket.MSG_PEEK)
+            there = connection.recv(_LENGTH.size + LONGEST_HEADER, socket.MSG_PEEK)
         except OSError:
             return False
         if len(there) >= _LENGTH.size:
             (length,) = _LENGTH.unpack_from(there)
             if length > LONGEST_HEADER:
                 return False
-            wanted = _LENGTH.size + length
-            if len(there) == wanted:
+            if len(there) >= _LENGTH.size + length:
                 connection.settimeout(None)
                 return True
         if not there or time.monotonic() >= deadline or hangup.poll(1000.0 * pause):
