@@ -28,6 +28,8 @@ from server import Server, in_a_process_of_its_own
 WINDOW = 0.5  # [s, wall]
 ROUNDS = 5  # windows of each loop
 SETTLE = 1.0  # [s, simulated] until robots that were spawned stand, or drive steadily
+STEPS_PER_SECOND = 1000.0  # at real time
+GAZEBO_BARE = {20: 2150.0}  # steps/s of the bare loop beside Gazebo, by robots
 LOOPS = ('bare', 'engine', 'world')
 COLUMNS = (*LOOPS, 'server', 'read')
 PICTURE = OUTPUT / 'speed.png'
@@ -123,7 +125,7 @@ def _speed(server: Server) -> float:
     time.sleep(WINDOW)
     end, simulated = time.monotonic(), server.simulated() - simulated
     server.pause()
-    return 1000.0 * simulated / (end - begin)
+    return STEPS_PER_SECOND * simulated / (end - begin)
 
 
 def _speed_read(server: Server, robots: int) -> tuple[float, float]:
@@ -148,9 +150,16 @@ def table(measured: Sequence[Case]) -> str:
         row += f'{_against(case, "read", case.aim_read):>18}'
         row += f'{case.arrived:9.0%}' if case.robots else ''
         rows.append(row)
-    real_time = next(case.best['read'] for case in measured if case.robots == 20) / 1000.0
-    rows.append(f'20 robots with readers run at {real_time:.2f} of real time (aim 1)')
+    rows += [_real_time(case) for case in measured if case.robots in GAZEBO_BARE]
     return '\n'.join(rows)
+
+
+def _real_time(case: Case) -> str:
+    """Return how fast robots with readers run, here and on the machine Gazebo was measured on."""
+    here = case.best['read'] / STEPS_PER_SECOND
+    there = here * GAZEBO_BARE[case.robots] / case.best['bare']
+    return (f'{case.name} with readers: {here:.2f} of real time here (aim 1), by the bare loop '
+            f'{there:.2f} of it where Gazebo was measured')
 
 
 def _against(case: Case, column: str, aim: float | None) -> str:
