@@ -138,7 +138,7 @@ class Engine:
         if part.index < 0:
             com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
         else:
-            com = Pose(*self._link_state(part)[:2])
+            com = Pose(*self._link_state(part, velocity=False)[:2])
         return compose(com, part.origin_in_com)
 
     def link_state(self, body: Body, link: str) -> tuple[Pose, Twist]:
@@ -148,7 +148,7 @@ class Engine:
             com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
             linear, angular = pybullet.getBaseVelocity(part.body, self._client)
         else:
-            state = self._link_state(part)
+            state = self._link_state(part, velocity=True)
             com, linear, angular = Pose(*state[:2]), state[6], state[7]
         pose = compose(com, part.origin_in_com)
         arm = subtract(pose.position, com.position)
@@ -277,11 +277,11 @@ class Engine:
         self._joint_readings.clear()
         self._normal_forces.clear()
 
-    def _link_state(self, part: Part) -> tuple:
+    def _link_state(self, part: Part, velocity: bool) -> tuple:
         return pybullet.getLinkState(
             part.body,
             part.index,
-            computeLinkVelocity=1,
+            computeLinkVelocity=velocity,
             computeForwardKinematics=1,
             physicsClientId=self._client,
         )
