@@ -25,7 +25,7 @@ SETTINGS = {
     'as is': USUAL,
     '50 passes': Tuning(passes=1.0),
     '20 passes': Tuning(passes=0.4),
-    '12 passes': Tuning(passes=0.24),
+    '14 passes': Tuning(passes=0.28),
     '8 passes': Tuning(passes=0.16),
     'cone': Tuning(friction_cone=True),
     'prisms': Tuning(exact_cylinders=False),

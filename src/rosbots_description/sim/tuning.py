@@ -15,7 +15,7 @@ class Tuning:
         push_out: rate at which overlapping bodies are pushed apart [1/s].
     """
 
-    passes: float = 0.28
+    passes: float = 0.24
     friction_cone: bool = False
     exact_cylinders: bool = True
     push_out: float = 10.0
