@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 DEADLINE = 60.0  # how long a caller waits for its command [s, wall]
-BATCH = 0.002  # longest time without a look at the queue [s, wall]
+BATCH = 0.005  # longest time without a look at the queue [s, wall]
 BACKLOG = 0.0005  # steps that interest nobody may be put off until they take this long [s, wall]
 MAX_LAG = 0.2  # steps that are later than this are not made up for [s, wall]
 
