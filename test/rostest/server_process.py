@@ -72,7 +72,12 @@ class ServerProcess:
     def children(self):
         """Return the ids of its child processes, also of those that have ended unnoticed."""
         tasks = Path(f'/proc/{self.process.pid}/task')
-        return [pid for task in tasks.glob('*/children') for pid in task.read_text().split()]
+        while True:
+            try:
+                return [pid for task in tasks.glob('*/children')
+                        for pid in task.read_text().split()]
+            except (FileNotFoundError, ProcessLookupError):
+                pass  # a thread has ended, and another one has its children now
 
     def end(self):
         """End it as Ctrl-C does; return its exit code and what it printed."""
