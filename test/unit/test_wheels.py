@@ -1,0 +1,104 @@
+"""Driven wheels lag and creep by the force they pass on; what is dragged holds in curves."""
+
+from dataclasses import replace
+
+import pytest
+from support.fake_drive import PERIOD_STEPS, collect, make, rim_speeds, run, wheel_of
+
+from rosbots_description.sim.wheel import CREEP, LAG
+
+
+def test_a_loaded_wheel_that_pulls_creeps_and_reports_its_hub():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='1.3')
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    for wheel in plugin.model.wheels.values():
+        wheel.weight, wheel.effort = 10.0, 1.3  # it pulls at half of its grip
+    run(plugin, 100 * PERIOD_STEPS)  # the creep follows slowly
+    assert rim_speeds(plugin) == pytest.approx((0.52 - 0.25 * CREEP,) * 2)
+    assert plugin.wheels[0].velocity == pytest.approx(2.0)
+    plugin.config = replace(plugin.config, publish_wheel_joint_state=True)
+    states = collect(plugin.joint_states)
+    run(plugin, 2 * PERIOD_STEPS)
+    # The joint of these tests stands still, so what is reported is the hub's lead alone.
+    led = states[1].positions[0] - states[0].positions[0]
+    assert led == pytest.approx(0.25 * CREEP / 0.26 * 0.010)
+
+
+def test_a_wheel_that_is_asked_to_stand_does_not_creep():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    for wheel in plugin.model.wheels.values():
+        wheel.weight, wheel.effort = 10.0, 1.3  # parked on a slope
+    run(plugin, 100 * PERIOD_STEPS)
+    assert rim_speeds(plugin) == (0.0, 0.0)
+
+
+def test_a_motor_that_falls_behind_is_brought_to_the_lag_of_its_force():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='20')
+    for wheel, given in zip(plugin.model.wheels.values(), (0.97, 0.9), strict=True):
+        wheel.weight, wheel.gives = 10.0, lambda asked, share=given: (share * asked, 1.3)
+    plugin.command(0.52, 0.0)
+    run(plugin, 400 * PERIOD_STEPS)
+    for wheel in plugin.wheels:  # both pull at half of their grip
+        assert wheel.velocity == pytest.approx(2.0 - 0.5 * LAG / 0.26)
+
+
+def test_a_motor_that_gives_all_it_has_is_not_asked_for_ever_more():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='1')
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (0.0, 1.0)  # it stands against a wall
+    plugin.command(0.52, 0.0)
+    run(plugin, 400 * PERIOD_STEPS)
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (asked, 0.0)  # the wall is gone
+    run(plugin, PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52))
+
+
+@pytest.mark.parametrize('speed', [1e308, -1e308, 1e6])
+def test_a_motor_asked_for_the_impossible_is_soon_itself_again(speed):
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='20')
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (min(50.0, max(-50.0, asked)), 1.3)
+    plugin.command(speed, 0.0)
+    run(plugin, 20 * PERIOD_STEPS)
+    plugin.command(0.52, 0.0)
+    run(plugin, 400 * PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ('command', 'share'),
+    [
+        ((0.0, 0.0), 1.0),  # at rest everything holds
+        ((0.5, 0.0), 0.0),
+        ((-0.5, 0.0), 0.0),
+        ((0.5, 0.5), 1.0),
+        ((-0.5, 0.5), 1.0),
+        ((0.0, 1.0), 1.0),
+        ((1.1, 0.1), 0.5),  # the rims differ by 0.11 m/s of 2.2
+        ((1.1, -0.1), 0.5),
+    ],
+)
+def test_what_a_robot_drags_holds_sideways_in_curves_and_at_rest(command, share):
+    plugin = make(wheelAcceleration='0')
+    plugin.command(*command)
+    run(plugin, PERIOD_STEPS + 1)
+    assert plugin.model.holds[-1] == pytest.approx(share)
+
+
+@pytest.mark.parametrize('command', [(1e308, 1e308), (1e-320, 0.0), (0.0, 1e-320)])
+def test_no_command_asks_for_a_share_that_is_none(command):
+    plugin = make(wheelAcceleration='0')
+    plugin.command(*command)
+    run(plugin, PERIOD_STEPS + 1)
+    assert 0.0 <= plugin.model.holds[-1] <= 1.0
+
+
+def test_a_wheel_that_nothing_rests_on_does_not_creep():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    for wheel in plugin.model.wheels.values():
+        wheel.effort = 1.3
+    plugin.command(0.52, 0.0)
+    run(plugin, 10 * PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52))
