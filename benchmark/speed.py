@@ -26,7 +26,7 @@ from reader import PER_SECOND, Reader
 from server import Server, in_a_process_of_its_own
 
 WINDOW = 0.5  # [s, wall]
-ROUNDS = 5  # windows of each loop
+ROUNDS = 10  # windows of each loop
 SETTLE = 1.0  # [s, simulated] until robots that were spawned stand, or drive steadily
 STEPS_PER_SECOND = 1000.0  # at real time
 GAZEBO_BARE = {20: 2150.0}  # steps/s of the bare loop beside Gazebo, by robots
