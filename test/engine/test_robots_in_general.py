@@ -14,6 +14,7 @@ BOUNDS = {
     'veer, two casters': 0.01,
     'veer, 0.2 kg': 0.01,
     'veer, broad wheels': 0.01,
+    "veer, the article's": 0.01,
     'skid steer straight': 0.002,
     'step of 3 cm [m]': 0.0,
     'parked on casters [m]': 1e-4,

@@ -90,6 +90,8 @@ def run(plugin, steps):
     clock = plugin.world.clock
     for _ in range(steps):
         clock.steps += 1
+        for wheel in plugin.model.wheels.values():
+            wheel.position += wheel.velocity * STEP
         if plugin.due <= clock.steps:
             plugin.update()
 

@@ -20,9 +20,8 @@ def test_a_loaded_wheel_that_pulls_creeps_and_reports_its_hub():
     plugin.config = replace(plugin.config, publish_wheel_joint_state=True)
     states = collect(plugin.joint_states)
     run(plugin, 2 * PERIOD_STEPS)
-    # The joint of these tests stands still, so what is reported is the hub's lead alone.
-    led = states[1].positions[0] - states[0].positions[0]
-    assert led == pytest.approx(0.25 * CREEP / 0.26 * 0.010)
+    turned = states[1].positions[0] - states[0].positions[0]
+    assert turned == pytest.approx(2.0 * 0.010)  # as the hub does
 
 
 def test_a_wheel_that_is_asked_to_stand_does_not_creep():
@@ -38,9 +37,43 @@ def test_a_motor_that_falls_behind_is_brought_to_the_lag_of_its_force():
     for wheel, given in zip(plugin.model.wheels.values(), (0.97, 0.9), strict=True):
         wheel.weight, wheel.gives = 10.0, lambda asked, share=given: (share * asked, 1.3)
     plugin.command(0.52, 0.0)
-    run(plugin, 400 * PERIOD_STEPS)
+    run(plugin, 800 * PERIOD_STEPS)
     for wheel in plugin.wheels:  # both pull at half of their grip
         assert wheel.velocity == pytest.approx(2.0 - 0.5 * LAG / 0.26)
+
+
+def pulling(weights, efforts):
+    """Return a plugin whose wheels carry these loads [N] and pull as hard as these efforts."""
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='20')
+    for wheel, weight, effort in zip(plugin.model.wheels.values(), weights, efforts, strict=True):
+        wheel.weight, wheel.gives = weight, lambda asked, effort=effort: (asked, effort)
+    return plugin
+
+
+def test_on_the_straight_both_wheels_give_way_by_the_grip_that_both_use():
+    plugin = pulling((10.0, 30.0), (1.3, 1.3))  # 5 N each, 40 N of grip together
+    plugin.command(0.52, 0.0)
+    run(plugin, 800 * PERIOD_STEPS)
+    given_way = 0.25 * LAG + 0.25**2 * CREEP
+    assert rim_speeds(plugin) == pytest.approx((0.52 - given_way,) * 2)
+
+
+def test_in_a_curve_each_wheel_gives_way_by_its_own_grip():
+    plugin = pulling((10.0, 20.0), (1.3, 1.3))
+    plugin.command(1.1, 0.5)
+    run(plugin, 800 * PERIOD_STEPS)
+    left = 1.1 - 0.275 - 0.5 * LAG - 0.5**2 * CREEP
+    right = 1.1 + 0.275 - 0.25 * LAG - 0.25**2 * CREEP
+    assert rim_speeds(plugin) == pytest.approx((left, right))
+
+
+def test_a_joint_that_was_put_elsewhere_has_not_fallen_behind():
+    plugin = pulling((0.0, 0.0), (0.0, 0.0))
+    plugin.command(0.52, 0.0)
+    run(plugin, 100 * PERIOD_STEPS)
+    plugin.model.wheels['left'].position = 0.0
+    run(plugin, 100 * PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52))
 
 
 def test_a_motor_that_gives_all_it_has_is_not_asked_for_ever_more():

@@ -3,7 +3,8 @@
 Friction is limited along the world's axes each (tuning.py). What slides along one of them is held
 sideways as by a rail, and a rail behind the wheels turns the robot away from it, faster and faster.
 But friction points against the slip: what slides straight on is not held sideways at all. So the
-straighter a robot is asked to drive, the less of its friction holds its body along the axle.
+straighter a robot is asked to drive (wheel_pair.py), the less of its friction holds its body along
+the axle.
 """
 
 from typing import TYPE_CHECKING
@@ -14,9 +15,6 @@ from .wheel import Wheel
 
 if TYPE_CHECKING:
     from .model import Model
-
-# In a curve where the speeds of the rims differ by this share of their sum, all friction holds.
-BEND = 0.1
 
 
 class Dragged:
@@ -36,10 +34,8 @@ class Dragged:
             (link.name, rotate(conjugate(link.pose.orientation), wheel.axle)) for link in links
         ]
 
-    def follow(self, left: float, right: float) -> None:
-        """Let them hold what they hold while the rims are asked for these speeds [m/s]."""
-        bend, straight = abs(right - left), BEND * abs(right + left)
-        share = bend / straight if bend < straight else 1.0
+    def hold(self, share: float) -> None:
+        """Let them hold only so much of their friction along the axle: 0 nothing, 1 all."""
         for name, axle in self._links:
             self._model.engine.set_hold(self._model.body, name, axle, share)
 

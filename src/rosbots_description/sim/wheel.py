@@ -8,7 +8,8 @@ use, the creep with its square.
 PyBullet's contacts never creep, so the creep sits between motor and wheel here: the motor is asked
 for the hub's speed, the joint turns at the tyre's, and position and velocity are reported for the
 hub. PyBullet's motors lag by what its solver leaves undone, on one side more than on the other,
-which would turn the robot; so each is asked for more or less, until it lags as the force tells.
+which would turn the robot; so each is asked for more or less, until it lags as the force tells. What
+the force is, and when to look at it, a WheelPair says.
 """
 
 import math
@@ -28,9 +29,8 @@ CREEP = 0.092  # how much faster the tyre turns than the ground passes [m/s]
 # Time in which creep follows the force [s]; a tyre's follows over a length. Without it the force,
 # which a rigid contact lets jump from step to step, would shake the wheels.
 RELAXATION = 0.1
-TRIMMING = 0.33  # time in which the motor comes to its lag [s]; a ramp passes before
+TRIMMING = 0.5  # time in which the motor comes to its lag [s]; a ramp passes before
 TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
-LOOK = 0.05  # time between two looks at force and load, half of what steering costs [s]
 ALL = 0.999  # of its torque: a motor that gives as much cannot do more
 
 
@@ -56,61 +56,83 @@ class Wheel:
         self._torque = torque
         self._clock = clock
         self._asked = 0.0  # hub speed [rad/s]
+        self._asked_ns = 0  # since when
         self._trim = 0.0  # what the motor is asked for beyond that [rad/s]
         self._creep = 0.0  # hub speed minus tyre speed [rad/s]
         self._lead = 0.0  # how far the hub had turned more than the tyre at `_noted_ns` [rad]
         self._noted_ns = 0
+        self._due = 0.0  # where the hub would be, had it turned as asked since `_noted_ns` [rad]
 
     def release(self) -> None:
         """Forget speed and way; the motor holds the wheel."""
         self.rest()
-        self._lead = 0.0
+        self._lead, self._due = 0.0, self.joint.position
         self.joint.set_motor(0.0, self._torque)
 
     def rest(self) -> None:
         """Take note that the wheel stands still; how far it has turned, and the motor, stay."""
-        self._note_lead()
+        self._note()
         self._asked = self._trim = self._creep = 0.0
 
     @property
     def position(self) -> float:
         """Return how far the hub has turned [rad]."""
-        return self.joint.position + self._lead + self._creep * self._since_noted()
+        return self.joint.position + self._lead + self._creep * self._since(self._noted_ns)
 
     @property
     def velocity(self) -> float:
         """Return the speed of the hub [rad/s]."""
         return self.joint.velocity + self._creep
 
-    def drive(self, velocity: float) -> None:
-        """Turn the hub at `velocity` [rad/s] from now on."""
-        if self._since_noted() >= LOOK:
-            # One that is asked to stand neither lags nor creeps: a parked robot stays where it is.
-            self._adapt(self._grip_in_use() if velocity else 0.0)
-        self._asked = velocity
-        self.joint.set_motor(velocity + self._trim - self._creep, self._torque)
+    def ask(self, velocity: float) -> None:
+        """Take note of the speed that the hub is to have from now on [rad/s]; `turn` obeys."""
+        self._due += self._asked * self._since(self._asked_ns)
+        self._asked, self._asked_ns = velocity, self._clock.now_ns
 
-    def _adapt(self, use: float) -> None:
-        """Bring creep and lag towards what belongs to the share of the grip in use."""
-        elapsed = self._note_lead()
+    def turn(self) -> None:
+        """Let the motor bring the hub to the speed that was asked for."""
+        self.joint.set_motor(self._asked + self._trim - self._creep, self._torque)
+
+    def pull_and_grip(self) -> tuple[float, float]:
+        """Return the force [N] with which the motor drives the rim, and the most the tyre holds."""
+        if not self.radius:
+            return 0.0, 0.0
+        return self.joint.effort / self.radius, self.joint.normal_force() * self._grip
+
+    def give_way(self, use: float) -> None:
+        """Bring creep and lag towards what belongs to a share of the grip in use, -1 to 1.
+
+        A wheel that is asked to stand neither lags nor creeps: a parked robot stays where it is.
+        """
+        if not self._asked:
+            use = 0.0
+        behind, elapsed = self._note()
         radius = self.radius or math.inf
         steady = CREEP * use * abs(use) / radius
         self._creep += (steady - self._creep) * min(1.0, elapsed / RELAXATION)
-        if abs(self.joint.effort) < ALL * self._torque:
-            missing = self._asked - self.velocity - LAG * use / radius
+        if elapsed <= 0.0 or abs(self.joint.effort) >= ALL * self._torque:
+            return
+        missing = behind / elapsed - LAG * use / radius
+        if abs(missing) < TRIM:
             trim = self._trim + missing * min(1.0, elapsed / TRIMMING)
             self._trim = max(-TRIM, min(TRIM, trim))
 
-    def _note_lead(self) -> float:
-        """Add up the creep since it was last done; return the time since then [s]."""
-        elapsed = self._since_noted()
-        self._noted_ns = self._clock.now_ns
-        self._lead += self._creep * elapsed
-        return elapsed
+    def _note(self) -> tuple[float, float]:
+        """Note where the hub is; return how far it fell behind since then, and that time.
 
-    def _since_noted(self) -> float:
+        The way tells more than the speed, which contacts let jump from step to step.
+        """
+        elapsed = self._since(self._noted_ns)
+        self._lead += self._creep * elapsed
+        self._noted_ns = self._clock.now_ns
+        self.ask(self._asked)
+        position = self.position
+        behind, self._due = self._due - position, position
+        return behind, elapsed
+
+    def _since(self, then_ns: int) -> float:
         # A difference of whole nanoseconds: the same at any time of day, so the motion is, too.
-        return (self._clock.now_ns - self._noted_ns) / NANOSECONDS
+        return (self._clock.now_ns - then_ns) / NANOSECONDS
 
     @property
     def axle(self) -> Vector:
@@ -129,14 +151,6 @@ class Wheel:
         ax, ay, az = self.axle
         along = ax * x + ay * y + az * z
         return (along * ax, along * ay, along * az)
-
-    def _grip_in_use(self) -> float:
-        """Return the share of the tyre's grip that the present force uses, -1 to 1 as it points."""
-        load = self.joint.normal_force() * self._grip if self.radius else 0.0
-        if load <= 0.0:
-            return 0.0
-        effort = self.joint.effort
-        return math.copysign(min(1.0, abs(effort) / (self.radius * load)), effort)
 
     def _link(self) -> LinkSpec:
         return self.joint.model.spec.link(self.joint.spec.child)

@@ -8,11 +8,11 @@ import math
 from dataclasses import dataclass
 
 from ..clock import NANOSECONDS
-from ..dragging import Dragged
 from ..errors import NotFoundError, PluginError
 from ..pose import Pose, Twist, compose, from_rpy, inverse, yaw_of
 from ..readings import FrameTransform, JointStates, Odometry, Port
 from ..wheel import Wheel
+from ..wheel_pair import WheelPair
 from .base import ModelPlugin
 from .params import Params
 from .registry import register
@@ -122,7 +122,7 @@ class DiffDrive(ModelPlugin):
         self.config = read_config(self.params)
         self.odometry, self.wheel_transform, self.joint_states = Port(), Port(), Port()
         self.wheels = (self._wheel(self.config.left_joint), self._wheel(self.config.right_joint))
-        self._dragged = Dragged(self.model, self.wheels[0])
+        self._pair = WheelPair(self.model, *self.wheels, self.world.clock)
         self._warn_unread()
         self._warn_geometry()
         rate = self.config.update_rate
@@ -137,17 +137,14 @@ class DiffDrive(ModelPlugin):
         # The first encoder step spans all of the time so far, as upstream's does.
         self._encoder_ns = 0
         self.reset()
-        for wheel in self.wheels:
-            wheel.release()
-        self._dragged.follow(0.0, 0.0)
+        self._pair.release()
 
     def reset(self) -> None:
         """Forget command, encoder odometry and the time of the last update."""
         self._command = (0.0, 0.0)
         self._encoder_pose = (0.0, 0.0, 0.0)  # x [m], y [m], yaw [rad]
         self._encoder_twist = (0.0, 0.0)  # forward [m/s], yaw rate [rad/s]
-        for wheel in self.wheels:
-            wheel.rest()
+        self._pair.rest()
         self._last_ns = self.world.clock.now_ns
         self._set_due()
 
@@ -187,9 +184,8 @@ class DiffDrive(ModelPlugin):
             for i in (0, 1):
                 self._setpoint[i] += max(-limit, min(limit, missing[i]))
             target = self._setpoint
-        for wheel, rim_speed in zip(self.wheels, target, strict=True):
-            wheel.drive(rim_speed / radius)
-        self._dragged.follow(*target)
+        left, right = target
+        self._pair.drive(left / radius, right / radius)
 
     def _publish(self) -> None:
         config = self.config

@@ -1,0 +1,75 @@
+"""Two wheels that drive a robot together: what they share on the straight, and what is dragged.
+
+How much a robot turns is the small difference of what its two wheels do. Force and load of each
+jump from step to step with the contacts, and a robot whose wheels are asked to run alike would turn
+by those jumps. So there both give way by the grip that both together use. In a curve each goes by
+its own.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+from .clock import SimClock
+from .dragging import Dragged
+from .wheel import Wheel
+
+if TYPE_CHECKING:
+    from .model import Model
+
+# In a curve where the speeds of the wheels differ by this share of their sum, they share nothing.
+BEND = 0.1
+LOOK_NS = 50_000_000  # time between two looks at force and load, half of what steering costs [ns]
+
+
+class WheelPair:
+    """A left and a right wheel about one axle."""
+
+    def __init__(self, model: 'Model', left: Wheel, right: Wheel, clock: SimClock) -> None:
+        """Describe them; `release` takes over the motors."""
+        self.wheels = (left, right)
+        self._dragged = Dragged(model, left)
+        self._clock = clock
+        self._looked_ns = 0
+
+    def release(self) -> None:
+        """Forget speeds and ways; the motors hold the wheels."""
+        self._looked_ns = self._clock.now_ns
+        for wheel in self.wheels:
+            wheel.release()
+        self._dragged.hold(1.0)
+
+    def rest(self) -> None:
+        """Take note that the wheels stand still."""
+        self._looked_ns = self._clock.now_ns
+        for wheel in self.wheels:
+            wheel.rest()
+
+    def drive(self, left: float, right: float) -> None:
+        """Turn the hubs at these speeds [rad/s] from now on."""
+        bend = bend_of(left, right)
+        for wheel, speed in zip(self.wheels, (left, right), strict=True):
+            wheel.ask(speed)
+        if self._clock.now_ns - self._looked_ns >= LOOK_NS:
+            self._looked_ns = self._clock.now_ns
+            self._give_way(bend)
+        for wheel in self.wheels:
+            wheel.turn()
+        self._dragged.hold(bend)
+
+    def _give_way(self, bend: float) -> None:
+        """Let each wheel lag and creep as the share of the grip in use tells."""
+        pulls, grips = zip(*(wheel.pull_and_grip() for wheel in self.wheels), strict=True)
+        both = _share(sum(pulls), sum(grips))
+        for wheel, pull, grip in zip(self.wheels, pulls, grips, strict=True):
+            wheel.give_way(both + bend * (_share(pull, grip) - both))
+
+
+def bend_of(left: float, right: float) -> float:
+    """Return how far from straight two speeds make the way: 0 straight, 1 a curve or at rest."""
+    difference, straight = abs(right - left), BEND * abs(right + left)
+    return difference / straight if difference < straight else 1.0
+
+
+def _share(pull: float, grip: float) -> float:
+    """Return the share of a grip [N] that a pull [N] uses, -1 to 1 as it points."""
+    return math.copysign(min(1.0, abs(pull) / grip), pull) if grip > 0.0 else 0.0
