@@ -1,9 +1,9 @@
 """Say in PyBullet's terms what a model is: its trees as plain URDF, its surfaces as friction.
 
 PyBullet never sees a user's text. What it gets has one tag per line (it cuts lines at 8191
-bytes), short names of ours, explicit masses, clean mesh files and no visuals. Inertia is only a
-placeholder here: PyBullet zeroes tensors it finds impossible, so the engine sets the true one
-afterwards.
+bytes), short names of ours, explicit masses and clean mesh files. Inertia and visuals are only
+placeholders here: PyBullet zeroes tensors it finds impossible, so the engine sets the true one
+afterwards, and would draw what it is given no visual of.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -38,6 +38,10 @@ RIDER_MASS = 1e-9
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
 
 ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is that axis
+
+# Of a link without visual PyBullet makes pictures of the collisions, which nobody sees: of a plane
+# a chequered one of 9 MB, of a mesh one that takes as long and twice as much memory as the mesh.
+_UNSEEN = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</visual>')
 
 WORLD_LINK = LinkSpec('world')  # what models are bolted to
 
@@ -140,6 +144,7 @@ def _link(
         f'<mass value="{mass!r}"/>',
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>',
         '</inertial>',
+        *(_UNSEEN if collisions else ()),
     ]
     for collision in collisions:
         # Exact surfaces only where nothing moves: a concave mesh in motion is slow and leaky.

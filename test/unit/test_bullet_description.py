@@ -1,0 +1,19 @@
+"""What PyBullet is given to read."""
+
+from xml.etree import ElementTree
+
+from support import robot_spec
+
+from rosbots_description.sim.bullet_description import describe_tree, kinematic_trees
+from rosbots_description.sim.pose import Pose
+
+
+def test_no_picture_is_made_of_what_touches():
+    (tree,) = kinematic_trees(robot_spec())
+    text = describe_tree(tree, [Pose()] * len(tree.links), lambda mesh: mesh.path)
+    touching = [link for link in ElementTree.fromstring(text).findall('link')
+                if link.find('collision') is not None]
+    assert touching
+    for link in touching:
+        (seen,) = link.findall('visual')
+        assert [shape.tag for shape in seen.find('geometry')] == ['box']
