@@ -2,11 +2,14 @@
 
 import contextlib
 import errno
+import math
+import mmap
 import os
 import signal
 import socket
+import threading
+import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from support import box_urdf, robot_spec, urdf_spec
@@ -31,7 +34,8 @@ from rosbots_description.sim.trial import Trials
 from rosbots_description.sim.worlds import GROUND_PLANE
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
-SHORT = 0.3  # [s, wall] for a model that is never done with
+SHORT = 0.3  # [s] for a model that is never done with
+LONG = 50.0  # [s] never reached
 
 
 def engine_that(does):
@@ -44,6 +48,36 @@ def engine_that(does):
             return super().add(spec, pose)
 
     return Odd
+
+
+def burn(seconds):
+    """Use up so much of this process's time on the processor."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+
+
+def allow(monkeypatch, processor, wall):
+    """Let a trial take so much time [s], whatever it is of."""
+    monkeypatch.setattr(trial, 'LEAST', processor)
+    monkeypatch.setattr(trial, 'FOR_A_PART', 0.0)
+    monkeypatch.setattr(trial, 'FOR_A_BYTE', 0.0)
+    monkeypatch.setattr(trial, 'PATIENCE', wall / processor)
+
+
+def steps_of_a_trial(at_start=lambda: None, at_step=lambda: None):
+    """Return how many steps the engine makes with a crate."""
+    steps = mmap.mmap(-1, 1)  # shared with the child
+
+    class Counting(engine_that(at_start)):
+        def step(self, count):
+            for _ in range(count):
+                steps[0] += 1
+                at_step()
+                super().step(1)
+
+    require(Trials(Counting))
+    return steps[0]
 
 
 def require(trials, spec=CRATE, files=None):
@@ -145,14 +179,68 @@ def test_a_model_that_crashes_the_engine_is_refused(number):
         f'engine ({number.name}); leave out parts of it to find the one that does it, meshes first')
 
 
-def test_a_model_that_never_ends_is_refused(monkeypatch):
-    monkeypatch.setattr(trial, 'PATIENCE', SHORT)
+def test_a_model_that_is_never_done_with_is_refused(monkeypatch):
+    allow(monkeypatch, SHORT, LONG)
+    assert f'was not done with it after {SHORT} s of processor time;' in fault_of(
+        lambda: burn(math.inf))
 
-    def hang():
-        while True:
-            pass
 
-    assert f'was not done with it after {SHORT:g} s' in fault_of(hang)
+def test_a_model_that_sleeps_for_ever_is_refused(monkeypatch):
+    allow(monkeypatch, LONG, SHORT)
+    assert f'was not done with it after {SHORT} s;' in fault_of(signal.pause)
+
+
+def test_a_model_that_has_to_wait_for_the_processor_passes(monkeypatch):
+    allow(monkeypatch, 0.5, LONG)
+    require(Trials(engine_that(lambda: time.sleep(0.6))))
+
+
+@pytest.mark.parametrize('share', ['FOR_A_PART', 'FOR_A_BYTE'])
+def test_a_model_may_take_the_longer_the_more_it_holds(share, monkeypatch, tmp_path):
+    source = tmp_path / 'part.stl'
+    source.write_text(tetrahedron(1.0))
+    spec = urdf_spec(box_urdf('1 1 1', 2.0).replace(
+        '<box size="1 1 1"/>', f'<mesh filename="file://{source}"/>'))
+    files = {(spec.links[0].collisions[0].geometry, False): str(source)}
+    trials = Trials(engine_that(lambda: burn(SHORT)))
+    allow(monkeypatch, SHORT, LONG)
+    with pytest.raises(ModelError, match='of processor time'):
+        require(trials, spec, files)
+    monkeypatch.setattr(trial, share, LONG)
+    require(trials, spec, files)
+
+
+def test_a_model_makes_twenty_steps(monkeypatch):
+    monkeypatch.setattr(trial, 'BUDGET', math.inf)
+    assert steps_of_a_trial() == 20
+
+
+def test_a_model_that_is_slow_to_step_makes_fewer():
+    assert steps_of_a_trial(at_step=lambda: burn(trial.BUDGET)) == 1
+
+
+def test_a_model_that_is_slow_to_bring_in_makes_a_step_all_the_same():
+    assert steps_of_a_trial(at_start=lambda: burn(trial.BUDGET)) == 1
+
+
+def test_a_model_that_passed_does_not_wait_for_the_trial_of_another(tmp_path, forks):
+    wait = tmp_path / 'wait'
+
+    def linger():
+        while wait.exists():
+            time.sleep(0.01)
+
+    trials = Trials(engine_that(linger))
+    require(trials)
+    wait.touch()
+    other = threading.Thread(target=require, args=[trials, replace(CRATE, static=True)])
+    other.start()
+    while len(forks) < 2:
+        time.sleep(0.01)
+    require(trials)
+    assert other.is_alive()
+    wait.unlink()
+    other.join()
 
 
 def test_a_model_that_ends_the_process_is_refused():
@@ -222,13 +310,3 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(monkeypatch,
     monkeypatch.setattr(trial.os, 'fork', full)
     require(Trials())
     assert "model 'crate' comes in untried: Resource temporarily unavailable" in caplog.text
-
-
-def test_a_child_that_cannot_be_watched_does_not_stay(monkeypatch, forks):
-    def missing(_pid):
-        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
-
-    monkeypatch.setattr(trial.os, 'pidfd_open', missing)
-    require(Trials())
-    (child,) = forks
-    assert not Path(f'/proc/{child}').exists()

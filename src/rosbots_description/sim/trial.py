@@ -3,7 +3,9 @@
 Descriptions are checked as they are read, so nothing that is known to kill PyBullet gets this far.
 For what nobody knows of yet, a model that is new to the simulator is tried in a child process,
 which is this one once more with one thread and an engine of its own. That costs 0.05 s, once for
-each content; nothing is kept running in between.
+each content; nothing is kept running in between. A heavy model costs 0.15 s, or what it takes to
+bring it in and make one step. Only processor time counts: a machine that is busy with other things
+must not make a model look bad.
 """
 
 import contextlib
@@ -13,15 +15,15 @@ import hashlib
 import logging
 import os
 import resource
-import select
 import signal
 import stat
 import threading
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NoReturn
 
-from .bullet_description import MeshFile
+from .bullet_description import MeshFile, mesh_needs
 from .engine import Engine
 from .errors import ModelError
 from .guard import is_lost
@@ -34,7 +36,13 @@ from .worlds import GROUND_PLANE
 logger = logging.getLogger(__name__)
 
 STEPS = 20  # enough for contacts to be found, solved and followed
-PATIENCE = 10.0  # [s, wall] for what takes 0.05 s: some models are heavy, some machines slow
+BUDGET = 0.15  # [s, processor] from which on a heavy model makes no further step
+
+# [s, processor] after which a trial hangs: some ten times what heavy models of its size take.
+LEAST, FOR_A_PART, FOR_A_BYTE = 2.0, 0.01, 1e-6
+MOST = 60.0  # what is not in by then would stop the world for as long
+PATIENCE = 5.0  # times that, by the wall clock, for what hangs asleep
+
 REMEMBERED = 1000  # contents that passed; the one that passed first is forgotten first
 
 _PASSED = 'passed'  # what a child says at its end
@@ -60,11 +68,14 @@ class Trials:
             ModelError: the engine crashed, hung or failed, or the model was lost at once.
         """
         content = _digest(spec, files)
+        if content in self._passed:
+            return  # without waiting for the trial of somebody else's
         with self._lock:
             if content in self._passed:
                 return
             try:
-                fault = _outcome(lambda: self._live(spec, physics, files))
+                fault = _outcome(
+                    lambda: self._live(spec, physics, files), _allowance(spec, files))
             except OSError as error:
                 logger.warning("model '%s' comes in untried: %s", spec.name, error.strerror)
                 return
@@ -83,13 +94,16 @@ class Trials:
             physics, lambda mesh: files[mesh, False], lambda mesh: files[mesh, True])
         engine.add(GROUND_PLANE, IDENTITY)
         model = Model(spec.name, spec, engine, _touching(spec))
-        engine.step(STEPS)
+        for _ in range(STEPS):
+            engine.step(1)
+            if time.process_time() > BUDGET:
+                break
         for link in model.links.values():
             link.state()
         for joint in model.joints.values():
             joint.state()
         if is_lost(model):
-            raise ModelError(f'its pose or velocity was no finite number after {STEPS} steps')
+            raise ModelError(f'its pose or velocity was no finite number within {STEPS} steps')
         engine.remove(model.body)
 
 
@@ -113,20 +127,34 @@ def _touching(spec: ModelSpec) -> Pose:
     return Pose((0.0, 0.0, -min(heights, default=0.0)))
 
 
-def _outcome(trial: Callable[[], None]) -> str:
+def _allowance(spec: ModelSpec, files: EngineFiles) -> float:
+    """Return the processor time [s] that the trial of a model may take."""
+    parts = sum(1 + len(link.collisions) for link in spec.links)
+    size = sum(os.path.getsize(files[need]) for need in mesh_needs(spec))
+    return min(MOST, LEAST + FOR_A_PART * parts + FOR_A_BYTE * size)
+
+
+def _outcome(trial: Callable[[], None], allowance: float) -> str:
     """Return how `trial()` fails in a child process, as a clause; empty if it does not.
 
+    Args:
+        allowance: processor time [s] after which it hangs.
+
     Raises:
-        OSError: no process could be made, or none can be watched here.
+        OSError: no process could be made.
     """
     with open(os.memfd_create('trial'), 'w+b', buffering=0) as report:
         # PyBullet holds Python's lock in each of its calls, so none is under way in the copy.
         child = os.fork()
         if child == 0:
-            _be_the_child(trial, report.fileno())
-        code = _wait(child)
-        if code is None:
-            return f'the physics engine was not done with it after {PATIENCE:g} s'
+            _be_the_child(trial, allowance, report.fileno())
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        spent = {
+            -signal.SIGPROF: f'{allowance:.1f} s of processor time',
+            -signal.SIGALRM: f'{PATIENCE * allowance:.1f} s',
+        }.get(code)
+        if spent:
+            return f'the physics engine was not done with it after {spent}'
         if code < 0:
             return f'it crashed the physics engine ({signal.Signals(-code).name})'
         report.seek(0)
@@ -136,25 +164,10 @@ def _outcome(trial: Callable[[], None]) -> str:
     return '' if clause == _PASSED else clause
 
 
-def _wait(child: int) -> int | None:
-    """Wait for the end of a child and return its exit code; None if it had to be ended."""
-    ended = []
-    try:
-        with open(os.pidfd_open(child), 'rb', buffering=0) as process:
-            watch = select.poll()
-            watch.register(process, select.POLLIN)
-            ended = watch.poll(1000 * PATIENCE)
-    finally:
-        if not ended:
-            os.kill(child, signal.SIGKILL)
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    return code if ended else None
-
-
-def _be_the_child(trial: Callable[[], None], report: int) -> NoReturn:
+def _be_the_child(trial: Callable[[], None], allowance: float, report: int) -> NoReturn:
     """Carry out the trial unseen and end; nothing that the parent registered runs here."""
     try:
-        signal.setitimer(signal.ITIMER_REAL, 2.0 * PATIENCE)  # the end, should the parent be gone
+        _end_after(allowance)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)  # it ends by itself
         faulthandler.disable()
@@ -172,6 +185,16 @@ def _be_the_child(trial: Callable[[], None], report: int) -> NoReturn:
         os.write(report, clause.encode())
     finally:
         os._exit(0)
+
+
+def _end_after(allowance: float) -> None:
+    """Let the system end this process, whatever it does, after so much processor time [s]."""
+    for number, timer, seconds in (
+        (signal.SIGPROF, signal.ITIMER_PROF, allowance),
+        (signal.SIGALRM, signal.ITIMER_REAL, PATIENCE * allowance),
+    ):
+        signal.signal(number, signal.SIG_DFL)
+        signal.setitimer(timer, seconds)
 
 
 def _leave_streams_and_sockets() -> None:
