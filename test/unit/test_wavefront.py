@@ -1,5 +1,7 @@
 """Polygons of .obj files, and meshes that are finer than anyone needs."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,10 @@ from rosbots_description.sim.mesh_thinning import thinned
 from rosbots_description.sim.wavefront import read_obj
 
 CORNERS = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\nv -1 0.2 0\n'
+
+
+def parts_of(text):
+    return read_obj(text.encode(), lambda _: '')
 
 
 def area(part):
@@ -22,24 +28,41 @@ def area(part):
     ('f 1 2 3 4 5\n', 3, 1.5),
     ('f 1 2 3 4 5 6\n', 4, 1.65),
     ('f 1 2 \\\n3 4\n', 2, 1.0),
+    ('f 1//1 2//1 3//1\nf 1 2\nf 4//1 1//1 3//1\nvn 0 0 1\n', 2, 1.0),  # an edge beside them
 ])
 def test_polygons_become_triangles(faces, count, expected):
-    (part,) = read_obj(CORNERS + faces, lambda _: '')
+    (part,) = parts_of(CORNERS + faces)
     assert len(part.faces) == count
     assert area(part) == pytest.approx(expected)
 
 
 def test_a_number_counted_back_counts_from_where_it_stands():
     text = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 9 9 9\n'
-    (part,) = read_obj(text, lambda _: '')
+    (part,) = parts_of(text)
     assert part.vertices[part.faces[0]].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 
 def test_a_vertex_with_two_normals_becomes_two():
     text = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1//2 3//1 2//1\n'
-    (part,) = read_obj(text, lambda _: '')
+    (part,) = parts_of(text)
     assert len(part.vertices) == 4
     assert part.normals[part.faces[1, 0]].tolist() == [0, 0, 2]
+
+
+@pytest.mark.parametrize('corner', ['{}', '{0}//{0}', '{0}/{0}/{0}'])
+def test_a_large_file_is_read_in_little_memory(corner):
+    count = 5000
+    content = ''.join(f'v {i}.123456 0.123456 0.123456\nvn 0.123456 {i} 0.123456\n'
+                      for i in range(count))
+    content += ''.join('f {} {} {}\n'.format(*(corner.format(i + k) for k in range(1, 4)))
+                       for i in range(count - 2) for _ in range(2))
+    tracemalloc.start()
+    try:
+        parts_of(content)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 8 * len(content)
 
 
 def test_a_fine_sheet_is_thinned_and_stays_where_it_is():

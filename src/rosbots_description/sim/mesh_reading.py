@@ -184,7 +184,7 @@ def _parse_obj(content: bytes, path: str) -> list[Part]:
             logger.debug('%s, which %s names', error, path)
             return ''
 
-    return [_obj_part(part) for part in read_obj(content.decode('utf-8', 'replace'), read_library)]
+    return [_obj_part(part) for part in read_obj(content, read_library)]
 
 
 def _obj_part(part: ObjPart) -> Part:

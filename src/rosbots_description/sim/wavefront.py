@@ -4,9 +4,10 @@ Read are v, vn, f, usemtl and mtllib; lines, curves, textures and groups are not
 """
 
 from array import array
+from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from io import StringIO
+from io import BytesIO, TextIOWrapper
+from itertools import repeat
 from typing import NamedTuple
 
 import numpy as np
@@ -27,34 +28,49 @@ class ObjPart(NamedTuple):
     colour: Colour | None  # red, green, blue in 0..1
 
 
-@dataclass
 class _Faces:
-    """The f lines of one material, and how many v and vn lines stood before each."""
+    """The polygons of one material; numbers count from 1."""
 
-    lines: list[str] = field(default_factory=list)
-    before: list[tuple[int, int]] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.sizes = array('q')  # corners of each
+        self.vertices = array('q')  # of each corner
+        self.normals = array('q')  # of each corner, 0 where it has none
+
+    def add(self, line: str, vertices: int, normals: int) -> None:
+        """Take what an f line says, before which so many v and vn lines stood."""
+        corners = line.split()
+        self.sizes.append(len(corners))
+        if '/' not in line and '-' not in line:  # so in many files, and then quicker
+            self.vertices.extend(map(int, corners))
+            self.normals.extend(repeat(0, len(corners)))
+            return
+        for corner in corners:
+            numbers = [int(part or 0) for part in corner.split('/')]  # v, v/vt, v//vn or v/vt/vn
+            self.vertices.append(_from_start(numbers[0], vertices))
+            self.normals.append(_from_start(numbers[2], normals) if len(numbers) > 2 else 0)
 
 
-def read_obj(text: str, read_library: ReadLibrary) -> list[ObjPart]:
+def read_obj(content: bytes, read_library: ReadLibrary) -> list[ObjPart]:
     """Return the parts of an .obj file, one for each material in use.
 
     Raises:
         ValueError, IndexError, OverflowError: the file is broken.
     """
-    positions, normals = array('d'), array('d')  # compact: there may be millions
-    groups: dict[str, _Faces] = {}
+    # A file has millions of lines: they are decoded one by one, and numbers kept as such.
+    lines = TextIOWrapper(
+        BytesIO(content.replace(b'\\\n', b' ')), 'utf-8', errors='replace', newline='\n')
+    positions, normals = array('d'), array('d')
+    groups: dict[str, _Faces] = defaultdict(_Faces)
     libraries: dict[str, None] = {}
     material = ''
-    for line in StringIO(text.replace('\\\n', ' ')):
+    for line in lines:
         word, _, rest = line.strip().partition(' ')
         if word == 'v':
             positions.extend(_three(rest))
         elif word == 'vn':
             normals.extend(_three(rest))
         elif word == 'f':
-            faces = groups.setdefault(material, _Faces())
-            faces.lines.append(rest)
-            faces.before.append((len(positions) // 3, len(normals) // 3))
+            groups[material].add(rest, len(positions) // 3, len(normals) // 3)
         elif word == 'usemtl':
             material = rest.strip()
             if material not in groups and len(groups) >= MAX_MATERIALS:
@@ -63,8 +79,8 @@ def read_obj(text: str, read_library: ReadLibrary) -> list[ObjPart]:
             libraries[rest.strip()] = None
     if not groups:
         return []
-    points = np.array(positions).reshape(-1, 3)
-    directions = np.array(normals).reshape(-1, 3)
+    points = np.asarray(positions).reshape(-1, 3)
+    directions = np.asarray(normals).reshape(-1, 3)
     colours: dict[str, Colour] = {}
     for name in libraries:
         colours |= _read_colours(read_library(name))
@@ -78,44 +94,37 @@ def _three(words: str) -> tuple[float, float, float]:
     return x, y, z
 
 
+def _from_start(number: int, count: int) -> int:
+    """Return a number counted from 1; a negative one counts back from the last of `count`."""
+    return count + 1 + number if -count <= number < 0 else number
+
+
 def _part(
     faces: _Faces, points: np.ndarray, directions: np.ndarray, colour: Colour | None
 ) -> ObjPart:
-    sizes = np.array([len(line.split()) for line in faces.lines])
-    corners = _corners(' '.join(faces.lines))
-    before = np.repeat(np.array(faces.before), sizes, axis=0)
-    vertex = _from_start(corners[:, 0], before[:, 0], len(points))
-    triangles = _fans(sizes)
-    used = np.unique(triangles)
-    if len(directions) and corners.shape[1] == 3 and corners[used, 2].all():
-        normal = _from_start(corners[:, 2], before[:, 1], len(directions))
-        pairs, number = np.unique(
-            np.stack([vertex, normal], axis=1), axis=0, return_inverse=True
-        )
-        faces = number.reshape(-1)[triangles]
-        return ObjPart(points[pairs[:, 0]], faces, directions[pairs[:, 1]], colour)
-    numbers, number = np.unique(vertex, return_inverse=True)
-    return ObjPart(points[numbers], number.reshape(-1)[triangles], None, colour)
+    corners = _fans(np.asarray(faces.sizes))
+    vertices = _checked(np.asarray(faces.vertices), len(points))[corners]
+    normals = np.asarray(faces.normals)[corners]
+    if not len(directions) or not normals.all():
+        used, triangles = _renumbered(vertices)
+        return ObjPart(points[used - 1], triangles, None, colour)
+    base = len(directions) + 1
+    used, triangles = _renumbered(base * vertices + _checked(normals, len(directions)))
+    return ObjPart(points[used // base - 1], triangles, directions[used % base - 1], colour)
 
 
-def _corners(text: str) -> np.ndarray:
-    """Return the corners `v`, `v/vt`, `v//vn` or `v/vt/vn` as numbers (n, 1, 2 or 3); 0: none."""
-    words = text.split()
-    columns = {word.count('/') + 1 for word in words}
-    if len(columns) == 1 and '//' not in text and '/ ' not in text:
-        numbers = np.array(text.replace('/', ' ').split(), dtype=np.int64)
-        return numbers.reshape(len(words), *columns)
-    rows = [[int(part or 0) for part in word.split('/')] for word in words]
-    return np.array([(row + [0, 0])[:3] for row in rows], dtype=np.int64).reshape(-1, 3)
+def _renumbered(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the different ones of some numbers, and for each number which of them it is."""
+    used = np.unique(numbers)
+    return used, np.searchsorted(used, numbers)
 
 
-def _from_start(numbers: np.ndarray, before: np.ndarray, count: int) -> np.ndarray:
-    """Return numbers counted from 0; a file counts from 1, or with -1 back from where it is."""
-    found = np.where(numbers < 0, before + numbers, numbers - 1)
-    if len(found) and (found.min() < 0 or found.max() >= count):
-        wrong = numbers[(found < 0) | (found >= count)][0]
+def _checked(numbers: np.ndarray, count: int) -> np.ndarray:
+    """Return numbers counted from 1 if there are as many as the greatest of them says."""
+    if len(numbers) and (numbers.min() < 1 or numbers.max() > count):
+        wrong = numbers[(numbers < 1) | (numbers > count)][0]
         raise IndexError(f'a face names number {wrong} of {count}, which does not exist')
-    return found
+    return numbers
 
 
 def _fans(sizes: np.ndarray) -> np.ndarray:
