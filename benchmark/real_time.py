@@ -9,20 +9,27 @@ starts: whatever else the machine does can only add. The rest is printed as it i
 from __future__ import annotations
 
 import json
+import resource
 import statistics
 import sys
 import threading
 import time
+from dataclasses import replace
 from itertools import cycle
 
 import rospy
 import rosservice
-from article import FORWARD, ROOT
+from article import FORWARD, ROOT, robot_spec
 from gazebo_msgs.msg import LinkStates
 from gazebo_msgs.srv import GetLinkState, GetModelState, GetWorldProperties
 from lateness import RESULT
 from loops import Loop
 from server import Server, in_a_process_of_its_own, wait_until
+
+from rosbots_description.sim.bullet_description import mesh_needs
+from rosbots_description.sim.meshes import MeshStore
+from rosbots_description.sim.physics import PhysicsSettings
+from rosbots_description.sim.trial import Trials
 
 WINDOW = 3.0  # [s, wall]
 ROUNDS = 4
@@ -42,8 +49,8 @@ NOT_CALLED = {'spawn_urdf_model', 'spawn_sdf_model', 'set_physics_properties', '
 WHEEL = 'robot0::wheel_left_link'
 
 
-def measure_cost(frequency: int, slowness: float) -> float:
-    """Print what the server costs with /clock at that rate [Hz]; return how long it took to start.
+def measure_cost(frequency: int, slowness: float) -> tuple[float, float]:
+    """Print what the server costs with /clock at that rate [Hz]; return the times to start [s].
 
     Args:
         slowness: of this machine, against the one that Gazebo was measured on.
@@ -61,7 +68,12 @@ def measure_cost(frequency: int, slowness: float) -> float:
                   f'Gazebo {share:g} % then, {scaled:.1f} % here: {used / scaled:.2f} of it; '
                   f'real-time factor {factor:.4f}')
         print(f'memory with 1 robot: {server.memory():.0f} MB (Gazebo {GAZEBO_MEMORY[1]:.0f})')
-        return server.seconds_to_spawn_service
+        return _start(server)
+
+
+def _start(server: Server) -> tuple[float, float]:
+    """Return when the spawn service was there, and when its process began, after roslaunch [s]."""
+    return server.seconds_to_spawn_service, server.seconds_to_process
 
 
 def _least_share(server: Server) -> tuple[float, float]:
@@ -74,15 +86,15 @@ def _least_share(server: Server) -> tuple[float, float]:
     return min(shares), (server.simulated() - simulated) / (time.monotonic() - begin)
 
 
-def measure_answers() -> float:
-    """Print how soon spawns, commands and services take effect; return the time to start."""
+def measure_answers() -> tuple[float, float]:
+    """Print how soon spawns, commands and services take effect; return the times to start."""
     with Server() as server:
         print_times('command to wheel', _command_times(server), 'one period of 10 ms and 3 ms')
         print_times('spawn of the robot', [server.spawn() for _ in range(SPAWNS)], '100 ms')
         print(f'memory with {SPAWNS + 1} robots: {server.memory():.0f} MB '
               f'(Gazebo with 20: {GAZEBO_MEMORY[20]:.0f})')
         _print_services()
-        return server.seconds_to_spawn_service
+        return _start(server)
 
 
 def _command_times(server: Server) -> list[float]:
@@ -115,6 +127,29 @@ def _command_times(server: Server) -> list[float]:
         times.append(time.monotonic() - begin)
     subscriber.unregister()
     return times
+
+
+def measure_trials() -> None:
+    """Print how long robots that are new to the server are tried before they come in."""
+    robot, meshes, trials = robot_spec(), MeshStore(), Trials()
+    files = {(mesh, exact): meshes.collision_hull(mesh.path, mesh.scale)
+             for mesh, exact in mesh_needs(robot)}
+    times, computing = [], []
+    for i in range(SPAWNS):
+        other = replace(robot.joints[0], damping=0.01 * i)
+        used, begin = _computed_by_children(), time.monotonic()
+        trials.require(replace(robot, joints=(other, *robot.joints[1:])), PhysicsSettings(), files)
+        times.append(time.monotonic() - begin)
+        computing.append(_computed_by_children() - used)
+    meshes.close()
+    print_times('trial of a robot that is new', times, '150 ms')
+    print_times('its processor time', computing, '150 ms')
+
+
+def _computed_by_children() -> float:
+    """Return the processor time of all child processes that have ended [s]."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def print_times(what: str, times: list[float], aim: str) -> None:
@@ -179,9 +214,11 @@ def main() -> int:
         in_a_process_of_its_own(measure_cost, 1000, slower),
         in_a_process_of_its_own(measure_answers),
     ]
-    print(f'spawn service up {min(starts):.2f} s after roslaunch, which starts the master too, '
-          f'{min(starts) / slower:.2f} s by the bare loop where Gazebo was measured '
+    up, began = min(starts)
+    print(f'spawn service up {up:.2f} s after roslaunch, which took {began:.2f} s of it to start a '
+          f'master; {up / slower:.2f} s by the bare loop where Gazebo was measured '
           '(aim 1.1 s; Gazebo 0.9 to 1.5 s)')
+    in_a_process_of_its_own(measure_trials)
     in_a_process_of_its_own(measure_lateness)
     return 0
 

@@ -35,6 +35,7 @@ from rosbots_description.cli.launched import Launched
 PATIENCE = 30.0  # [s, wall] for what takes a second
 EMPTY_WORLD = ('gazebo_ros', 'empty_world.launch', 'gui:=false')
 DISTANCE = 3.0  # [m] between robots
+USER_TIME, SYSTEM_TIME, STARTED = 11, 12, 19  # fields of /proc/PID/stat after the name
 COMMANDS = 'cmd_vel'  # below a robot's namespace, where the article's robot has /part2_cmr/cmd_vel
 
 
@@ -48,7 +49,8 @@ class Server:
     """What `roslaunch gazebo_ros empty_world.launch gui:=false` starts, its own master included.
 
     This process is the node /benchmark beside it, which does not listen to /clock.
-    `seconds_to_spawn_service` [s, wall] is how long after roslaunch the spawn service was there.
+    `seconds_to_spawn_service` [s, wall] is how long after roslaunch the spawn service was there,
+    `seconds_to_process` how long roslaunch took before to start a master and then gzserver.
     """
 
     def __init__(self, *arguments: str, launch: Sequence[str] = EMPTY_WORLD) -> None:
@@ -56,7 +58,7 @@ class Server:
         os.environ.update(ROS_MASTER_URI=_free_master(), ROS_HOSTNAME='localhost')
         logging.getLogger('rosout').setLevel(logging.WARNING)
         OUTPUT.mkdir(parents=True, exist_ok=True)
-        begin = time.monotonic()
+        begin, begin_after_boot = time.monotonic(), time.clock_gettime(time.CLOCK_BOOTTIME)
         self._launched = Launched(
             [*launch, *arguments], OUTPUT / 'server.log', os.environ
         )
@@ -75,6 +77,7 @@ class Server:
         self._urdf = robot_urdf(command_topic=COMMANDS)
         self._drivers: list[rospy.Publisher] = []
         self.process = _process_of('/gazebo')
+        self.seconds_to_process = self._in_seconds(STARTED) - begin_after_boot
 
     def __enter__(self) -> Server:
         return self
@@ -136,9 +139,12 @@ class Server:
 
     def cpu_seconds(self) -> float:
         """Return the processor time that it has used so far [s]."""
+        return self._in_seconds(USER_TIME) + self._in_seconds(SYSTEM_TIME)
+
+    def _in_seconds(self, field: int) -> float:
+        """Return what /proc tells of the process in a field after its name, a time [s]."""
         stat = Path(f'/proc/{self.process}/stat').read_text(encoding='ascii')
-        fields = stat.rsplit(')', 1)[1].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+        return int(stat.rsplit(')', 1)[1].split()[field]) / os.sysconf('SC_CLK_TCK')
 
     def memory(self) -> float:
         """Return the memory that it has resident [MB]."""
