@@ -1,7 +1,12 @@
 """What the engine's settings were chosen for: robots and things that are not the article's."""
 
+import math
+
 import pytest
-from support.scenes import SCENES
+from support import empty_world, urdf_spec
+from support.scenes import SCENES, link
+
+from rosbots_description.sim.pose import Pose, Twist, from_rpy
 
 # The largest error of each scene, in its unit; measured ones are in doc/physics.md.
 BOUNDS = {
@@ -23,6 +28,7 @@ BOUNDS = {
     'five boxes [m]': 1e-3,
     'half sunk box [m]': 0.15,
     'ball rolls': 1e-3,
+    'can lies [m]': 1e-3,
 }
 SKID_TURNS = (0.5, 1.0)  # share of the rate without slip
 
@@ -39,3 +45,30 @@ def test_mechanics_is_obeyed(name):
 def test_a_skid_steer_turns_though_its_wheels_slip():
     least, most = SKID_TURNS
     assert least < SCENES['skid steer turns']() < most
+
+
+def speeds_of_a_can(free):
+    """Return how fast a can rolls 1, 2 and 3 s after it was sliding at 1 m/s; `free`: let to."""
+    can = urdf_spec(link('can', '<cylinder radius="0.1" length="0.2"/>', 1.0, (6e-3, 6e-3, 5e-3)))
+    with empty_world() as world:
+        model = world.spawn(can, 'can', Pose((0.0, 0.0, 0.1), from_rpy(math.pi / 2.0, 0.0, 0.0)))
+        if free:
+            world.engine.let_roll(model.body, 'can')
+        world.run(100)
+        model.set_twist(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        speeds = []
+        for _ in range(3):
+            world.run(1000)
+            speeds.append(model.twist.linear[0])
+    return speeds
+
+
+def test_a_can_that_is_pushed_rolls_and_slowly_stops():
+    first, second, third = speeds_of_a_can(free=False)
+    assert 0.6 < first < 2.0 / 3.0
+    assert 0.02 < first - second < 0.05
+    assert second - third == pytest.approx(first - second, rel=0.2)
+
+
+def test_what_a_motor_turns_is_not_held_back():
+    assert min(speeds_of_a_can(free=True)) > 0.66

@@ -63,8 +63,12 @@ class FakeModel:
         ]
         self.spec = ModelSpec('robot', (LinkSpec('base'), *wheel_links))
         self.body = None
+        self.rolling = set()  # links that were let to roll
         self.holds = []  # shares of the friction along the axle, as they were asked for
-        self.engine = SimpleNamespace(set_hold=lambda *call: self.holds.append(call[-1]))
+        self.engine = SimpleNamespace(
+            set_hold=lambda *call: self.holds.append(call[-1]),
+            let_roll=lambda _, link: self.rolling.add(link),
+        )
 
     def state(self):
         return self.now

@@ -289,6 +289,18 @@ def rolling_ball(tuning: Tuning | None = None) -> float:
         return abs(math.hypot(*model.twist.linear[:2]) * 7.0 / 5.0 - 1.0)
 
 
+def lying_can(tuning: Tuning | None = None) -> float:
+    """Return how far a can goes by itself in 10 s that was laid across the axes [m]."""
+    with empty_world(tuning) as world:
+        can = urdf_spec(link('can', '<cylinder radius="0.033" length="0.12"/>', 0.39,
+                             (5.6e-4, 5.6e-4, 1.7e-4)))
+        model = world.spawn(can, 'can', Pose((0.0, 0.0, 0.034), from_rpy(math.pi / 2.0, 0.0, 0.4)))
+        world.run(SETTLED)
+        start = model.pose.position
+        world.run(10_000)
+        return math.dist(start, model.pose.position)
+
+
 # What each tells is an error that is best at 0, but for `skid steer turns`; a veer is that of 20 s
 # [rad].
 SCENES: dict[str, Scene] = {
@@ -311,4 +323,5 @@ SCENES: dict[str, Scene] = {
     'five boxes [m]': stack,
     'half sunk box [m]': half_sunk,
     'ball rolls': rolling_ball,
+    'can lies [m]': lying_can,
 }

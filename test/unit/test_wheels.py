@@ -24,6 +24,12 @@ def test_a_loaded_wheel_that_pulls_creeps_and_reports_its_hub():
     assert turned == pytest.approx(2.0 * 0.010)  # as the hub does
 
 
+def test_driven_wheels_are_let_to_roll():
+    plugin = make()
+    run(plugin, PERIOD_STEPS + 1)
+    assert plugin.model.rolling == {'left_link', 'right_link'}
+
+
 def test_a_wheel_that_is_asked_to_stand_does_not_creep():
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
     for wheel in plugin.model.wheels.values():

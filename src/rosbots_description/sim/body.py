@@ -34,6 +34,7 @@ class Body:
         # What each link touches with: PyBullet's body and index, and the turn of that one's axes.
         self.surfaces: dict[str, list[tuple[int, int, Quaternion]]] = {}
         self.holds: dict[str, float] = {}  # last share of each link's friction along an axis
+        self.rolling: set[str] = set()  # links that roll without resistance
 
 
 @dataclass(frozen=True)

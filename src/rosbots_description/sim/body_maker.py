@@ -11,6 +11,7 @@ from .bullet_description import (
     contact_spring,
     describe_tree,
     friction,
+    rolling_arm,
     surface_groups,
     untouching_links,
 )
@@ -147,6 +148,10 @@ class BodyMaker:
                 )
             if group:
                 self._set_surface(part.body, index, group[0].surface, step_size)
+                arm = rolling_arm(group)
+                if arm:
+                    pybullet.changeDynamics(
+                        part.body, index, rollingFriction=arm, physicsClientId=self._client)
                 surfaces.append((part.body, index, turn))
 
     def _set_surface(self, number: int, index: int, surface: Surface, step_size: float) -> None:

@@ -39,6 +39,10 @@ _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody descri
 
 ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is that axis
 
+# Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
+# enough to keep a can, a barrel and a robot on free wheels in their place.
+_ROLLING_RESISTANCE = 0.005
+
 # Of a link without visual PyBullet makes pictures of the collisions, which nobody sees: of a plane
 # a chequered one of 9 MB, of a mesh one that takes as long and twice as much memory as the mesh.
 _UNSEEN = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</visual>')
@@ -217,6 +221,19 @@ def friction(surface: Surface) -> float:
     slippery surfaces (both below 1) slides more easily here.
     """
     return min(1.0, max(0.0, surface.mu))
+
+
+def rolling_arm(collisions: Sequence[Collision]) -> float:
+    """Return PyBullet's rolling friction of a body [m]: how far before the axle the ground pushes.
+
+    Only cylinders need it. One that lies has an edge at each end, and PyBullet finds but one of
+    them in a step; the other pushes from where it was, from behind, and a can at rest would roll
+    away faster and faster.
+    """
+    shapes = [collision.geometry for collision in collisions]
+    if not all(isinstance(shape, Cylinder) for shape in shapes):
+        return 0.0
+    return _ROLLING_RESISTANCE * max((shape.radius for shape in shapes), default=0.0)
 
 
 def overlap_share(step_size: float, push_out: float) -> float:

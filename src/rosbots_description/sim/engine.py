@@ -253,6 +253,16 @@ class Engine:
                 number, index, anisotropicFriction=scales, physicsClientId=self._client
             )
 
+    def let_roll(self, body: Body, link: str) -> None:
+        """Take from a link what keeps cylinders from rolling off: a motor holds this one."""
+        if link in body.rolling:
+            return  # it does so already
+        body.rolling.add(link)
+        for number, index, _ in body.surfaces[link]:
+            pybullet.changeDynamics(
+                number, index, rollingFriction=0.0, physicsClientId=self._client
+            )
+
     def set_joint_position(self, body: Body, joint: str, position: float) -> None:
         """Put a joint at `position` [rad or m], at rest."""
         self._forget_readings()

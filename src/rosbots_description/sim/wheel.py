@@ -8,8 +8,8 @@ use, the creep with its square.
 PyBullet's contacts never creep, so the creep sits between motor and wheel here: the motor is asked
 for the hub's speed, the joint turns at the tyre's, and position and velocity are reported for the
 hub. PyBullet's motors lag by what its solver leaves undone, on one side more than on the other,
-which would turn the robot; so each is asked for more or less, until it lags as the force tells. What
-the force is, and when to look at it, a WheelPair says.
+which would turn the robot; so each is asked for more or less, until it lags as the force tells.
+What the force is, and when to look at it, a WheelPair says.
 """
 
 import math
@@ -91,6 +91,8 @@ class Wheel:
 
     def turn(self) -> None:
         """Let the motor bring the hub to the speed that was asked for."""
+        model = self.joint.model
+        model.engine.let_roll(model.body, self.joint.spec.child)
         self.joint.set_motor(self._asked + self._trim - self._creep, self._torque)
 
     def pull_and_grip(self) -> tuple[float, float]:
