@@ -14,7 +14,7 @@ from support.isolation import isolated
 from support.requests import messages
 
 from rosbots_description.ros_api import state_commands
-from rosbots_description.ros_api.adapters import diff_drive
+from rosbots_description.ros_api.adapters import diff_drive, registry
 from rosbots_description.sim.guard import PERIOD
 
 NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood
@@ -44,9 +44,10 @@ def listeners(bench, monkeypatch):
     wire = SimpleNamespace(
         Subscriber=subscribe,
         Publisher=lambda *_, **__: SimpleNamespace(get_num_connections=lambda: 0),
+        resolve_name=str,
     )
     monkeypatch.setattr(state_commands, 'rospy', wire)
-    monkeypatch.setattr(diff_drive, 'rospy', wire)
+    monkeypatch.setattr(registry, 'rospy', wire)
     monkeypatch.setattr(diff_drive, 'find_tf_prefix', lambda _: '')
     state_commands.subscribe_states(bench.server)
     (drive,) = bench.world.models['rosbots'].plugins

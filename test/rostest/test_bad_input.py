@@ -10,7 +10,8 @@ import rostest
 from gazebo_msgs.srv import GetLinkState, GetModelProperties
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from simulator import BOX, COMMANDS, SimulatorTest, pose, proxy, wait_until
+from rosgraph_msgs.msg import Clock
+from simulator import BOX, COMMANDS, SimulatorTest, pose, proxy, topics_of, wait_until
 
 LINK = '<link name="{}"><inertial><mass value="1"/>' \
        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{}</link>'
@@ -136,6 +137,20 @@ class BadInputTest(SimulatorTest):
         unknown = BOX.replace('</robot>', '<gazebo><plugin name="n" filename="libnope.so"/>'
                                           '</gazebo></robot>')
         self.assertTrue(self.spawn('worse', unknown, pose(x=5.0)).success)
+        self._assert_neighbour_drives()
+
+    def test_topics_that_cannot_be_are_left_out(self):
+        before, clock = topics_of(), self.collect('/clock', Clock)
+        self.assertTrue(self.spawn('spaced', at=pose(y=10.0), namespace='a b').success)
+        self.assertEqual(topics_of(), before)
+        xml = rospy.get_param('robot_description').replace('>odom<', '>/clock<', 1)
+        self.assertIn('<odometryTopic>/clock<', xml)
+        self.assertTrue(self.spawn('loud', xml, pose(y=15.0), namespace='/loud').success)
+        self.assertEqual(topics_of(), before | {'/loud/joint_states'})
+        told = len(clock)
+        wait_until(lambda: len(clock) > told + 100, 'time going on')
+        times = [message.clock.to_nsec() for message in list(clock)]
+        self.assertEqual(times, sorted(times))
         self._assert_neighbour_drives()
 
     def test_a_command_that_is_not_finite_is_dropped_and_the_last_one_stays(self):

@@ -170,9 +170,11 @@ class HostileTest(SimulatorTest):
             for namespace in ODD_NAMESPACES:
                 with self.subTest(namespace=namespace[:20]):
                     response = self.spawn('robot', None, pose(*AWAY), namespace=namespace)
-                    self.assertIn(response.success, (True, False))
-                    if response.success:
-                        self.assertTrue(self.delete('robot').success)
+                    self.assertTrue(response.success, response.status_message)
+                    self.assertTrue(self.delete('robot').success)
+            response = self.spawn('robot', None, pose(*AWAY), namespace='a\x01b')
+            self.assertFalse(response.success)
+            self.assertIn('robot_namespace', response.status_message)
             self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
 
     def test_numbers(self):

@@ -2,18 +2,34 @@
 
 import pytest
 
-from rosbots_description.ros_api.names import frame_name, topic_name
+from rosbots_description.ros_api.names import frame_name, is_for_all, topic_name
+from rosbots_description.sim.errors import PluginError
 
 
 @pytest.mark.parametrize(('namespace', 'topic', 'expected'), [
     ('/', 'odom', '/odom'),
     ('/', '/part2_cmr/cmd_vel', '/part2_cmr/cmd_vel'),
     ('/r1/', 'cmd_vel', '/r1/cmd_vel'),
-    ('rosbots', 'odom', 'rosbots/odom'),
+    ('rosbots', 'odom', '/rosbots/odom'),
     ('//r1', 'a//b', '/r1/a/b'),
+    ('r1', '//a//b/', '/a/b'),
+    ('r1', '', '/r1'),
+    ('1st', '2_B', '/1st/2_B'),
+    ('~r1', 'odom', '/unnamed/r1/odom'),
+    ('my-robot', 'v1.0', '/my-robot/v1.0'),
 ])
 def test_a_topic_stands_in_its_namespace_unless_it_is_global(namespace, topic, expected):
     assert topic_name(namespace, topic) == expected
+
+
+@pytest.mark.parametrize(('namespace', 'topic'), [
+    ('a b', 'odom'), ('a\nb', 'odom'), ('a::b', 'odom'), ('ü', 'odom'),
+    ('/', ''), ('/', '/'), ('/', '//'), ('/', '~private'), ('/', 'a:b'),
+    ('/', 'odom\n'),
+])
+def test_what_no_ros_node_could_read_is_no_topic(namespace, topic):
+    with pytest.raises(PluginError, match='is no name for a topic'):
+        topic_name(namespace, topic)
 
 
 @pytest.mark.parametrize(('prefix', 'frame', 'expected'), [
@@ -25,3 +41,10 @@ def test_a_topic_stands_in_its_namespace_unless_it_is_global(namespace, topic, e
 ])
 def test_a_frame_takes_the_prefix_unless_it_begins_with_a_slash(prefix, frame, expected):
     assert frame_name(prefix, frame) == expected
+
+
+@pytest.mark.parametrize(('topic', 'expected'), [
+    ('/r1/odom', True), ('/my-robot/odom', False), ('/v1.0/odom', False),
+])
+def test_not_every_node_reads_names_that_are_only_nearly_names(topic, expected):
+    assert is_for_all(topic) is expected

@@ -4,13 +4,37 @@ import re
 
 import rosgraph
 import rospy
+from rosgraph.names import resolve_name
+
+from ..sim.errors import PluginError
+from .master import once_there
+
+# What rospy and the master stand as a global name. A hyphen or a dot is more than roscpp reads.
+_GLOBAL_NAME = re.compile('(/[a-zA-Z0-9_.-]+)+')
+_PYTHON_ONLY = re.compile('[.-]')
 
 
 def topic_name(namespace: str, topic: str) -> str:
-    """Return `topic` in a plugin's namespace; doubled slashes collapse, a leading one stays."""
-    if topic.startswith('/'):
-        return topic
-    return re.sub('/+', '/', f'{namespace}/{topic}')
+    """Return the global name, before remapping, of a `topic` in a plugin's namespace.
+
+    Doubled slashes collapse, a leading one stays; a namespace beginning with ~ is in this node's.
+
+    Raises:
+        PluginError: that is no name for ROS.
+    """
+    given = topic if topic.startswith('/') else f'{namespace}/{topic}'
+    name = resolve_name(re.sub('/+', '/', given), rospy.get_name())
+    if not _GLOBAL_NAME.fullmatch(name):
+        raise PluginError(
+            f"'{name}' is no name for a topic: a-z, A-Z, 0-9 and _ may stand in it, with slashes "
+            "between them; mend the tags that it is made of, or the model's name"
+        )
+    return name
+
+
+def is_for_all(topic: str) -> bool:
+    """Tell whether C++ nodes, such as rviz, can read a topic of that name, too."""
+    return not _PYTHON_ONLY.search(topic)
 
 
 def frame_name(prefix: str, frame: str) -> str:
@@ -22,11 +46,14 @@ def frame_name(prefix: str, frame: str) -> str:
 
 
 def find_tf_prefix(namespace: str) -> str:
-    """Return the parameter tf_prefix, searched from `namespace` upward; '' if there is none."""
+    """Return the parameter tf_prefix, searched from `namespace` upward; '' if there is none.
+
+    While there is no ROS master, wait for one.
+    """
     namespace = rospy.resolve_name(namespace).rstrip('/')
     try:
         # The master searches upward from the name of who asks.
-        name = rosgraph.Master(f'{namespace}/plugin').searchParam('tf_prefix')
+        name = once_there(lambda: rosgraph.Master(f'{namespace}/plugin').searchParam('tf_prefix'))
     except rosgraph.MasterError:
         return ''
-    return str(rospy.get_param(name, ''))
+    return str(once_there(lambda: rospy.get_param(name, '')))

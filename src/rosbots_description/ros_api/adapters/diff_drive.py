@@ -47,10 +47,13 @@ class DiffDriveAdapter(Adapter):
         self._odometry_layout: OdometryLayout | None = None
         self._edges: dict[tuple[str, str], TransformLayout] = {}  # by parent and child
         self._joints: dict[tuple[str, ...], JointStatesLayout] = {}  # by names
-        self._publishers: list[rospy.Publisher] = []
         self._odometry = self._tf = self._joint_states = None
-        self._commands: rospy.Subscriber | None = None
         self._complained = -math.inf
+        namespace, config = plugin.namespace, plugin.config
+        # Also where it is not published: as in Gazebo the namespace alone must be good.
+        self._joint_states_topic = topic_name(namespace, 'joint_states')
+        self._command_topic = topic_name(namespace, config.command_topic)
+        self._odometry_topic = topic_name(namespace, config.odometry_topic)
 
     def open(self) -> None:
         """Advertise and subscribe, with upstream's log lines."""
@@ -60,12 +63,11 @@ class DiffDriveAdapter(Adapter):
         self._prefix = find_tf_prefix(self.plugin.namespace)
         logger.info('%s<tf_prefix> = %s', prefix, self._prefix)
         if config.publish_wheel_joint_state:
-            self._joint_states = self._publisher('joint_states', JointState, 1000)
+            self._joint_states = self.advertise(self._joint_states_topic, JointState, 1000)
             logger.info('%sAdvertise joint_states', prefix)
-        self._tf = self._publisher('/tf', TFMessage, 100)
+        self._tf = self.advertise('/tf', TFMessage, 100)
         logger.info('%sTry to subscribe to %s', prefix, config.command_topic)
-        topic = topic_name(self.plugin.namespace, config.command_topic)
-        self._commands = rospy.Subscriber(topic, Twist, self._on_command, queue_size=1)
+        self.subscribe(self._command_topic, Twist, self._on_command, 1)
         logger.info('%sSubscribe to %s', prefix, config.command_topic)
         if config.publish_tf:
             self._odometry_layout = OdometryLayout(
@@ -73,7 +75,7 @@ class DiffDriveAdapter(Adapter):
                 frame_name(self._prefix, config.robot_base_frame),
                 POSE_VARIANCES,
             )
-            self._odometry = self._publisher(config.odometry_topic, OdometryMessage, 1)
+            self._odometry = self.advertise(self._odometry_topic, OdometryMessage, 1)
             logger.info('%sAdvertise odom on %s ', prefix, config.odometry_topic)
 
     def connect(self) -> None:
@@ -93,19 +95,6 @@ class DiffDriveAdapter(Adapter):
         """Let the plugin's outputs go nowhere."""
         for port in (self.plugin.odometry, self.plugin.wheel_transform, self.plugin.joint_states):
             port.disconnect()
-
-    def close(self) -> None:
-        """Unregister the command topic and the publishers."""
-        if self._commands is not None:
-            self._commands.unregister()
-        for publisher in self._publishers:
-            publisher.unregister()
-
-    def _publisher(self, topic: str, message_class: type, queue_size: int) -> rospy.Publisher:
-        name = topic_name(self.plugin.namespace, topic)
-        publisher = rospy.Publisher(name, message_class, queue_size=queue_size)
-        self._publishers.append(publisher)
-        return publisher
 
     def _send_odometry(self, reading: Odometry) -> None:
         config = self.plugin.config
@@ -151,5 +140,5 @@ class DiffDriveAdapter(Adapter):
             )
 
 
-def _has_readers(publisher: rospy.Publisher) -> bool:
-    return publisher.get_num_connections() > 0
+def _has_readers(publisher: rospy.Publisher | None) -> bool:
+    return publisher is not None and publisher.get_num_connections() > 0

@@ -2,13 +2,22 @@
 
 import logging
 import time
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterable
 
+import rospy
+from rospy.impl.registration import get_topic_manager
+
+from ...sim.errors import PluginError
 from ...sim.model import Model
 from ...sim.plugins.base import ModelPlugin
+from ..names import is_for_all
 from ..server import Server
 
 logger = logging.getLogger(__name__)
+
+# rospy prints so on standard error; we log it, where everything else about a model stands.
+warnings.filterwarnings('ignore', '.* is not a legal ROS graph resource name', UserWarning)
 
 # Least time between topics that come and topics that go, or go and come [s, wall]. A rospy
 # subscriber that is still connecting when a topic goes misses the next publisher for good.
@@ -18,7 +27,7 @@ _ADAPTERS: dict[type, type['Adapter']] = {}
 
 
 class Adapter:
-    """The topics of one plugin.
+    """The topics of one plugin; making one raises `PluginError` if a topic cannot have its name.
 
     `open` and `close` talk to the ROS master, on the registrar's thread; `connect` and
     `disconnect` join the plugin's ports, on the thread that owns the world.
@@ -27,6 +36,7 @@ class Adapter:
     def __init__(self, server: Server, plugin: ModelPlugin) -> None:
         self.server = server
         self.plugin = plugin
+        self._opened: list[rospy.Publisher | rospy.Subscriber] = []
 
     def open(self) -> None:
         """Advertise and subscribe."""
@@ -39,6 +49,42 @@ class Adapter:
 
     def close(self) -> None:
         """Unregister what `open` registered."""
+        for topic in self._opened:
+            topic.unregister()
+
+    def advertise(
+        self, topic: str, message_class: type, queue_size: int
+    ) -> rospy.Publisher | None:
+        """Publish on a topic from now on; None, with an error, if this node sends others there."""
+        if self._is_taken(topic, message_class, get_topic_manager().get_publications()):
+            return None
+        self._opened.append(rospy.Publisher(topic, message_class, queue_size=queue_size))
+        return self._opened[-1]
+
+    def subscribe(
+        self, topic: str, message_class: type, take: Callable, queue_size: int
+    ) -> rospy.Subscriber | None:
+        """Take messages from now on; None, with an error, if this node takes others there."""
+        if self._is_taken(topic, message_class, get_topic_manager().get_subscriptions()):
+            return None
+        self._opened.append(rospy.Subscriber(topic, message_class, take, queue_size=queue_size))
+        return self._opened[-1]
+
+    def _is_taken(
+        self, topic: str, message_class: type, entries: Iterable[tuple[str, str]]
+    ) -> bool:
+        """Tell whether this node has the topic with another type; rospy would mix the two."""
+        if not is_for_all(topic):
+            logger.warning('%s: the topic %s is only for nodes in Python: - or a dot is in it',
+                           _where(self.plugin), topic)
+        there = dict(entries).get(rospy.resolve_name(topic), message_class._type)
+        if there == message_class._type:
+            return False
+        logger.error(
+            "%s: the topic %s is left out as %s: this node has it as %s; give it another name",
+            _where(self.plugin), topic, message_class._type, there,
+        )
+        return True
 
 
 def adapter(plugin_class: type) -> Callable[[type[Adapter]], type[Adapter]]:
@@ -63,6 +109,10 @@ def adapter_class(plugin_class: type) -> type[Adapter]:
     return _ADAPTERS[plugin_class]
 
 
+def _where(plugin: ModelPlugin) -> str:
+    return f"model '{plugin.model.name}', plugin '{plugin.spec.name}'"
+
+
 class Adapters:
     """Opens and closes adapters as models come and go."""
 
@@ -74,7 +124,11 @@ class Adapters:
     def model_spawned(self, model: Model) -> None:
         """Give each plugin its topics; they appear shortly after."""
         for plugin in model.plugins:
-            made = adapter_class(type(plugin))(self._server, plugin)
+            try:
+                made = adapter_class(type(plugin))(self._server, plugin)
+            except PluginError as error:
+                logger.error('%s: %s; the model lives on without its topics', _where(plugin), error)
+                continue
             self._open[plugin] = made
             self._server.registrar.post(lambda made=made: self._change('come', made.open))
             self._server.registrar.post(lambda made=made: self._connect(made))
@@ -82,7 +136,9 @@ class Adapters:
     def model_deleted(self, model: Model) -> None:
         """Take the topics of each plugin away."""
         for plugin in model.plugins:
-            gone = self._open.pop(plugin)
+            gone = self._open.pop(plugin, None)
+            if gone is None:
+                continue
             gone.disconnect()
             self._server.registrar.post(lambda gone=gone: self._change('go', gone.close))
 

@@ -1,0 +1,62 @@
+"""Calls to the ROS master, which may be away for a while."""
+
+import time
+from collections.abc import Callable, Mapping
+from http.client import HTTPException
+from typing import TypeVar
+from xml.parsers.expat import ExpatError
+from xmlrpc.client import MultiCall, ProtocolError
+
+import rosgraph
+import rospy
+from rosgraph.network import parse_http_host_and_port
+
+from ..sim.errors import SimError
+
+# What a call raises where nobody answers, or somebody who is no master.
+NO_MASTER = (OSError, HTTPException, ProtocolError, ExpatError)
+_PERIOD = 0.2  # between two calls to a master that is away, as rospy's [s, wall]
+
+Answer = TypeVar('Answer')
+
+
+class AddressError(SimError, ValueError):
+    """The address at which the master should be is none."""
+
+
+def require_address() -> None:
+    """Raise `AddressError` if there can never be a master at ROS_MASTER_URI."""
+    address = rosgraph.get_master_uri()
+    try:
+        parse_http_host_and_port(address)
+    except ValueError:
+        raise AddressError(
+            f"ROS_MASTER_URI is '{address}'; it must be the address of a ROS master, "
+            'such as http://localhost:11311'
+        ) from None
+
+
+def once_there(ask: Callable[[], Answer]) -> Answer:
+    """Return what `ask()` gets from the master; wait while there is none, as rospy's topics do.
+
+    Raises:
+        rospy.ROSInterruptException: the node is shutting down.
+    """
+    while not rospy.is_shutdown():
+        try:
+            return ask()
+        except NO_MASTER:
+            time.sleep(_PERIOD)
+    raise rospy.ROSInterruptException('the node is shutting down')
+
+
+def write_parameters(values: Mapping[str, object]) -> None:
+    """Write private parameters of this node by one call: each takes as long as all together.
+
+    Raises:
+        Exception: one of `NO_MASTER`; or what the master says to a value.
+    """
+    calls = MultiCall(rosgraph.Master(rospy.get_name()).handle)
+    for name, value in values.items():
+        calls.setParam(rospy.get_name(), rospy.resolve_name(f'~{name}'), value)
+    tuple(calls())  # a result that is looked at raises what went wrong
