@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Clients that die, fall silent or come all at once: the server and everyone else go on."""
+"""Clients that die, fall silent, say nonsense or come at once: the server and all others go on."""
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -12,6 +13,7 @@ import rospy
 import rostest
 from gazebo_msgs.msg import LinkStates, ModelStates
 from gazebo_msgs.srv import (
+    GetModelState,
     GetWorldProperties,
     GetWorldPropertiesRequest,
     SpawnModel,
@@ -107,6 +109,24 @@ class DyingClientsTest(OwnServerTest):
             client.close()
         self._assert_all_is_well()
         self.assertNotIn('never', self.world().model_names)
+
+    def test_requests_that_no_service_can_read(self):
+        for request in (
+            struct.pack('<I', 0xffffffff),  # four gigabytes are to follow
+            struct.pack('<II', 4, 0xffffffff),  # four bytes, of which as many are a name
+            struct.pack('<I', 3) + b'abc',
+        ):
+            for persistent in '01':
+                client = service_connection(
+                    'get_model_state', GetModelState, persistent=persistent)
+                client.sendall(request)
+                with client.makefile('rb') as file:
+                    self.assertNotIn(b'\x01', file.read()[:1])  # which is to say: well done
+                client.close()
+        self._assert_all_is_well()
+        code, printed = self.server.end()
+        self.assertEqual(code, 0)
+        self.assertNotIn('Traceback', printed)
 
     def test_subscribers_that_do_not_read(self):
         deaf = self._deaf_subscribers()

@@ -9,12 +9,20 @@ import unittest
 import rosgraph
 import rospy
 import rostest
-from gazebo_msgs.srv import GetWorldProperties, GetWorldPropertiesRequest
+from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.srv import Reconfigure, ReconfigureRequest
+from gazebo_msgs.srv import (
+    GetWorldProperties,
+    GetWorldPropertiesRequest,
+    SpawnModel,
+    SpawnModelRequest,
+)
 from raw_client import answer, request_bytes, service_connection
 from server_process import MasterProcess, ServerProcess
-from simulator import BOX, DEADLINE, wait_until
+from simulator import BOX, DEADLINE, pose, wait_until
 
 CTRL_C_LIMIT = 2.0  # [s] promised
+LATE = {'/late/odom', '/late/joint_states'}
 
 
 class MasterRestartTest(unittest.TestCase):
@@ -49,17 +57,29 @@ class MasterRestartTest(unittest.TestCase):
         return [{name for name, nodes in entries if '/gazebo' in nodes}
                 for entries in self.graph.getSystemState()]
 
-    def _asked(self):
-        """Return a function that asks the server for the time on a connection that lasts."""
-        client = service_connection('get_world_properties', GetWorldProperties,
-                                    self.server.master, persistent='1')
+    def _client(self, service, service_class):
+        """Return a function that calls the service on a connection that outlives the master."""
+        client = service_connection(service, service_class, self.server.master, persistent='1')
         self.addCleanup(client.close)
 
-        def now():
-            client.sendall(request_bytes(GetWorldPropertiesRequest()))
-            return answer(client, GetWorldProperties).sim_time
+        def call(request):
+            client.sendall(request_bytes(request))
+            return answer(client, service_class)
 
-        return now
+        return call
+
+    def _asked(self):
+        """Return a function that asks the server for the time."""
+        ask = self._client('get_world_properties', GetWorldProperties)
+        return lambda: ask(GetWorldPropertiesRequest()).sim_time
+
+    def _spawn_late(self):
+        """Kill the master, and spawn a robot with topics of its own."""
+        spawn = self._client('spawn_urdf_model', SpawnModel)
+        self.master.kill()
+        response = spawn(SpawnModelRequest(
+            'late', rospy.get_param('robot_description'), '/late', pose(y=5.0), ''))
+        self.assertTrue(response.success, response.status_message)
 
     def test_a_new_master_knows_the_simulator_again(self):
         before, now = self._of_server(), self._asked()
@@ -76,6 +96,25 @@ class MasterRestartTest(unittest.TestCase):
         wait_until(lambda: self.graph.hasParam('/gazebo/time_step'), 'the parameters')
         self.assertEqual(self.graph.getParam('/gazebo/time_step'), step)
         self._assert_it_works()
+
+    def test_a_new_master_knows_a_robot_that_came_meanwhile(self):
+        topics_out, topics_in, services = self._of_server()
+        self._spawn_late()
+        self.master.start()
+        wait_until(lambda: self._of_server() == [topics_out | LATE, topics_in, services],
+                   'the topics of both robots, and all services')
+        self._assert_it_works()
+
+    def test_settings_changed_while_there_is_no_master_are_on_the_next_one(self):
+        change = self._client('set_parameters', Reconfigure)
+        self.master.kill()
+        gravity = DoubleParameter('gravity_z', -3.5)
+        told = change(ReconfigureRequest(Config(doubles=[gravity]))).config
+        self.assertIn(gravity, told.doubles)
+        self.master.start()
+        wait_until(lambda: self.graph.hasParam('/gazebo/gravity_z'), 'the parameters')
+        self.assertEqual(self.graph.getParam('/gazebo/gravity_z'), -3.5)
+        self.assertNotIn('Traceback', self.server.end()[1])
 
     def _assert_it_works(self):
         self.assertIn('rosbots', self.server.world()['model_names'])
@@ -95,9 +134,17 @@ class MasterRestartTest(unittest.TestCase):
 
     def test_ctrl_c_ends_the_server_while_there_is_no_master(self):
         self.master.kill()
+        self._assert_it_ends()
+
+    def test_ctrl_c_ends_the_server_while_topics_wait_for_a_master(self):
+        self._spawn_late()
+        self._assert_it_ends()
+
+    def _assert_it_ends(self):
         begin = time.monotonic()
         code, printed = self.server.end()
         self.assertEqual(code, 0, printed)
+        self.assertNotIn('Traceback', printed)
         self.assertLess(time.monotonic() - begin, CTRL_C_LIMIT)
 
 

@@ -9,7 +9,7 @@ import pytest
 import rospy
 from support import ROOT
 
-from rosbots_description.ros_api import node
+from rosbots_description.ros_api import node, reconfigure
 from rosbots_description.ros_api.loop import Loop
 from rosbots_description.ros_api.packages import find_model, find_package
 from rosbots_description.ros_api.server import Server
@@ -71,6 +71,8 @@ def registered():
             patch.setattr(rospy, name, endpoint(kind))
         for name in ('get_param', 'has_param', 'set_param'):
             patch.setattr(rospy, name, parameter)
+        patch.setattr(reconfigure, 'write_parameters', lambda values: [
+            parameter(f'~{name}') for name in values])
         loop = Loop(world)
         registrar = SimpleNamespace(post=loop.post)
         server = Server(world, loop, registrar, find_package, find_model)

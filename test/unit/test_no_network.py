@@ -73,9 +73,9 @@ def test_a_mesh_file_leads_nowhere_else(tmp_path, name, content, said):
 
 
 @pytest.mark.parametrize('model', ['coke_can', 'http://example.org/coke_can'])
-def test_the_model_database_is_refused_before_anybody_looks_for_it(model):
+def test_a_model_of_the_database_is_looked_for_on_the_model_path_only(model):
     code = (
         'import argparse\n'
         'from rosbots_description.ros_api.spawn_client import _fetch\n'
-        f'_fetch(argparse.Namespace(file=None, param=None, database={model!r}))')
-    assert f'no model database can be reached, so {model} cannot be taken from it' in run(code)
+        f'TEXT = _fetch(argparse.Namespace(file=None, param=None, database={model!r}))\n')
+    assert f"'model://{model}' is not to be found along the model path" in run(code + LOAD_SDF)

@@ -3,12 +3,14 @@
 import pytest
 
 from rosbots_description.cli.spawn_model import parse_arguments
+from rosbots_description.ros_api import spawn_client
 from rosbots_description.ros_api.model_source import (
     MissingFileError,
     SourceError,
     canonical_xml,
     read_file,
 )
+from rosbots_description.sim.sdf import load_sdf
 
 MINIMAL = ['-urdf', '-param', 'robot_description', '-model', 'rosbots']
 
@@ -41,6 +43,15 @@ def test_unambiguous_prefixes_of_flags_work():
 def test_joints_may_be_repeated():
     flags = parse_arguments([*MINIMAL, '-J', 'a', '1', '-J', 'b', '-2'])
     assert flags.joints == [['a', '1'], ['b', '-2']]
+
+
+def test_a_model_of_the_database_is_looked_for_on_the_model_path(tmp_path):
+    (tmp_path / 'model.sdf').write_text(
+        '<sdf version="1.6"><model name="d"><static>true</static><link name="leaf"/></model></sdf>')
+    flags = parse_arguments(['-sdf', '-database', 'door', '-model', 'my_door'])
+    spec, _ = load_sdf(spawn_client._fetch(flags), 'my_door',
+                       find_model={'door': str(tmp_path)}.get)
+    assert [link.name for link in spec.links] == ['leaf']
 
 
 @pytest.mark.parametrize('arguments, complaint', [

@@ -32,7 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     source.add_argument('-file', metavar='FILE', help='read the XML from a file')
     source.add_argument('-param', metavar='NAME', help='read the XML from a ROS parameter')
     source.add_argument('-database', metavar='MODEL',
-                        help='take MODEL from the online model database (never reachable here)')
+                        help="take MODEL from the simulator's model path; nothing is fetched")
     source.add_argument('-stdin', action='store_true', help='read the XML from standard input')
     parser.add_argument('-model', metavar='NAME', required=True,
                         help='name of the model in the simulation')

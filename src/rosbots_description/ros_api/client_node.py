@@ -12,6 +12,7 @@ from typing import Any
 import rosgraph
 import rospy
 
+from .master import require_address
 from .process import init_node
 
 logger = logging.getLogger(__name__)
@@ -34,7 +35,9 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
 
     Raises:
         KeyboardInterrupt: Ctrl-C while waiting.
+        AddressError: there can be no master at the address that is given.
     """
+    require_address()
     if not rosgraph.is_master_online():
         # Before the node exists logging has no handler but its last resort, standard error.
         logger.warning('No ROS master at %s. Start roscore; waiting for it.',

@@ -6,7 +6,6 @@ started again then. Here the simulation goes on meanwhile, and who is connected 
 
 import logging
 import threading
-from http.client import HTTPException
 from xmlrpc.client import Error as XmlRpcError
 
 import rosgraph
@@ -18,6 +17,7 @@ from rospy.impl.registration import (
     get_topic_manager,
 )
 
+from .master import NO_MASTER
 from .server import Server
 
 logger = logging.getLogger(__name__)
@@ -50,27 +50,38 @@ def _watch(server: Server) -> None:
 
 
 def _is_known(master: rosgraph.Master) -> bool | None:
-    """Tell whether the master knows a node of our name; None if there is no master."""
+    """Tell whether we were introduced to the master; None if there is no master."""
     try:
-        master.lookupNode(rospy.get_name())
+        master.lookupService(_first_service())
     except rosgraph.MasterError:
         return False
-    except (OSError, HTTPException, XmlRpcError, rosgraph.MasterException):
+    except (*NO_MASTER, XmlRpcError, rosgraph.MasterException):
         return None
     return True
 
 
 def _introduce(server: Server) -> None:
     """Tell the master everything that was told to the one before; rospy has no public way."""
-    listeners = get_registration_listeners()
-    topics, services = get_topic_manager(), get_service_manager()
+    listeners, topics = get_registration_listeners(), get_topic_manager()
+    services = dict(get_service_manager().get_services())
+    first = _first_service()
+    listeners.notify_added(first, services.pop(first), Registration.SRV)
     for kind, entries in (
         (Registration.PUB, topics.get_publications()),
         (Registration.SUB, topics.get_subscriptions()),
-        (Registration.SRV, services.get_services()),
+        (Registration.SRV, services.items()),
     ):
         for name, told in entries:
             listeners.notify_added(name, told, kind)
     for tell in server.parameters:
         tell()
     logger.info('registered with a new ROS master')
+
+
+def _first_service() -> str:
+    """Return the name of what a master is told first when we are introduced, and only then.
+
+    A master that knows it has been told the rest, too, or is being told. What else it may know
+    was registered by a model that came before we noticed the new master.
+    """
+    return rospy.resolve_name('~get_loggers')  # rospy offers it before anything else

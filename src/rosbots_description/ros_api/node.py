@@ -24,8 +24,10 @@ from ..sim.world_spec import WorldSpec
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .handshake import guard_handshakes
+from .incoming import guard_messages
 from .log_bridge import connect_logging, set_level
 from .loop import Loop
+from .master import NO_MASTER, require_address
 from .master_watch import watch_master
 from .packages import find_model, find_package
 from .performance import advertise_performance
@@ -68,8 +70,8 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         ros_arguments: name remappings and parameters as ROS writes them, e.g. `__name:=gazebo`.
 
     Raises:
-        SimError: the world cannot be read, and nothing has been done; or a model of it cannot be
-            brought in, and the node has been shut down again.
+        SimError: the world cannot be read or there can be no master, and nothing has been done; or
+            a model of the world cannot be brought in, and the node has been shut down again.
 
     """
     _on_signals(signal.default_int_handler)
@@ -78,6 +80,7 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
     try:
         _wait_for_master()
         guard_handshakes()
+        guard_messages()
         outlets = Outlets()
         outlets.serve_publishers()
         init_node(
@@ -157,11 +160,16 @@ def _advertise_reconfigure(server: Server) -> None:
 
 
 def _wait_for_master() -> None:
-    """Wait for a ROS master, complaining as Gazebo does; nothing of ROS's logging works yet."""
+    """Wait for a ROS master, complaining as Gazebo does; nothing of ROS's logging works yet.
+
+    Raises:
+        SimError: there can be none at the address that is given.
+    """
+    require_address()
     while True:
         try:
             rosgraph.Master(f'/{NAME}').getPid()
-        except (OSError, rosgraph.MasterException):
+        except (*NO_MASTER, rosgraph.MasterException):
             sys.stderr.write(
                 f'[WARN] [{time.time():f}]: No ROS master - start roscore to continue...\n'
             )

@@ -9,6 +9,7 @@ Parameters:
     ~time_step and the others of `PARAMETERS`, written only: presets are replaced by what counts.
 """
 
+import contextlib
 import logging
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Vector3
 
+from .master import NO_MASTER, write_parameters
 from .server import Server
 from .services.registry import SERVICES, respond
 
@@ -92,6 +94,11 @@ class PhysicsReconfigure(ReconfigureServer):
 
     def _copy_from_parameter_server(self) -> None:
         """Leave presets alone: as in Gazebo they are replaced by the settings that count."""
+
+    def _copy_to_parameter_server(self) -> None:
+        """Write all in one call; a master that is away gets them when it is back, by `write`."""
+        with contextlib.suppress(*NO_MASTER):
+            write_parameters({p.name: self.config[p.name] for p in PARAMETERS})
 
     def _reconfigure(self, config: Config, _level: int) -> Config:
         """Apply what differs from what was shown last; return the settings that count then.

@@ -5,6 +5,8 @@ import threading
 from collections.abc import Callable
 from queue import SimpleQueue
 
+import rospy
+
 logger = logging.getLogger(__name__)
 
 
@@ -30,5 +32,7 @@ class Registrar:
             job = self._jobs.get()
             try:
                 job()
+            except rospy.ROSInterruptException:  # the node is shutting down
+                return
             except Exception:
                 logger.exception('the ROS master did not take a registration')

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
+from xml.sax.saxutils import escape
 
 import rospy
 from gazebo_msgs.msg import ModelStates
@@ -22,6 +23,7 @@ from rosbots_description.ros_api.gazebo_interface import (
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
+from rosbots_description.ros_api.master import AddressError
 from rosbots_description.ros_api.model_source import (
     MissingFileError,
     SourceError,
@@ -33,6 +35,9 @@ from rosbots_description.sim.pose import from_rpy
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 
 _SETTLE = 1.0  # [s] wall time that a simulator may need between its answer and the model's joints
+# As Gazebo's client asks for it; the server looks along its model path, and nowhere else.
+_DATABASE = ('<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
+             '</world></sdf>')
 _LAST_WORD = 1.5  # [s] wall time for the deletion at the end; Ctrl-C has to end us within 2 s
 
 
@@ -63,6 +68,9 @@ def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
         return FAILED
     except SourceError as error:
         rospy.logerr('%s', error)
+        return FAILED
+    except AddressError as error:  # there is no node yet that could log it
+        sys.stderr.write(f'spawn_model: {error}\n')
         return FAILED
     except (rospy.ROSInterruptException, KeyboardInterrupt):
         return INTERRUPTED
@@ -109,8 +117,7 @@ def _fetch(flags: argparse.Namespace) -> bytes | str:
         return _read_parameter(flags.param)
     if flags.database is not None:
         rospy.loginfo('Loading model XML from Gazebo Model Database')
-        raise SourceError(f'Error: no model database can be reached, so {flags.database} '
-                          'cannot be taken from it; give the model with -file instead')
+        return _DATABASE.format(escape(flags.database))
     rospy.loginfo('Loading model XML from stdin')
     text = sys.stdin.buffer.read()
     if not text.strip():

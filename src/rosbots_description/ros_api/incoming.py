@@ -1,0 +1,72 @@
+"""What rospy does not expect on a connection: endless messages, broken requests, lost clients."""
+
+import contextlib
+import logging
+import socket
+import struct
+from io import BytesIO
+
+from genpy import DeserializationError
+from rospy.exceptions import TransportException, TransportTerminated
+from rospy.impl import tcpros_base
+from rospy.impl.tcpros_base import TCPROSTransport, recv_buff
+from rospy.impl.tcpros_service import ServiceImpl
+
+logger = logging.getLogger(__name__)
+
+# [bytes] rospy keeps a message in memory until all of it is there, and believes any length. Texts
+# far longer than any description have to come through, to be refused with a sentence.
+LONGEST_MESSAGE = 1 << 28
+_LENGTH = struct.Struct('<I')  # what a message begins with: how many bytes follow
+_handle, _complain = ServiceImpl.handle, ServiceImpl.error_handler
+
+
+def guard_messages() -> None:
+    """Let all connections of this process keep the bounds; call once before `init_node`.
+
+    rospy has no public place for this.
+    """
+    tcpros_base.recv_buff = receive
+    ServiceImpl.handle = serve
+    ServiceImpl.error_handler = complain
+
+
+def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
+    """Receive as rospy does into a buffer that begins with a message; return how many bytes.
+
+    Raises:
+        TransportTerminated: the connection is closed, or the message is too long.
+    """
+    count = recv_buff(connection, buffer, size)
+    if buffer.tell() >= _LENGTH.size:
+        with buffer.getbuffer() as content:
+            (length,) = _LENGTH.unpack_from(content)
+        if length > LONGEST_MESSAGE:
+            sentence = f'a message of {length} bytes is not received; at most {LONGEST_MESSAGE} are'
+            logger.warning('%s', sentence)
+            raise TransportTerminated(sentence)
+    return count
+
+
+def serve(service: ServiceImpl, transport: TCPROSTransport, header: dict[str, str]) -> None:
+    """Answer as rospy does, also a request that cannot be read, and let go of the connection."""
+    try:
+        _handle(service, transport, header)
+    except (ConnectionError, TransportException) as error:
+        if not isinstance(error.__context__, DeserializationError):
+            logger.debug('%s: nobody takes the answer: %s', service.resolved_name, error)
+            return
+        sentence = f'the request does not fit {service.service_class._type}: {error}'
+        logger.warning('%s: %s', service.resolved_name, sentence)
+        with contextlib.suppress(OSError, TransportException):  # who asked may have gone
+            service._write_service_error(transport, sentence)
+    finally:
+        transport.close()
+
+
+def complain(service: ServiceImpl, error: Exception, *details: object) -> None:
+    """Log a fault in an answer, unless it is that who asked has not waited for it."""
+    if isinstance(error, (ConnectionError, TransportException)):
+        logger.debug('%s: nobody takes the answer: %s', service.resolved_name, error)
+    else:
+        _complain(service, error, *details)

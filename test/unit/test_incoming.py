@@ -1,0 +1,95 @@
+"""What arrives on a connection and is too long, broken, or from someone who has gone."""
+
+import socket
+import struct
+from io import BytesIO
+
+import pytest
+from gazebo_msgs.srv import GetModelState, GetModelStateRequest, GetModelStateResponse
+from rospy.exceptions import TransportTerminated
+from rospy.impl.tcpros_base import TCPROSTransport
+from rospy.impl.tcpros_service import ServiceImpl
+
+from rosbots_description.ros_api.incoming import LONGEST_MESSAGE, complain, receive, serve
+
+BUFFER = 4096  # [bytes]
+
+
+@pytest.fixture
+def ends():
+    ours, theirs = socket.socketpair()
+    theirs.settimeout(5.0)
+    with ours, theirs:
+        yield ours, theirs
+
+
+@pytest.fixture
+def service(monkeypatch):
+    monkeypatch.setattr(ServiceImpl, 'error_handler', complain)
+    return ServiceImpl('~get_model_state', GetModelState,
+                       lambda request: GetModelStateResponse(status_message=request.model_name))
+
+
+def serve_once(service, connection):
+    transport = TCPROSTransport(service.protocol, service.resolved_name)
+    transport.set_socket(connection, 'client')
+    serve(service, transport, {'callerid': '/client'})
+
+
+def request(name):
+    content = BytesIO()
+    GetModelStateRequest(name, '').serialize(content)
+    return struct.pack('<I', content.tell()) + content.getvalue()
+
+
+def test_a_message_of_bearable_length_is_received(ends):
+    ours, theirs = ends
+    theirs.sendall(struct.pack('<I', LONGEST_MESSAGE) + b'beginning')
+    buffer = BytesIO()
+    assert receive(ours, buffer, BUFFER) == 13
+    assert buffer.getvalue().endswith(b'beginning')
+
+
+def test_an_endless_message_ends_the_connection(ends, caplog):
+    ours, theirs = ends
+    theirs.sendall(struct.pack('<I', LONGEST_MESSAGE + 1))
+    with pytest.raises(TransportTerminated):
+        receive(ours, BytesIO(), BUFFER)
+    assert f'a message of {LONGEST_MESSAGE + 1} bytes is not received' in caplog.text
+
+
+def test_a_length_that_comes_in_pieces_is_waited_for(ends):
+    ours, theirs = ends
+    buffer = BytesIO()
+    for piece in (b'\x02\0', b'\0\0ab'):
+        theirs.sendall(piece)
+        receive(ours, buffer, BUFFER)
+    assert buffer.getvalue() == b'\x02\0\0\0ab'
+
+
+def test_a_request_is_answered_as_ever(ends, service):
+    ours, theirs = ends
+    theirs.sendall(request('robot'))
+    serve_once(service, ours)
+    assert b'robot' in theirs.recv(BUFFER)
+
+
+def test_a_request_that_cannot_be_read_is_answered_with_a_sentence(ends, service, caplog):
+    ours, theirs = ends
+    theirs.sendall(struct.pack('<II', 4, 1000))  # a name of 1000 bytes in a request of four
+    serve_once(service, ours)
+    succeeded, length = struct.unpack('<BI', theirs.recv(5))
+    told = theirs.recv(length).decode()
+    assert not succeeded
+    assert told.startswith('the request does not fit gazebo_msgs/GetModelState')
+    assert told in caplog.text
+    assert theirs.recv(1) == b''  # and nobody waits any longer
+
+
+def test_a_client_that_has_gone_is_no_fault(ends, service, caplog):
+    ours, theirs = ends
+    theirs.sendall(request('robot'))
+    theirs.close()
+    serve_once(service, ours)
+    assert 'Traceback' not in caplog.text
+    assert 'Error processing' not in caplog.text

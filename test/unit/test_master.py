@@ -1,0 +1,113 @@
+"""Calls to a ROS master that is there, away, or comes back."""
+
+import threading
+from xmlrpc.server import SimpleXMLRPCServer
+
+import pytest
+import rosgraph
+import rospy
+
+from rosbots_description.ros_api import master, master_watch, spawn_client
+from rosbots_description.ros_api.master import (
+    AddressError,
+    once_there,
+    require_address,
+    write_parameters,
+)
+
+
+class FakeMaster(SimpleXMLRPCServer):
+    """What a ROS master answers to the few calls of these tests; counts what arrives."""
+
+    def __init__(self):
+        super().__init__(('localhost', 0), logRequests=False)
+        self.arrived = 0
+        self.parameters, self.services = {}, {}
+        self.register_multicall_functions()
+        self.register_function(self._set_parameter, 'setParam')
+        self.register_function(self._look_up, 'lookupService')
+
+    def _dispatch(self, method, arguments):
+        self.arrived += method != 'setParam'
+        return super()._dispatch(method, arguments)
+
+    def _set_parameter(self, _caller, name, value):
+        self.parameters[name] = value
+        return 1, '', 0
+
+    def _look_up(self, _caller, name):
+        return (1, '', self.services[name]) if name in self.services else (-1, 'no provider', '')
+
+
+@pytest.fixture
+def there(monkeypatch):
+    with FakeMaster() as server:
+        thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+        thread.start()
+        monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{server.server_address[1]}')
+        yield server
+        server.shutdown()
+        thread.join()
+
+
+@pytest.fixture(autouse=True)
+def _no_pause(monkeypatch):
+    monkeypatch.setattr(master.time, 'sleep', lambda _: None)
+
+
+def test_parameters_go_over_the_wire_together(there):
+    write_parameters({'gravity_z': -9.8, 'sor_pgs_iters': 50, 'auto_disable_bodies': False})
+    assert there.parameters == {
+        '/unnamed/gravity_z': -9.8, '/unnamed/sor_pgs_iters': 50,
+        '/unnamed/auto_disable_bodies': False}
+    assert there.arrived == 1
+
+
+@pytest.mark.parametrize('address', ['', 'foo', 'http://', 'http://localhost:99999'])
+def test_where_no_master_can_be_nobody_waits_for_one(monkeypatch, capsys, address):
+    monkeypatch.setenv('ROS_MASTER_URI', address)
+    sentence = f"ROS_MASTER_URI is '{address}'; it must be the address of a ROS master"
+    with pytest.raises(AddressError, match=sentence):
+        require_address()
+    assert spawn_client.run(None, []) == 1
+    assert capsys.readouterr().err.startswith(f'spawn_model: {sentence}')
+
+
+@pytest.mark.parametrize('address', ['http://localhost:11311', 'http://robot.local:11311/'])
+def test_where_a_master_may_come_it_is_waited_for(monkeypatch, address):
+    monkeypatch.setenv('ROS_MASTER_URI', address)
+    require_address()
+
+
+def test_a_question_is_asked_until_there_is_a_master():
+    faults = [ConnectionRefusedError(), TimeoutError()]
+
+    def ask():
+        if faults:
+            raise faults.pop()
+        return 'prefix'
+
+    assert once_there(ask) == 'prefix'
+    assert not faults
+
+
+def test_what_a_master_answers_is_final():
+    def ask():
+        raise rosgraph.MasterError('no such parameter')
+
+    with pytest.raises(rosgraph.MasterError):
+        once_there(ask)
+
+
+def test_nobody_waits_for_a_master_while_the_node_shuts_down(monkeypatch):
+    monkeypatch.setattr(rospy, 'is_shutdown', lambda: True)
+    with pytest.raises(rospy.ROSInterruptException):
+        once_there(lambda: pytest.fail('asked'))
+
+
+def test_a_master_that_was_told_of_one_model_only_does_not_know_us_yet(there):
+    who = rosgraph.Master('/unnamed')
+    there.services = {'/unnamed/some_service': 'rosrpc://localhost:1'}
+    assert master_watch._is_known(who) is False
+    there.services['/unnamed/get_loggers'] = 'rosrpc://localhost:1'
+    assert master_watch._is_known(who) is True
