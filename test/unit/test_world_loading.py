@@ -4,7 +4,6 @@ import logging
 import os
 
 import pytest
-import rospkg
 from support import ROOT
 
 from rosbots_description.ros_api import packages
@@ -86,15 +85,25 @@ def test_packages_export_worlds_and_models(tmp_path, places):
     assert [model.name for model, _ in world.models] == ['door']
 
 
-def test_only_manifests_that_export_folders_are_parsed(tmp_path, places, monkeypatch):
-    exporting(tmp_path / 'packages' / 'houses', 'gazebo_media_path="${prefix}"')
-    exporting(tmp_path / 'packages' / 'doors', 'gazebo_model_path="${prefix}"')
+@pytest.mark.parametrize('flaw', [
+    ('a@b.example', 'you@todo'), ('<version>1.0.0</version>', ''), ('<name>houses', '<name>A B'),
+    ('<license>BSD</license>', ''),
+])
+def test_a_manifest_that_catkin_refuses_still_exports(tmp_path, places, flaw):
+    folder = tmp_path / 'packages' / 'houses'
+    exporting(folder, 'gazebo_media_path="${prefix}"')
+    manifest = folder / 'package.xml'
+    manifest.write_text(manifest.read_text().replace(*flaw))
     places(tmp_path / 'packages')
-    parsed, parse = [], rospkg.RosPack.get_manifest
-    monkeypatch.setattr(rospkg.RosPack, 'get_manifest',
-                        lambda self, name: parsed.append(name) or parse(self, name))
-    found = packages.exported_directories('gazebo_media_path')
-    assert (found, parsed) == ((str(tmp_path / 'packages' / 'houses'),), ['houses'])
+    assert packages.exported_directories('gazebo_media_path') == (str(folder),)
+
+
+@pytest.mark.parametrize('text', ['<package><name>houses', '<package/>', ''])
+def test_a_manifest_that_nobody_can_read_is_one_sentence(tmp_path, places, text):
+    write(tmp_path / 'packages' / 'houses' / 'package.xml', text)
+    places(tmp_path / 'packages')
+    with pytest.raises(NotFoundError, match=r'a package\.xml along ROS_PACKAGE_PATH is broken'):
+        packages.find_package('houses')
 
 
 def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):

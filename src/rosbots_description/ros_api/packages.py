@@ -4,9 +4,11 @@ import contextlib
 import os
 from functools import cache
 from pathlib import Path
+from xml.etree import ElementTree
 
 import rospkg
 
+from ..sim.errors import NotFoundError
 from ..sim.model_search import ModelSearch, path_directories
 
 _MANIFESTS = ('manifest.xml', 'package.xml')  # of a package; the first one there is counts
@@ -17,6 +19,9 @@ def find_package(name: str) -> str | None:
 
     Looking through the whole path takes a while, so it is done once, and again for a package that
     was not there yet.
+
+    Raises:
+        NotFoundError: a manifest on the path is no XML, so that no package can be looked up.
     """
     try:
         return _packages().get_path(name)
@@ -30,7 +35,15 @@ def find_package(name: str) -> str | None:
 
 @cache
 def _packages() -> rospkg.RosPack:
-    return rospkg.RosPack()
+    packages = rospkg.RosPack()
+    try:
+        packages.list()  # looks through the whole path
+    except (ElementTree.ParseError, AttributeError) as error:  # the latter: it has no <name>
+        raise NotFoundError(
+            f'no ROS package can be looked up, as a package.xml along ROS_PACKAGE_PATH is broken '
+            f'({error}); mend it, or put a file CATKIN_IGNORE beside it'
+        ) from error
+    return packages
 
 
 @cache
@@ -41,23 +54,28 @@ def exported_directories(attribute: str) -> tuple[str, ...]:
     """
     packages, found = _packages(), []
     for name in packages.list():
-        if not _mentions(packages.get_path(name), attribute):
-            continue
-        try:
-            values = packages.get_manifest(name).get_export('gazebo_ros', attribute)
-        except rospkg.InvalidManifest:
-            continue
-        for value in values:
-            found += path_directories(value.replace('${prefix}', packages.get_path(name)))
+        folder = packages.get_path(name)
+        for value in _exports(folder, attribute):
+            found += path_directories(value.replace('${prefix}', folder))
     return tuple(found)
 
 
-def _mentions(package: str, word: str) -> bool:
-    """Tell whether a word stands in a package's manifest, which takes far less than to parse it."""
+def _exports(package: str, attribute: str) -> list[str]:
+    """Return the values that a package's manifest exports under `attribute`.
+
+    Whatever else is wrong with it, such as an address that is none, is the business of who builds
+    the package: rospack, which Gazebo asks, does not look there either.
+    """
     for name in _MANIFESTS:
         with contextlib.suppress(OSError):
-            return word.encode() in Path(package, name).read_bytes()
-    return False
+            text = Path(package, name).read_bytes()
+            if attribute.encode() not in text:  # takes far less than to parse it
+                return []
+            with contextlib.suppress(ElementTree.ParseError):
+                exports = ElementTree.fromstring(text).iterfind('export/gazebo_ros')
+                return [value for export in exports if (value := export.get(attribute))]
+            return []
+    return []
 
 
 def find_model(inner: str) -> str | None:
