@@ -1,0 +1,105 @@
+"""The executable xacro: PyPI's xacro 1.13 with what robots made for Noetic's 1.14 need beyond it.
+
+Noetic's own is on no package index; what ROS 2 has there knows neither rospack nor tags without
+`xacro:`, which older robots have. 1.13 alone cannot read YAML files with a PyYAML of today.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+from functools import partial
+from types import ModuleType, SimpleNamespace
+
+import yaml
+
+_PYTHON = {'bool': bool, 'len': len, 'range': range, 'sorted': sorted}
+_UNITS = {'!radians': 1.0, '!degrees': math.pi / 180.0, '!meters': 1.0, '!millimeters': 1e-3,
+          '!foot': 0.3048, '!inches': 0.0254}  # in rad and m
+
+
+def main() -> int:
+    """Expand the file that the command line names; return the exit code."""
+    # The script beside ours is called xacro.py: keep its folder from hiding the module.
+    sys.path[:] = [p for p in sys.path if not os.path.isfile(os.path.join(p or '.', 'xacro.py'))]
+    try:
+        import xacro  # noqa: PLC0415  only now can it be found
+    except ImportError:
+        sys.stderr.write(f'xacro: the Python module xacro is missing for {sys.executable}; install '
+                         'it with "python3 -m pip install xacro==1.13.3".\n')
+        return 1
+    sys.stdout.reconfigure(encoding='utf-8')  # as XML is, whatever PYTHONIOENCODING says
+    extend(xacro)
+    xacro.main()
+    return 0
+
+
+def extend(xacro: ModuleType) -> None:
+    """Let the module understand, in place, what expressions and includes may say in Noetic."""
+    load_yaml = partial(_load_yaml, xacro)
+    symbols = xacro.global_symbols
+    symbols['__builtins__'].update(_PYTHON)
+    symbols.update(
+        load_yaml=load_yaml,
+        math=math,
+        python=SimpleNamespace(**symbols['__builtins__']),
+        xacro=SimpleNamespace(
+            load_yaml=load_yaml,
+            abs_filename=xacro.abs_filename_spec,
+            arg=lambda name: xacro.substitution_args_context['arg'][name],
+            dotify=_Dotted,
+        ),
+    )
+    xacro.process_include = partial(_include, xacro, xacro.process_include)
+
+
+class _Dotted(dict):
+    """A mapping that is also read with dots: robot.wheel.radius."""
+
+    def __getattr__(self, name: str):
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"there is no '{name}' in the YAML at this place") from None
+
+
+def _dotted(value):
+    if isinstance(value, dict):
+        return _Dotted({key: _dotted(inner) for key, inner in value.items()})
+    if isinstance(value, list):
+        return [_dotted(inner) for inner in value]
+    return value
+
+
+class _Loader(yaml.SafeLoader):
+    """Reads numbers with units as well: !degrees 90."""
+
+
+def _load_yaml(xacro: ModuleType, name: str):
+    """Return what a YAML file holds; a relative name starts where the present file is."""
+    for unit, factor in _UNITS.items():
+        _Loader.add_constructor(unit, lambda loader, node, factor=factor: factor * float(
+            eval(loader.construct_scalar(node), xacro.global_symbols)))
+    path = xacro.abs_filename_spec(name)
+    files = xacro.push_file(path)
+    try:
+        with open(path, encoding='utf-8') as file:
+            return _dotted(yaml.load(file, _Loader))  # noqa: S506  it is a SafeLoader
+    finally:
+        xacro.restore_filestack(files)
+        xacro.all_includes.append(path)
+
+
+def _include(xacro: ModuleType, include, element, macros, symbols, func) -> None:
+    """Include a file, or nothing where it is `optional` and not there."""
+    optional = element.getAttribute('optional')
+    if optional:
+        element.removeAttribute('optional')
+        path = xacro.abs_filename_spec(xacro.eval_text(element.getAttribute('filename'), symbols))
+        if (xacro.get_boolean_value(xacro.eval_text(optional, symbols), optional)
+                and not os.path.exists(path)):
+            xacro.remove_previous_comments(element)
+            xacro.replace_node(element, by=[])
+            return
+    include(element, macros, symbols, func)
