@@ -26,9 +26,29 @@ def test_the_line_of_the_launch_file_leaves_nothing_to_say():
     assert said == ()
 
 
-def test_plugins_port_and_lockstep_are_accepted():
-    given, said = _read('-s liba.so -s libb.so -p 11346 --lockstep --iters 100')
+def test_plugins_and_lockstep_are_accepted():
+    given, said = _read('-s liba.so -s libb.so --lockstep --minimal_comms --iters 100')
     assert (given.iters, said) == (100, ())
+
+
+@pytest.mark.parametrize('option', [
+    '-p state.log', '--play state.log', '-o fast', '--profile fast', '--record_path /tmp/log',
+    '--record_period 0.1', '--record_encoding zlib', '--record_filter robot',
+])
+def test_the_value_of_an_option_is_not_taken_for_the_world(option):
+    given, ((level, text),) = _read(f'{option} my.world')
+    assert given.world == 'my.world'
+    assert level == logging.WARNING
+    assert 'not supported' in text
+
+
+@pytest.mark.parametrize('option', ['-v', '--version'])
+def test_the_version_is_one_line(option, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([option])
+    assert ended.value.code == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    assert 'PyBullet' in line
 
 
 def test_a_seed_is_accepted_and_said_to_change_nothing():

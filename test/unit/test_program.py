@@ -64,6 +64,44 @@ def test_an_output_that_takes_only_ascii_gets_the_rest_by_number(run):
     assert errors == b'K\\xfcrbis\n'
 
 
+def test_the_process_has_the_name_of_the_program(tmp_path):
+    program = tmp_path / 'gzserver'
+    program.write_text(textwrap.dedent("""\
+        import sys
+        from pathlib import Path
+        from rosbots_description.cli.program import run
+
+        def main():
+            print(Path("/proc/self/comm").read_text(), end='')
+            return 0
+
+        sys.exit(run(main))
+        """), encoding='utf-8')
+    done = subprocess.run(
+        [sys.executable, program], env={'PYTHONPATH': str(ROOT / 'src')},
+        capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (0, b'gzserver\n')
+
+
+INTERRUPTED = textwrap.dedent("""\
+    import os, signal, sys, time
+    from rosbots_description.cli.program import run
+
+    def main():
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(10.0)
+
+    sys.exit(run(main))
+    """)
+
+
+def test_ctrl_c_that_nobody_expects_ends_without_a_word():
+    done = subprocess.run(
+        [sys.executable, '-c', INTERRUPTED], env={'PYTHONPATH': str(ROOT / 'src')},
+        capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (130, b'')
+
+
 @pytest.mark.parametrize('redirections', [
     '>&-', '2>&-', '<&-', '<&- >&-', '<&- >&- 2>&-', '>/dev/full', '>/dev/full 2>&1',
     '2>&1 | true',

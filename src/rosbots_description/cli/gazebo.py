@@ -38,9 +38,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         while not told and server.poll() is None and (headless or client.poll() is None):
             time.sleep(_POLL)
         _on_signals(signal.default_int_handler)  # whoever asks again does not want to wait
-        _end(client)
+        _end(client, signal.SIGTERM)  # quiet even in a Python that has not begun yet
     finally:
-        _end(server)
+        _end(server, signal.SIGINT)
     return server.returncode
 
 
@@ -49,10 +49,10 @@ def _on_signals(react: signal.Handlers) -> None:
         signal.signal(number, react)
 
 
-def _end(child: subprocess.Popen) -> None:
-    """Ask a child to end as Ctrl-C would; insist after a while."""
+def _end(child: subprocess.Popen, number: signal.Signals) -> None:
+    """Ask a child to end; insist after a while."""
     if child.poll() is None:
-        child.send_signal(signal.SIGINT)
+        child.send_signal(number)
     try:
         child.wait(_GRACE)
     except (subprocess.TimeoutExpired, KeyboardInterrupt):

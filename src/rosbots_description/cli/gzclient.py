@@ -9,7 +9,6 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..ros_api.packages import find_package
 from .gzserver import split_remappings
 
 
@@ -41,6 +40,8 @@ def display_works() -> bool:
 
 def config_file() -> Path | None:
     """Return RViz's config in the package rosbots_description, or None if it cannot be found."""
+    from ..ros_api.packages import find_package  # noqa: PLC0415  most of what there is to load
+
     package = find_package('rosbots_description')
     return Path(package, 'config', 'gzclient.rviz') if package else None
 

@@ -13,6 +13,7 @@ from ..sim.errors import SimError
 
 EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'
+_VERSION = "gzserver of rosbots_description: Gazebo 11's ROS interface, by PyBullet"
 # What to install for a module that is missing, as requirements.txt has it.
 _INSTALLED_BY = {
     'pybullet': 'pybullet==3.2.7',
@@ -38,10 +39,16 @@ def parser() -> argparse.ArgumentParser:
     add('--iters', type=_count, metavar='NUMBER', help='end after so many steps')
     add('--verbose', action='store_true', help='log debug messages too')
     add('-r', '--record', action='store_true', help='not supported')
+    for name in ('encoding', 'path', 'period', 'filter'):
+        add(f'--record_{name}', metavar=name.upper(), help='not supported')
+    add('--record_resources', action='store_true', help='not supported')
+    add('-p', '--play', metavar='FILE', help='not supported')
+    add('-o', '--profile', metavar='NAME', help="accepted; the world's default physics counts")
     add('--lockstep', action='store_true', help='accepted; steps and sensors always go together')
     add('-s', '--server-plugin', action='append', metavar='FILE', default=[],
         help='accepted; the plugins of gazebo_ros are built in')
-    add('-p', '--port', metavar='PORT', help='accepted; no port is used')
+    add('--minimal_comms', action='store_true', help='accepted; there is little to save')
+    add('-v', '--version', action='version', version=_VERSION, help='say what this is, and end')
     return made
 
 
@@ -117,6 +124,15 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
             logging.INFO,
             f'--seed {given.seed} changes nothing: no number here is random, every run is the same',
         ))
-    if given.record:
+    recording = (given.record_encoding, given.record_path, given.record_period,
+                 given.record_filter, given.record_resources)
+    if given.record or any(recording):
         found.append((logging.WARNING, 'recording (-r) is not supported; use rosbag'))
+    if given.play:
+        found.append((logging.WARNING, f'playing {given.play} (-p) is not supported; use rosbag'))
+    if given.profile:
+        found.append((
+            logging.WARNING,
+            f"--profile {given.profile} is not supported: the world's default physics counts",
+        ))
     return tuple(found)

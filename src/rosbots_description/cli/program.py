@@ -11,16 +11,26 @@ import io
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TextIO
+
+INTERRUPTED = 130  # exit code, as shells have it for who was ended by Ctrl-C
 
 
 def run(main: Callable[[], int]) -> int:
-    """Return `main()`, with surroundings that it can rely on."""
+    """Return `main()`, with surroundings that it can rely on.
+
+    Ctrl-C that `main` does not expect, such as while modules are loaded, ends it without a word.
+    """
     _speak_utf8()
+    _take_its_name()
     _occupy_closed_descriptors()
     sys.stdin = sys.stdin or open(os.devnull, encoding='utf-8')  # noqa: SIM115
     sys.stdout, sys.stderr = _patient(sys.stdout), _patient(sys.stderr)
-    return main()
+    try:
+        return main()
+    except KeyboardInterrupt:
+        return INTERRUPTED
 
 
 def _speak_utf8() -> None:
@@ -32,6 +42,12 @@ def _speak_utf8() -> None:
     if sys.getfilesystemencoding() != 'utf-8':
         os.environ['PYTHONUTF8'] = '1'  # for the programs that this one starts
         os.execv(sys.executable, [sys.executable, '-X', 'utf8', *sys.orig_argv[1:]])
+
+
+def _take_its_name() -> None:
+    """Let `killall gzserver` and the like find this program, as they find Gazebo's."""
+    with contextlib.suppress(OSError):
+        Path('/proc/self/comm').write_text(Path(sys.argv[0]).name, encoding='utf-8')
 
 
 def _occupy_closed_descriptors() -> None:
