@@ -71,8 +71,9 @@ def test_a_lumped_links_surface_and_looks_reach_its_own_shapes_only():
     assert [shape.material.rgba for shape in base.visuals] == [GREY, (1.0, 0.0, 0.0, 1.0)]
 
 
-def test_a_negative_friction_means_endless():
-    spec = load('<gazebo reference="c"><mu1>-1</mu1></gazebo>')
+@pytest.mark.parametrize('written', ['-1', 'inf', 'Infinity', '+INF'])
+def test_a_negative_or_infinite_friction_means_endless(written):
+    spec = load(f'<gazebo reference="c"><mu1>{written}</mu1></gazebo>')
     assert spec.link('c').collisions[0].surface.mu == ENDLESS_FRICTION
 
 
@@ -142,6 +143,11 @@ def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere()
     assert sensor.child('plugin').child('robotNamespace').text == '/bot'
     (sensor,) = load(block).link('c').sensors
     assert sensor.child('plugin').children == ()
+
+
+def test_a_namespace_that_xml_cannot_hold_is_an_error():
+    with pytest.raises(ModelError, match="robot_namespace is 'a.*which has a control character"):
+        load(plugin(''), robot_namespace='a\x01b')
 
 
 def test_sensors_lights_and_projectors_are_kept_in_their_link():

@@ -147,12 +147,12 @@ def test_a_mesh_of_a_package_is_found(tmp_path):
 
 
 def submesh(tmp_path, name, center):
-    """Return the corners that a link shows of a file with two triangles, 0.01 m a unit."""
+    """Return the corners that a link has of a file with two triangles, 0.01 m a unit."""
     (tmp_path / 'two.dae').write_text(two_triangles(), encoding='utf-8')
-    spec = load(link(f'<visual name="v"><geometry><mesh><uri>file://{tmp_path}/two.dae</uri>'
+    spec = load(link(f'<collision name="c"><geometry><mesh><uri>file://{tmp_path}/two.dae</uri>'
                      f'<submesh><name>{name}</name><center>{center}</center></submesh></mesh>'
-                     '</geometry></visual>'))
-    vertices, faces = read_mesh(spec.links[0].visuals[0].geometry.path).triangles()
+                     '</geometry></collision>'))
+    vertices, faces = read_mesh(spec.links[0].collisions[0].geometry.path).triangles()
     return vertices[faces.ravel()]
 
 
@@ -199,10 +199,21 @@ def test_a_missing_mesh_is_named_with_its_address():
     assert 'GAZEBO_MODEL_PATH' in sentence
 
 
+@pytest.mark.parametrize('uri', [
+    'model://chair/seat.dae', '/home/me/seat.dae',
+])
+def test_a_mesh_that_is_only_seen_may_be_missing_as_in_gazebo(uri, caplog):
+    look = f'<visual name="v"><geometry><mesh><uri>{uri}</uri></mesh></geometry></visual>'
+    (said,) = warnings_of(caplog, link(look + f'<collision name="c">{BOX}</collision>'))
+    assert said.startswith("bot.sdf, line 1: link 'a': ")
+    assert uri.removeprefix('model:/') in said
+    assert said.endswith('; it is not shown')
+
+
 @pytest.mark.parametrize('uri', ['model://../secret.dae', 'model://a/../../secret.dae'])
 def test_a_path_that_climbs_out_of_the_model_path_is_refused(uri):
     sentence = complaint(link(
-        f'<visual name="v"><geometry><mesh><uri>{uri}</uri></mesh></geometry></visual>'
+        f'<collision name="c"><geometry><mesh><uri>{uri}</uri></mesh></geometry></collision>'
     ))
     assert "'..' is not accepted" in sentence
 
@@ -229,8 +240,9 @@ def test_a_surface_is_read():
     assert surface == Surface(0.3, 0.2, (1.0, 0.0, 0.0), 1e6, 10.0, 0.1, 0.001, 5, 7.0)
 
 
-def test_a_negative_friction_is_endless():
-    surface = collision(BOX + '<surface><friction><ode><mu>-1</mu></ode></friction></surface>')
+@pytest.mark.parametrize('mu', ['-1', 'inf', 'Infinity'])
+def test_a_negative_or_infinite_friction_is_endless(mu):
+    surface = collision(BOX + f'<surface><friction><ode><mu>{mu}</mu></ode></friction></surface>')
     assert surface.surface.mu == ENDLESS_FRICTION
 
 

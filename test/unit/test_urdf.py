@@ -164,7 +164,7 @@ def test_a_material_without_colour_is_grey_with_a_warning(caplog):
     spec = load('<material name="blue"><color rgba="0 0 1 1"/></material>'
                 + link('a', MASS + visual))
     assert spec.links[0].visuals[0].material == Material()
-    assert "material 'bleu' has no <color> anywhere, it is shown grey; did you mean 'blue'?" \
+    assert "material 'bleu': it has no <color> anywhere, it is shown grey; did you mean 'blue'?" \
         in caplog.text
 
 
@@ -312,6 +312,26 @@ def test_a_broken_mesh_is_named_with_file_and_link(tmp_path):
     (tmp_path / 'm.obj').write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
     sentence = complaint(geometry(f'<mesh filename="file://{tmp_path}/m.obj"/>'))
     assert f"link 'a': mesh file '{tmp_path}/m.obj' is broken" in sentence
+
+
+def test_a_mesh_that_is_only_seen_may_be_missing_as_in_gazebo(tmp_path, caplog):
+    looks = ''.join(
+        f'<visual><geometry>{shape}</geometry></visual>' for shape in (
+            '<mesh filename="/home/me/scanner.dae"/>', '<sphere radius="1"/>'))
+    spec = load('\n' + link('a', MASS + looks))
+    assert [visual.geometry for visual in spec.links[0].visuals] == [Sphere(1.0)]
+    (said,) = [record.getMessage() for record in caplog.records]
+    assert said.startswith("model 'bot' (bot.urdf): line 2: link 'a': mesh file "
+                           "'/home/me/scanner.dae' does not exist")
+    assert said.endswith('; it is not shown')
+
+
+@pytest.mark.parametrize('filename', ['{folder}/m.obj', 'meshes/m.obj', 'http://host/m.obj'])
+def test_a_mesh_that_is_only_seen_must_not_be_broken_or_elsewhere(tmp_path, filename):
+    (tmp_path / 'm.obj').write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
+    look = f'<mesh filename="{filename.format(folder=tmp_path)}"/>'
+    with pytest.raises(ModelError, match=r'm\.obj'):
+        load(link('a', MASS + f'<visual><geometry>{look}</geometry></visual>'))
 
 
 def test_an_unknown_package_anywhere_is_an_error_of_its_own():

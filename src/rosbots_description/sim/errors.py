@@ -18,6 +18,10 @@ class ModelError(SimError):
     """A model description that cannot be simulated as written."""
 
 
+class AbsentError(ModelError):
+    """A file that a description names is not there; who only shows it can live without."""
+
+
 class NotFoundError(SimError):
     """A model, link, joint or frame of that name does not exist in the world."""
 

@@ -12,12 +12,14 @@ from functools import partial
 
 from lxml import etree
 
+from .errors import ModelError
 from .gazebo_materials import gazebo_material
 from .kinematic_tree import TreeLink
 from .markup import shortened
 from .markup_values import (
     MAX_NOTES,
     fault,
+    is_endless,
     note,
     place,
     require_damping,
@@ -31,7 +33,7 @@ from .markup_values import (
 )
 from .spec import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec
 
-# A negative mu means endless friction in Gazebo.
+# A negative mu means endless friction in Gazebo, and so does inf.
 ENDLESS_FRICTION = 1e6
 
 _SURFACE_NUMBERS = {'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
@@ -132,13 +134,22 @@ def inject_namespace(root: etree._Element, robot_namespace: str) -> None:
     """Give each <plugin>, at any depth, a <robotNamespace> unless it has one, in place.
 
     An empty `robot_namespace` changes nothing (gazebo_ros_pkgs 2.9.2).
+
+    Raises:
+        ModelError: XML cannot hold the text.
     """
     if not robot_namespace:
         return
     for plugin in root.iter('plugin'):
         if plugin.find('robotNamespace') is None:
             child = etree.SubElement(plugin, 'robotNamespace')
-            child.text = robot_namespace
+            try:
+                child.text = robot_namespace
+            except ValueError:
+                raise ModelError(
+                    f"robot_namespace is '{robot_namespace}', which has a control character in it; "
+                    'a namespace takes a-z, A-Z, 0-9, _ and slashes'
+                ) from None
             child.sourceline = plugin.sourceline
 
 
@@ -190,8 +201,9 @@ def _read_link_block(
 
 
 def _set_surface(link: LinkTags, key: str, element: etree._Element) -> None:
-    value = scalar_number(element)
-    if key in ('mu', 'mu2') and value < 0.0:
+    rubs = key in ('mu', 'mu2')
+    value = ENDLESS_FRICTION if rubs and is_endless(element) else scalar_number(element)
+    if rubs and value < 0.0:
         value = ENDLESS_FRICTION
     elif value < 0.0 and key != 'laser_retro':
         raise fault(element, f'<{tag_of(element)}> is {value:g}; it must not be negative')

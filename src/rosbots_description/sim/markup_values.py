@@ -40,9 +40,11 @@ def tag_of(element: etree._Element) -> str:
     return f'{element.prefix}:{name}' if element.prefix else name
 
 
-def fault(element: etree._Element, sentence: str) -> ModelError:
+def fault(
+    element: etree._Element, sentence: str, kind: type[ModelError] = ModelError
+) -> ModelError:
     """Return the error to raise about `element`: source, line and owner before the sentence."""
-    return ModelError(f'{place(element)}: {sentence}')
+    return kind(f'{place(element)}: {sentence}')
 
 
 def place(element: etree._Element) -> str:
@@ -225,6 +227,11 @@ def parse_numbers(text: str, count: int) -> tuple[float, ...] | None:
 def scalar(element: etree._Element) -> str:
     """Return the value of <tag value="x"/> or <tag>x</tag>, without surrounding blanks."""
     return (element.get('value') or element.text or '').strip()
+
+
+def is_endless(element: etree._Element) -> bool:
+    """Tell whether the element says inf or Infinity, whatever the sign."""
+    return scalar(element).lower().lstrip('+-') in ('inf', 'infinity')
 
 
 def scalar_number(element: etree._Element) -> float:

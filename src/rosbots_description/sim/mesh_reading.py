@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 
 from .collada_guard import ColladaError, safe_collada
-from .errors import ModelError
+from .errors import AbsentError, ModelError
 from .files import read_file, regular_state, within
 from .markup import shortened
 from .markup_values import LONGEST
@@ -109,7 +109,8 @@ def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | 
 def _state(path: str) -> tuple[int, int]:
     """Return what changes when the file changes: time of change [ns] and size."""
     if not os.path.exists(path):
-        raise _fault(path, 'does not exist or cannot be reached; check name and package')
+        raise _fault(
+            path, 'does not exist or cannot be reached; check name and package', AbsentError)
     state = regular_state(path, 'mesh file')
     return state.st_mtime_ns, state.st_size
 
@@ -130,8 +131,8 @@ def _read(path: str, mtime_ns: int, size: int) -> MeshData:
     return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_thin(path, parts)))
 
 
-def _fault(path: str, sentence: str) -> ModelError:
-    return ModelError(f"mesh file '{path}' {sentence}")
+def _fault(path: str, sentence: str, kind: type[ModelError] = ModelError) -> ModelError:
+    return kind(f"mesh file '{path}' {sentence}")
 
 
 def _parse(path: str, extension: str, content: bytes) -> list[Part]:

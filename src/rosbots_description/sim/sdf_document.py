@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from lxml import etree
 
-from .errors import ModelError
+from .errors import AbsentError, ModelError
 from .files import read_file, within
 from .markup import MAX_BYTES, parse
 from .markup_values import fault, scalar, tag_of
@@ -119,6 +119,7 @@ class SdfDocument:
                 element,
                 f"'{uri}' is not to be found along the model path; add the folder that holds "
                 f"'{inner.split('/')[0]}' to GAZEBO_MODEL_PATH where the simulator is started",
+                AbsentError,
             )
         return found
 

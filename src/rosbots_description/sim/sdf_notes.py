@@ -68,8 +68,12 @@ class Notes:
 
     def warn(self, element: etree._Element, sentence: str) -> None:
         """Note that something is done differently than `element` asks."""
+        self.say(f'{place(element)}: {shortened(sentence)}')
+
+    def say(self, sentence: str) -> None:
+        """Note a sentence that tells its place itself."""
         if len(self._sentences) < MAX_NOTES:
-            self._sentences[f'{place(element)}: {shortened(sentence)}'] = None
+            self._sentences[sentence] = None
         elif len(self._sentences) == MAX_NOTES:
             self._sentences[f'{self._source}: there is more of that kind, not listed'] = None
 

@@ -2,10 +2,10 @@
 
 from lxml import etree
 
-from .errors import ModelError
+from .errors import AbsentError, ModelError
 from .gazebo_materials import gazebo_material
 from .gazebo_tags import ENDLESS_FRICTION
-from .markup_values import fault, tag_of
+from .markup_values import fault, is_endless, tag_of
 from .mesh_reading import check_mesh
 from .pose import Pose
 from .sdf_document import SdfDocument
@@ -65,14 +65,18 @@ def read_visual(
     Args:
         pose: in the link's frame.
     Raises:
-        ModelError: a number, geometry or mesh file is missing or wrong.
+        ModelError: a number or geometry is missing or wrong, or a mesh broken.
     """
     document.notes.check(
         element,
         ('pose', 'geometry', 'material', 'transparency', 'visible'),
         ('cast_shadows', 'laser_retro', 'meta', 'visibility_flags'),
     )
-    geometry = _geometry(document, element)
+    try:
+        geometry = _geometry(document, element)
+    except AbsentError as error:
+        document.notes.say(f'{error}; it is not shown')
+        return None
     if geometry is None or not truth_of(element, 'visible', True):
         return None
     material = _material(document, element)
@@ -130,7 +134,7 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
             path = submesh_file(path, submesh, truth_of(element, 'submesh/center'))
         check_mesh(path, scale)
     except ModelError as error:
-        raise fault(uri_element, str(error)) from error
+        raise fault(uri_element, str(error), type(error)) from error
     return Mesh(path, scale, uri)
 
 
@@ -172,7 +176,10 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
 
 
 def _friction(surface: etree._Element, path: str, default: float) -> float:
-    """Return a friction coefficient; negative means endless in Gazebo."""
+    """Return a friction coefficient; a negative one and inf mean endless in Gazebo."""
+    element = surface.find(path)
+    if element is not None and is_endless(element):
+        return ENDLESS_FRICTION
     value = number_of(surface, path, default)
     return value if value >= 0.0 else ENDLESS_FRICTION
 

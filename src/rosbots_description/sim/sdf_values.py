@@ -6,6 +6,7 @@ from lxml import etree
 
 from .markup_values import (
     fault,
+    is_endless,
     require_damping,
     require_near,
     scalar,
@@ -79,7 +80,7 @@ def limit_of(parent: etree._Element, path: str) -> float | None:
     element = parent.find(path)
     if element is None or not scalar(element):
         return None
-    if scalar(element).lower().lstrip('+-') in ('inf', 'infinity'):
+    if is_endless(element):
         return None
     value = scalar_numbers(element, 1)[0]
     return value if abs(value) < _ENDLESS else None

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 from lxml import etree
 
-from .errors import ModelError
+from .errors import AbsentError, ModelError
 from .gazebo_materials import gazebo_material
 from .inertia import is_positive
 from .kinematic_tree import FREE, TreeJoint, TreeLink
@@ -82,12 +82,18 @@ class LinkReader:
                 Collision(child.get('name', ''), self._geometry(child), origin(child))
                 for child in element.iterfind('collision')
             ),
-            visuals=tuple(self._visual(child) for child in element.iterfind('visual')),
+            visuals=tuple(filter(None, map(self._visual, element.iterfind('visual')))),
         )
         return TreeLink(spec, element)
 
-    def _visual(self, element: etree._Element) -> Visual:
-        geometry = self._geometry(element)
+    def _visual(self, element: etree._Element) -> Visual | None:
+        """Return the looks, or None where they are a mesh that is not there, as in Gazebo."""
+        try:
+            geometry = self._geometry(element)
+        except AbsentError as error:
+            sentence = f'{error}; it is not shown'
+            note(self.notes, lambda: sentence)
+            return None
         material = self._material(element.find('material'))
         if material is None and not isinstance(geometry, Mesh):
             material = Material()
@@ -100,8 +106,8 @@ class LinkReader:
         found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
         if found is None and element.find('texture') is None:
             note(self.notes, lambda: (
-                f"{place(element)}: material '{shortened(name, 60)}' has no <color> anywhere, "
-                f'it is shown grey{suggestion(name, self._materials)}'
+                f'{place(element)}: it has no <color> anywhere, it is shown grey'
+                f'{suggestion(name, self._materials)}'
             ))
         return found
 
@@ -148,7 +154,7 @@ class LinkReader:
         try:
             self._check_mesh(path, scale)
         except ModelError as error:
-            raise fault(element, str(error)) from error
+            raise fault(element, str(error), type(error)) from error
         return Mesh(path, scale, element.get('uri', filename))
 
 
