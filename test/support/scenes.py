@@ -24,7 +24,7 @@ DRIVE_PLUGIN = (
     '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
     '<leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>'
     '<wheelSeparation>{separation}</wheelSeparation><wheelDiameter>{diameter}</wheelDiameter>'
-    '<wheelTorque>{torque}</wheelTorque><wheelAcceleration>1</wheelAcceleration>'
+    '<wheelTorque>{torque}</wheelTorque><wheelAcceleration>{acceleration}</wheelAcceleration>'
     '</plugin></gazebo>'
 )
 
@@ -73,11 +73,14 @@ def surface(link_name: str, mu: float) -> str:
     return f'<gazebo reference="{link_name}"><mu1>{mu}</mu1><mu2>{mu}</mu2></gazebo>'
 
 
-def castered(mass: float = 5.0, size: float = 0.4, casters: int = 2, mu: float = 1.0) -> ModelSpec:
+def castered(
+    mass: float = 5.0, size: float = 0.4, casters: int = 2, mu: float = 1.0, weak: bool = False
+) -> ModelSpec:
     """Return a symmetric robot on two wheels and casters in front (2) and behind (1 and 2).
 
     Args:
         size: length of its body [m]; everything scales with it.
+        weak: whether a tenth of the torque is all it has, and nothing limits its acceleration.
     """
     radius = size / 4.0
     caster = radius / 3.0
@@ -94,7 +97,10 @@ def castered(mass: float = 5.0, size: float = 0.4, casters: int = 2, mu: float =
     for side, y in (('left', 0.4 * size), ('right', -0.4 * size)):
         body += wheel(f'{side}_wheel', f'{side}_joint', radius, 0.1 * size, 0.08 * mass, f'0 {y} 0')
     body += DRIVE_PLUGIN.format(
-        separation=0.8 * size, diameter=2.0 * radius, torque=mass * GRAVITY * radius
+        separation=0.8 * size,
+        diameter=2.0 * radius,
+        torque=mass * GRAVITY * radius * (0.1 if weak else 1.0),
+        acceleration=0 if weak else 1,
     )
     return urdf_spec(body)
 
@@ -313,6 +319,7 @@ SCENES: dict[str, Scene] = {
     'veer, two casters': veer(castered()),
     'veer, 0.2 kg': veer(castered(0.2, 0.12, casters=1)),
     'veer, broad wheels': veer(mirrored(robot_spec())),
+    'veer, weak motors': veer(castered(casters=1, weak=True)),
     "veer, the article's": veer(robot_spec()),
     'skid steer straight': skid_straight,
     'skid steer turns': skid_turn,

@@ -6,6 +6,7 @@ placeholders here: PyBullet zeroes tensors it finds impossible, so the engine se
 afterwards, and would draw what it is given no visual of.
 """
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -13,10 +14,11 @@ from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
 from .inertia import principal_axes
-from .pose import Pose, compose, inverse, relative, rotate, to_rpy
+from .pose import Pose, compose, dot, inverse, relative, rotate, to_rpy
 from .spec import (
     FIXED,
     PRISMATIC,
+    REVOLUTE,
     Box,
     Collision,
     Cylinder,
@@ -42,6 +44,12 @@ ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is th
 # Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
 # enough to keep a can, a barrel and a robot on free wheels in their place.
 _ROLLING_RESISTANCE = 0.005
+
+# Of a wheel, as shares of its half diagonal: width of the crest, and how much lower the shoulders
+# are. Points that are nearer to each other than 0.02 of it are one contact to PyBullet, and what is
+# nearer to the floor than that is a contact, which costs.
+_CREST, _CROWN = 0.01, 0.022
+_SINKS_IN = 5e-5  # [m] one side of a wheel may be so much lower, and both still touch the floor
 
 # Of a link without visual PyBullet makes pictures of the collisions, which nobody sees: of a plane
 # a chequered one of 9 MB, of a mesh one that takes as long and twice as much memory as the mesh.
@@ -104,10 +112,35 @@ def surface_groups(tree: Tree, i: int) -> list[tuple[Collision, ...]]:
     askew, all of its collisions ride, with the axes of the link: what a robot drags over the ground
     has to hold sideways and ahead differently (dragging.py).
     """
-    groups = _by_surface(tree.links[i].collisions)
+    link, joint = tree.links[i], tree.joints[i]
+    groups = _by_surface([shape for one in link.collisions for shape in crowned(one, link, joint)])
     if groups and i == 0 and _drives(tree) and _is_askew(tree.links[0].inertial):
         return [(), *groups]
     return groups or [()]
+
+
+def crowned(
+    collision: Collision, link: LinkSpec, joint: JointSpec | None
+) -> tuple[Collision, ...]:
+    """Return what stands for a collision: of a level wheel a narrow crest and lower shoulders.
+
+    A cylinder touches a floor along a line, and PyBullet puts all of the force on one end of it. As
+    that is the same end for the left and the right wheel, what they push with would turn a robot.
+    """
+    wheel = collision.geometry
+    if joint is None or joint.type != REVOLUTE or not isinstance(wheel, Cylinder):
+        return (collision,)
+    axis = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
+    axle = rotate(joint.pose.orientation, joint.axis)
+    tilt = rotate(link.pose.orientation, axis)[2]
+    if abs(dot(axis, axle)) < ALONG or abs(tilt) * wheel.length > _SINKS_IN:
+        return (collision,)
+    reach = math.hypot(wheel.radius, wheel.radius, wheel.length / 2.0)
+    shoulders = max(wheel.radius - _CROWN * reach, wheel.radius / 2.0)
+    return (
+        replace(collision, geometry=Cylinder(wheel.radius, min(_CREST * reach, wheel.length))),
+        replace(collision, geometry=Cylinder(shoulders, wheel.length)),
+    )
 
 
 def _drives(tree: Tree) -> bool:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from .bullet_description import friction
 from .clock import NANOSECONDS, SimClock
-from .pose import Vector, compose, rotate
+from .pose import Vector, compose, dot, rotate
 from .spec import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:
@@ -149,9 +149,8 @@ class Wheel:
         places of two parallel wheels is their track.
         """
         link = self._link()
-        x, y, z = compose(link.pose, link.collisions[0].pose).position
         ax, ay, az = self.axle
-        along = ax * x + ay * y + az * z
+        along = dot(self.axle, compose(link.pose, link.collisions[0].pose).position)
         return (along * ax, along * ay, along * az)
 
     def _link(self) -> LinkSpec:
