@@ -1,6 +1,7 @@
 """Makes PyBullet's bodies of links and joints; their text is that of bullet_description.py."""
 
 import os
+from collections.abc import Sequence
 
 from .body import Body, Part
 from .bullet import pybullet
@@ -17,7 +18,7 @@ from .bullet_description import (
 )
 from .inertia import principal_axes
 from .pose import NO_ROTATION, Pose, Vector, compose, inverse
-from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
+from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec
 from .tuning import Tuning
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
@@ -147,20 +148,20 @@ class BodyMaker:
                     physicsClientId=self._client,
                 )
             if group:
-                self._set_surface(part.body, index, group[0].surface, step_size)
-                arm = rolling_arm(group)
-                if arm:
-                    pybullet.changeDynamics(
-                        part.body, index, rollingFriction=arm, physicsClientId=self._client)
+                self._set_surface(part.body, index, group, step_size)
                 surfaces.append((part.body, index, turn))
 
-    def _set_surface(self, number: int, index: int, surface: Surface, step_size: float) -> None:
+    def _set_surface(
+        self, number: int, index: int, group: Sequence[Collision], step_size: float
+    ) -> None:
+        """Set up what a body touches with, by collisions of equal surface."""
+        surface = group[0].surface
         pybullet.changeDynamics(
             number,
             index,
             lateralFriction=friction(surface),
             spinningFriction=0.0,
-            rollingFriction=0.0,
+            rollingFriction=rolling_arm(group),
             restitution=0.0,
             physicsClientId=self._client,
         )
