@@ -56,35 +56,38 @@ class Adapter:
         self, topic: str, message_class: type, queue_size: int
     ) -> rospy.Publisher | None:
         """Publish on a topic from now on; None, with an error, if this node sends others there."""
-        if self._is_taken(topic, message_class, get_topic_manager().get_publications()):
-            return None
-        self._opened.append(rospy.Publisher(topic, message_class, queue_size=queue_size))
-        return self._opened[-1]
+        return self._open_topic(
+            topic, message_class, get_topic_manager().get_publications(),
+            lambda: rospy.Publisher(topic, message_class, queue_size=queue_size))
 
     def subscribe(
         self, topic: str, message_class: type, take: Callable, queue_size: int
     ) -> rospy.Subscriber | None:
         """Take messages from now on; None, with an error, if this node takes others there."""
-        if self._is_taken(topic, message_class, get_topic_manager().get_subscriptions()):
-            return None
-        self._opened.append(rospy.Subscriber(topic, message_class, take, queue_size=queue_size))
-        return self._opened[-1]
+        return self._open_topic(
+            topic, message_class, get_topic_manager().get_subscriptions(),
+            lambda: rospy.Subscriber(topic, message_class, take, queue_size=queue_size))
 
-    def _is_taken(
-        self, topic: str, message_class: type, entries: Iterable[tuple[str, str]]
-    ) -> bool:
-        """Tell whether this node has the topic with another type; rospy would mix the two."""
+    def _open_topic(
+        self, topic: str, message_class: type, entries: Iterable[tuple[str, str]],
+        make: Callable[[], rospy.Publisher | rospy.Subscriber],
+    ) -> rospy.Publisher | rospy.Subscriber | None:
+        """Return what `make` gives, unless `entries` has the topic with another type.
+
+        rospy would mix the two.
+        """
         if not is_for_all(topic):
             logger.warning('%s: the topic %s is only for nodes in Python: - or a dot is in it',
                            _where(self.plugin), topic)
         there = dict(entries).get(rospy.resolve_name(topic), message_class._type)
-        if there == message_class._type:
-            return False
-        logger.error(
-            "%s: the topic %s is left out as %s: this node has it as %s; give it another name",
-            _where(self.plugin), topic, message_class._type, there,
-        )
-        return True
+        if there != message_class._type:
+            logger.error(
+                "%s: the topic %s is left out as %s: this node has it as %s; give it another name",
+                _where(self.plugin), topic, message_class._type, there,
+            )
+            return None
+        self._opened.append(make())
+        return self._opened[-1]
 
 
 def adapter(plugin_class: type) -> Callable[[type[Adapter]], type[Adapter]]:
