@@ -37,6 +37,9 @@ def main() -> int:
 
 def extend(xacro: ModuleType) -> None:
     """Let the module understand, in place, what expressions and includes may say in Noetic."""
+    for unit, factor in _UNITS.items():
+        _Loader.add_constructor(unit, lambda loader, node, factor=factor: factor * float(
+            eval(loader.construct_scalar(node), xacro.global_symbols)))
     load_yaml = partial(_load_yaml, xacro)
     symbols = xacro.global_symbols
     symbols['__builtins__'].update(_PYTHON)
@@ -78,9 +81,6 @@ class _Loader(yaml.SafeLoader):
 
 def _load_yaml(xacro: ModuleType, name: str):
     """Return what a YAML file holds; a relative name starts where the present file is."""
-    for unit, factor in _UNITS.items():
-        _Loader.add_constructor(unit, lambda loader, node, factor=factor: factor * float(
-            eval(loader.construct_scalar(node), xacro.global_symbols)))
     path = xacro.abs_filename_spec(name)
     files = xacro.push_file(path)
     try:
