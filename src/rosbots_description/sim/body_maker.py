@@ -20,6 +20,7 @@ from .inertia import principal_axes
 from .pose import NO_ROTATION, Pose, Vector, compose, inverse
 from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec
 from .tuning import Tuning
+from .untouching import Place, Untouching
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 _MASSLESS = Inertial(0.0)
@@ -36,6 +37,7 @@ class BodyMaker:
         self._tuning = tuning
         self._mesh_file = mesh_file
         self._surface_file = surface_file
+        self._untouching = Untouching(client)
 
     def add_tree(self, body: Body, tree: Tree, model_pose: Pose, step_size: float) -> None:
         """Put links that joints connect into the world, and note in `body` where they are.
@@ -88,9 +90,19 @@ class BodyMaker:
             return  # what stands does not touch what stands
         for a, b in untouching_links(spec):
             one, other = body.parts[a], body.parts[b]
-            pybullet.setCollisionFilterPair(
-                one.body, other.body, one.index, other.index, 0, self._client
-            )
+            self._untouching.add(Place(one.body, one.index), Place(other.body, other.index))
+
+    def remove(self, body: Body) -> None:
+        """Take a body out of the world."""
+        for number in body.bodies:
+            pybullet.removeBody(number, self._client)
+        for number in body.bodies:
+            self._untouching.forget(number)
+
+    def reset(self) -> None:
+        """Remove everything."""
+        pybullet.resetSimulation(physicsClientId=self._client)
+        self._untouching.clear()
 
     def _load_urdf(self, text: str, tree: Tree, pose: Pose) -> int:
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE

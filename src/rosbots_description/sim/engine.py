@@ -1,6 +1,6 @@
 """The physics engine: specs and names in, plain values out.
 
-This module, body_maker.py and canvas.py alone know PyBullet.
+This module, body_maker.py, untouching.py and canvas.py alone know PyBullet.
 
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
 frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a
@@ -73,7 +73,7 @@ class Engine:
 
     def reset(self) -> None:
         """Remove everything; the same bodies added again then move bit for bit as before."""
-        pybullet.resetSimulation(physicsClientId=self._client)
+        self._maker.reset()
         self._weightless.clear()
         self._forget_readings()
         self.waste = 0
@@ -111,8 +111,7 @@ class Engine:
         if body in self._weightless:
             self._weightless.remove(body)
         self.waste += body.size
-        for number in body.bodies:
-            pybullet.removeBody(number, self._client)
+        self._maker.remove(body)
 
     def motion(self, body: Body) -> Motion:
         """Return where a model is and how it moves, all of it."""
