@@ -12,6 +12,7 @@ from .bullet_description import (
     contact_spring,
     describe_tree,
     friction,
+    is_one_body,
     rolling_arm,
     surface_groups,
     untouching_links,
@@ -119,6 +120,7 @@ class BodyMaker:
                 f'/proc/self/fd/{descriptor}',
                 *pose,
                 useFixedBase=tree.fixed_base,
+                useMaximalCoordinates=is_one_body(tree),
                 flags=flags,
                 physicsClientId=self._client,
             )

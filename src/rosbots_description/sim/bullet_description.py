@@ -119,6 +119,15 @@ def surface_groups(tree: Tree, i: int) -> list[tuple[Collision, ...]]:
     return groups or [()]
 
 
+def is_one_body(tree: Tree) -> bool:
+    """Tell whether a tree is to be a rigid body of PyBullet's, and not a multibody.
+
+    What stands is: in a contact with a multibody, even one without joints, PyBullet solves for six
+    unknowns more. A step of the article's robot is 12 % cheaper on a floor that is a rigid body.
+    """
+    return tree.stands and len(surface_groups(tree, 0)) == 1
+
+
 def crowned(
     collision: Collision, link: LinkSpec, joint: JointSpec | None
 ) -> tuple[Collision, ...]:
