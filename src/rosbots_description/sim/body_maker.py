@@ -5,21 +5,11 @@ from collections.abc import Sequence
 
 from .body import Body, Part
 from .bullet import pybullet
-from .bullet_description import (
-    RIDER_MASS,
-    MeshFile,
-    Tree,
-    contact_spring,
-    describe_tree,
-    friction,
-    is_one_body,
-    rolling_arm,
-    surface_groups,
-    untouching_links,
-)
+from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .inertia import principal_axes
 from .pose import NO_ROTATION, Pose, Vector, compose, inverse
 from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec
+from .surfaces import contact_spring, friction, is_one_body, rolling_arm, surface_groups
 from .tuning import Tuning
 from .untouching import Place, Untouching
 
@@ -54,7 +44,8 @@ class BodyMaker:
             for inertial, orientation in zip(inertials, axes, strict=True)
         ]
         mesh_file = self._surface_file if tree.stands else self._mesh_file
-        text = describe_tree(tree, coms, mesh_file)
+        groups = [surface_groups(tree, i) for i in range(len(tree.links))]
+        text = describe_tree(tree, coms, groups, mesh_file)
         number = self._load_urdf(text, tree, compose(model_pose, tree.links[0].pose))
         body.bodies.append(number)
         shapes = [collision.geometry for link in tree.links for collision in link.collisions]
@@ -77,7 +68,7 @@ class BodyMaker:
             part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
             body.parts[link.name] = part
             self._set_inertia(part, moments[i], joint)
-            self._set_surfaces(body, tree, i, index_of, step_size)
+            self._set_surfaces(body, tree, i, groups[i], index_of, step_size)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
@@ -144,13 +135,19 @@ class BodyMaker:
         )
 
     def _set_surfaces(
-        self, body: Body, tree: Tree, i: int, index_of: dict[str, int], step_size: float
+        self,
+        body: Body,
+        tree: Tree,
+        i: int,
+        groups: Sequence[Sequence[Collision]],
+        index_of: dict[str, int],
+        step_size: float,
     ) -> None:
         """Set up what link `i` touches with, itself and its riders, and note it in `body`."""
         link, joint = tree.links[i], tree.joints[i]
         part = body.parts[link.name]
         body.surfaces[link.name] = surfaces = []
-        for k, group in enumerate(surface_groups(tree, i)):
+        for k, group in enumerate(groups):
             index, turn = part.index, part.com_in_origin.orientation
             if k:  # a rider stands in the frame of the joint above its link
                 index = index_of[f'l{i}r{k}']

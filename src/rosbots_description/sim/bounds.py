@@ -1,7 +1,8 @@
 """How much of everything a model may consist of, so that adding it ends in good time."""
 
-from .bullet_description import Tree, kinematic_trees, surface_groups
+from .bullet_description import Tree, kinematic_trees
 from .spec import ModelSpec
+from .surfaces import surface_groups
 
 # PyBullet handles a tree of more joints only up to the first question about it.
 MAX_JOINTS = 127

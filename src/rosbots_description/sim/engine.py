@@ -10,10 +10,11 @@ cap on joint speed) are switched off, so that bodies move as rigid-body mechanic
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
-from .bullet_description import ALONG, MeshFile, kinematic_trees, overlap_share
+from .bullet_description import MeshFile, kinematic_trees
 from .physics import PhysicsSettings
 from .pose import Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
 from .spec import ModelSpec
+from .surfaces import ALONG, overlap_share
 from .tuning import Tuning
 
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then

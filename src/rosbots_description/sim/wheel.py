@@ -15,10 +15,10 @@ What the force is, and when to look at it, a WheelPair says.
 import math
 from typing import TYPE_CHECKING
 
-from .bullet_description import friction
 from .clock import NANOSECONDS, SimClock
 from .pose import Vector, compose, dot, rotate
 from .spec import Cylinder, LinkSpec, Sphere
+from .surfaces import friction
 
 if TYPE_CHECKING:
     from .model import Joint

@@ -1,0 +1,54 @@
+"""How the shapes of links are grouped by surface, and what stands for a wheel."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from rosbots_description.sim.pose import Pose, from_rpy
+from rosbots_description.sim.spec import (
+    FIXED,
+    REVOLUTE,
+    Box,
+    Collision,
+    Cylinder,
+    JointSpec,
+    LinkSpec,
+)
+from rosbots_description.sim.surfaces import crowned
+
+TYRE = Collision('tyre', Cylinder(0.1, 0.05))
+AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')
+
+
+def wheel(tilt=0.0):
+    """Return a wheel's link; its axle is along y but for this tilt [rad]."""
+    return LinkSpec('wheel', Pose((0.0, 0.2, 0.1), from_rpy(math.pi / 2.0 + tilt, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize('tilt', [0.0, 1e-4, -1e-4])
+def test_a_level_wheel_touches_in_its_middle(tilt):
+    crest, shoulders = (shape.geometry for shape in crowned(TYRE, wheel(tilt), AXLE))
+    assert crest.radius == TYRE.geometry.radius
+    assert crest.length < 0.002
+    assert 0.095 < shoulders.radius < 0.099
+    assert shoulders.length == TYRE.geometry.length
+
+
+@pytest.mark.parametrize(('collision', 'link', 'joint'), [
+    (TYRE, wheel(0.01), AXLE),  # it touches with one side
+    (TYRE, wheel(), None),
+    (TYRE, wheel(), replace(AXLE, type=FIXED)),
+    (TYRE, wheel(), replace(AXLE, axis=(1.0, 0.0, 0.0))),  # it tumbles
+    (TYRE, LinkSpec('turntable'), AXLE),  # it lies on its face
+    (Collision('box', Box((1.0, 1.0, 1.0))), wheel(), AXLE),
+])
+def test_what_is_no_level_wheel_stays_as_it_is(collision, link, joint):
+    assert crowned(collision, link, joint) == (collision,)
+
+
+@pytest.mark.parametrize('length', [1e-6, 100.0])
+def test_a_crown_has_a_size_whatever_the_wheels(length):
+    for shape in crowned(Collision('odd', Cylinder(0.1, length)), wheel(), AXLE):
+        assert 0.05 <= shape.geometry.radius <= 0.1
+        assert 0.0 < shape.geometry.length <= length
