@@ -75,3 +75,44 @@ def test_what_stands_may_have_several_surfaces():
             ways[name] = load.pose.position[1]
         assert ways['rough'] < 0.2
         assert ways['smooth'] == pytest.approx(1.0, abs=0.05)
+
+
+SLIPPERY = '<surface><friction><ode><mu>{}</mu></ode></friction></surface>'
+
+
+def two_faced(name, place, extra=(), self_collide=0):
+    """Return a link of two boxes with other friction, the second of which rides on it."""
+    shapes = ''.join(
+        f"""<collision name="{side}"><pose>{x} 0 0 0 0 0</pose><geometry><box><size>1 1 1</size>
+        </box></geometry>{SLIPPERY.format(mu)}</collision>"""
+        for side, x, mu in (('left', 0.5, 1.0), ('right', -0.5, 0.2), *extra)
+    )
+    return (f'<link name="{name}"><pose>{place} 0 0 0</pose>'
+            f'<self_collide>{self_collide}</self_collide>{shapes}</link>')
+
+
+def sdf_model(*parts):
+    text = f'<sdf version="1.6"><model name="m">{"".join(parts)}</model></sdf>'
+    return load_sdf(text, 'm', source='test', find_model=lambda _: None)[0]
+
+
+def test_loose_links_pass_through_each_other_with_all_their_surfaces():
+    with empty_world() as world:
+        low, high = two_faced('low', '0 0 0.5'), two_faced('high', '0 0 2')
+        pile = world.spawn(sdf_model(low, high), 'm', Pose())
+        world.run(SECOND)
+        for link in pile.links.values():
+            assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_joint_keeps_all_surfaces_of_its_links_from_touching():
+    # They overlap to one side; were they to push each other, the hinge would turn.
+    hinge = """<joint name="hinge" type="revolute"><parent>post</parent><child>arm</child>
+      <axis><xyz>1 0 0</xyz></axis></joint>"""
+    third = [('third', 0.0, 0.5)]
+    with empty_world() as world:
+        post, arm = two_faced('post', '0 0 0.5', third, 1), two_faced('arm', '0 0.3 0.8', third, 1)
+        model = world.spawn(sdf_model(post, arm, hinge), 'm', Pose())
+        world.run(300)
+        assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
+        assert abs(model.joint('hinge').velocity) < 0.01

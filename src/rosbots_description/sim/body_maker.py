@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from itertools import combinations, product
 
 from .body import Body, Part
 from .bullet import pybullet
@@ -80,9 +81,16 @@ class BodyMaker:
             return  # one body without the self-collision flag never touches itself
         if spec.static:
             return  # what stands does not touch what stands
+        places = {
+            link: [Place(number, index) for number, index, _ in surfaces]
+            for link, surfaces in body.surfaces.items()
+        }
+        for own in places.values():
+            for one, other in combinations(own, 2):
+                self._untouching.add(one, other)
         for a, b in untouching_links(spec):
-            one, other = body.parts[a], body.parts[b]
-            self._untouching.add(Place(one.body, one.index), Place(other.body, other.index))
+            for one, other in product(places[a], places[b]):
+                self._untouching.add(one, other)
 
     def remove(self, body: Body) -> None:
         """Take a body out of the world."""
