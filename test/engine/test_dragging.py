@@ -1,6 +1,7 @@
 """What a robot drags holds along some axes more than along others, whatever its inertia is."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from support import empty_world
@@ -15,7 +16,9 @@ from rosbots_description.sim.spec import (
     JointSpec,
     LinkSpec,
     ModelSpec,
+    Surface,
 )
+from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.wheel import Wheel
 
 SIDEWAYS, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
@@ -91,3 +94,18 @@ def test_a_robot_bolted_to_the_world_has_nothing_to_drag_but_itself():
     spec = ModelSpec('sledge', spec.links, (JointSpec('bolt', FIXED, 'world', 'base'),
                                             *spec.joints))
     assert speed_after_a_push(spec, SIDEWAYS, 0.0) == 0.0
+
+
+@pytest.mark.parametrize('kp', [1e12, 1e5])
+def test_what_is_dragged_sinks_in_by_a_hair_or_as_described(kp):
+    shape = replace(SHAPE[0], surface=Surface(kp=kp))
+    base, wheel = sledge(ROUND).links
+    spec = replace(sledge(ROUND), links=(replace(base, collisions=(shape,)), wheel))
+    with empty_world() as world:
+        model = world.spawn(spec, 'sledge', Pose((0.0, 0.0, 0.05)))
+        dragged = Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock))
+        dragged.hold(1.0)
+        world.run(2000)
+        depth = Tuning().dragged_sinks if kp > 1e9 else 2.001 * 9.8 / kp
+        # on four corners
+        assert 0.05 - model.pose.position[2] == pytest.approx(depth / 4.0, abs=1e-5)

@@ -1,22 +1,23 @@
 """What the engine's settings were chosen for: robots and things that are not the article's."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from support import empty_world, urdf_spec
-from support.scenes import SCENES, link
+from support.scenes import SCENES, SPEED, box, castered, drive, forward_speed, link
 
-from rosbots_description.sim.pose import Pose, Twist, from_rpy
+from rosbots_description.sim.pose import Pose, Twist, from_rpy, yaw_of
 
 # The largest error of each scene, in its unit; measured ones are in doc/physics.md.
 BOUNDS = {
     'one dragging caster': 0.002,
-    'two casters, mu 1': 0.02,
+    'two casters, mu 1': 0.01,
     'two casters, mu 0.1': 0.002,
     '50 kg': 0.002,
     '0.2 kg': 0.002,
     'veer, one caster': 0.01,
-    'veer, two casters': 0.015,
+    'veer, two casters': 0.01,
     'veer, 0.2 kg': 0.01,
     'veer, broad wheels': 0.01,
     'veer, weak motors': 0.01,
@@ -46,6 +47,26 @@ def test_mechanics_is_obeyed(name):
 def test_a_skid_steer_turns_though_its_wheels_slip():
     least, most = SKID_TURNS
     assert least < SCENES['skid steer turns']() < most
+
+
+@pytest.mark.parametrize('heading', [-1.2, -0.8, 0.3, 1.1])
+@pytest.mark.parametrize('speed', [0.5, 1.0, -1.0])
+@pytest.mark.parametrize('spec', [castered(), castered(0.2, 0.12)], ids=['5 kg', '0.2 kg'])
+def test_who_stands_on_four_points_sets_off_straight_on(spec, speed, heading):
+    with empty_world() as world:
+        model = drive(world, spec, 2, heading, speed)
+        assert yaw_of(model.pose.orientation) == pytest.approx(heading, abs=0.01)
+        assert forward_speed(model) == pytest.approx(speed, rel=0.01)
+
+
+def test_two_casters_drive_on_a_floor_that_is_no_plane():
+    with empty_world() as world:
+        world.delete('ground_plane')
+        slab = replace(urdf_spec(box('slab', (40.0, 40.0, 1.0), 1.0)), static=True)
+        world.spawn(slab, 'slab', Pose((0.0, 0.0, -0.5)))
+        model = drive(world, castered(), 4, 0.4)
+        assert yaw_of(model.pose.orientation) == pytest.approx(0.4, abs=0.01)
+        assert forward_speed(model) == pytest.approx(SPEED, rel=0.01)
 
 
 def speeds_of_a_can(free):

@@ -67,6 +67,7 @@ class FakeModel:
         self.holds = []  # shares of the friction along the axle, as they were asked for
         self.engine = SimpleNamespace(
             set_hold=lambda *call: self.holds.append(call[-1]),
+            let_sink=lambda *_: None,
             let_roll=lambda _, link: self.rolling.add(link),
         )
 

@@ -112,12 +112,18 @@ def forward_speed(model: Model) -> float:
     return math.cos(yaw) * vx + math.sin(yaw) * vy
 
 
-def drive(world: World, spec: ModelSpec, seconds: int = 4, yaw: float = 0.0) -> Model:
-    """Return the model after it has driven straight ahead for so long, from heading `yaw` [rad]."""
+def drive(
+    world: World, spec: ModelSpec, seconds: int = 4, yaw: float = 0.0, speed: float = SPEED
+) -> Model:
+    """Return the model after it has driven straight on for so long, from heading `yaw` [rad].
+
+    Args:
+        speed: commanded [m/s].
+    """
     place = Pose((0.0, 0.0, spec_height(spec)), from_rpy(0.0, 0.0, yaw))
     model = world.spawn(spec, 'robot', place)
     world.run(SETTLED)
-    model.plugins[0].command(SPEED, 0.0)
+    model.plugins[0].command(speed, 0.0)
     world.run(1000 * seconds)
     return model
 

@@ -1,6 +1,7 @@
 """What the engine remembers of a model, and how a model moves, as plain values."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from .pose import Pose, Quaternion, Twist
 
@@ -18,6 +19,19 @@ class Part:
     com_in_origin: Pose
 
 
+class Touching(NamedTuple):
+    """A part of a link that touches: PyBullet's body and index, and which way its axes stand.
+
+    `axes` turn the part's own axes into those of the link; `rigid` tells that nobody described how
+    it gives way.
+    """
+
+    body: int
+    index: int
+    axes: Quaternion
+    rigid: bool
+
+
 class Body:
     """A model in the engine. Links and joints are addressed by their names."""
 
@@ -31,10 +45,10 @@ class Body:
         self.weightless: list[tuple[int, int, float]] = []
         self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
-        # What each link touches with: PyBullet's body and index, and the turn of that one's axes.
-        self.surfaces: dict[str, list[tuple[int, int, Quaternion]]] = {}
+        self.surfaces: dict[str, list[Touching]] = {}  # what each link touches with
         self.holds: dict[str, float] = {}  # last share of each link's friction along an axis
         self.rolling: set[str] = set()  # links that roll without resistance
+        self.sinking: set[str] = set()  # links that give way by a hair
 
 
 @dataclass(frozen=True)

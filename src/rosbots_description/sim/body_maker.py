@@ -4,13 +4,20 @@ import os
 from collections.abc import Sequence
 from itertools import combinations, product
 
-from .body import Body, Part
+from .body import Body, Part, Touching
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .inertia import principal_axes
 from .pose import NO_ROTATION, Pose, Vector, compose, inverse
-from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec
-from .surfaces import contact_spring, friction, is_one_body, rolling_arm, surface_groups
+from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec, Surface
+from .surfaces import (
+    contact_spring,
+    friction,
+    is_one_body,
+    is_rigid,
+    rolling_arm,
+    surface_groups,
+)
 from .tuning import Tuning
 from .untouching import Place, Untouching
 
@@ -82,7 +89,7 @@ class BodyMaker:
         if spec.static:
             return  # what stands does not touch what stands
         places = {
-            link: [Place(number, index) for number, index, _ in surfaces]
+            link: [Place(part.body, part.index) for part in surfaces]
             for link, surfaces in body.surfaces.items()
         }
         for own in places.values():
@@ -168,7 +175,8 @@ class BodyMaker:
                 )
             if group:
                 self._set_surface(part.body, index, group, step_size)
-                surfaces.append((part.body, index, turn))
+                rigid = is_rigid(group[0].surface)
+                surfaces.append(Touching(part.body, index, turn, rigid))
 
     def _set_surface(
         self, number: int, index: int, group: Sequence[Collision], step_size: float
@@ -184,12 +192,16 @@ class BodyMaker:
             restitution=0.0,
             physicsClientId=self._client,
         )
-        spring = contact_spring(surface, step_size, self._tuning.push_out)
-        if spring is not None:
-            pybullet.changeDynamics(
-                number,
-                index,
-                contactStiffness=spring[0],
-                contactDamping=spring[1],
-                physicsClientId=self._client,
-            )
+        if not is_rigid(surface):
+            self.set_spring(number, index, surface, step_size)
+
+    def set_spring(self, number: int, index: int, surface: Surface, step_size: float) -> None:
+        """Let what a body touches with give way as the surface tells."""
+        stiffness, damping = contact_spring(surface, step_size, self._tuning.push_out)
+        pybullet.changeDynamics(
+            number,
+            index,
+            contactStiffness=stiffness,
+            contactDamping=damping,
+            physicsClientId=self._client,
+        )

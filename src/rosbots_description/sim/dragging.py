@@ -5,6 +5,9 @@ sideways as by a rail, and a rail behind the wheels turns the robot away from it
 But friction points against the slip: what slides straight on is not held sideways at all. So the
 straighter a robot is asked to drive (wheel_pair.py), the less of its friction holds its body along
 the axle.
+
+And it gives way by a hair under the robot's weight. Of more than three rigid points nobody can tell
+which of them carry, so the load would jump between casters and wheels.
 """
 
 from typing import TYPE_CHECKING
@@ -15,6 +18,9 @@ from .wheel import Wheel
 
 if TYPE_CHECKING:
     from .model import Model
+
+
+GRAVITY = 9.8  # [m/s^2]
 
 
 class Dragged:
@@ -28,6 +34,8 @@ class Dragged:
             wheel: one of the wheels; the others turn about the same axle.
         """
         self._model = model
+        masses = (link.inertial.mass for link in model.spec.links if link.inertial)
+        self._weight = GRAVITY * sum(masses)  # [N]
         links = [model.spec.link(name) for name in _fixed_to(wheel.joint.spec.parent, model.spec)]
         # Each with the direction of the axle in its frame.
         self._links = [
@@ -36,8 +44,10 @@ class Dragged:
 
     def hold(self, share: float) -> None:
         """Let them hold only so much of their friction along the axle: 0 nothing, 1 all."""
+        engine, body = self._model.engine, self._model.body
         for name, axle in self._links:
-            self._model.engine.set_hold(self._model.body, name, axle, share)
+            engine.let_sink(body, name, self._weight)
+            engine.set_hold(body, name, axle, share)
 
 
 def _fixed_to(name: str, spec: ModelSpec) -> list[str]:

@@ -13,7 +13,7 @@ from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .physics import PhysicsSettings
 from .pose import Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
-from .spec import ModelSpec
+from .spec import ModelSpec, Surface
 from .surfaces import ALONG, overlap_share
 from .tuning import Tuning
 
@@ -246,21 +246,31 @@ class Engine:
         if body.holds.get(link, 1.0) == share:
             return  # it does so already
         body.holds[link] = share
-        for number, index, axes in body.surfaces[link]:
-            parts = rotate(conjugate(axes), axis)
-            scales = [share if abs(part) > ALONG else 1.0 for part in parts]
+        for part in body.surfaces[link]:
+            own = rotate(conjugate(part.axes), axis)
+            scales = [share if abs(component) > ALONG else 1.0 for component in own]
             pybullet.changeDynamics(
-                number, index, anisotropicFriction=scales, physicsClientId=self._client
+                part.body, part.index, anisotropicFriction=scales, physicsClientId=self._client
             )
+
+    def let_sink(self, body: Body, link: str, weight: float) -> None:
+        """Let a link give way by a hair under a weight [N], if nobody described how it does."""
+        if link in body.sinking or not self._tuning.dragged_sinks or weight <= 0.0:
+            return  # it does so already, or not at all
+        body.sinking.add(link)
+        soft = Surface(kp=weight / self._tuning.dragged_sinks)
+        for part in body.surfaces[link]:
+            if part.rigid:
+                self._maker.set_spring(part.body, part.index, soft, self._physics.step_size)
 
     def let_roll(self, body: Body, link: str) -> None:
         """Take from a link what keeps cylinders from rolling off: a motor holds this one."""
         if link in body.rolling:
             return  # it does so already
         body.rolling.add(link)
-        for number, index, _ in body.surfaces[link]:
+        for part in body.surfaces[link]:
             pybullet.changeDynamics(
-                number, index, rollingFriction=0.0, physicsClientId=self._client
+                part.body, part.index, rollingFriction=0.0, physicsClientId=self._client
             )
 
     def set_joint_position(self, body: Body, joint: str, position: float) -> None:

@@ -130,15 +130,16 @@ def overlap_share(step_size: float, push_out: float) -> float:
     return min(0.2, push_out * step_size)
 
 
-def contact_spring(
-    surface: Surface, step_size: float, push_out: float
-) -> tuple[float, float] | None:
-    """Return stiffness [N/m] and damping [N s/m] of a contact; None if nobody described it.
+def is_rigid(surface: Surface) -> bool:
+    """Tell whether nobody described how a surface gives way."""
+    return surface.kp >= _STIFFEST
+
+
+def contact_spring(surface: Surface, step_size: float, push_out: float) -> tuple[float, float]:
+    """Return stiffness [N/m] and damping [N s/m] of a contact of a surface that gives way.
 
     It gives way by force / kp at rest, and is damped so much that it parts bodies no faster than
     other contacts do; a kd of a user's could shoot them away. Arguments as in `overlap_share`.
     """
-    if surface.kp >= _STIFFEST:
-        return None
     least = step_size * surface.kp * (1.0 / overlap_share(step_size, push_out) - 1.0)
     return surface.kp, max(surface.kd, least)
