@@ -59,6 +59,29 @@ def test_who_stands_on_four_points_sets_off_straight_on(spec, speed, heading):
         assert forward_speed(model) == pytest.approx(speed, rel=0.01)
 
 
+@pytest.mark.parametrize('heading', [0.2, 0.6, 1.2])
+@pytest.mark.parametrize(('speed', 'robot'), [
+    (1.0, {'casters': 1, 'rear': 0.2}),
+    (1.0, {'casters': 1, 'rear': 0.4}),
+    (-1.0, {}),
+    (0.3, {'mass': 0.2, 'size': 0.12, 'casters': 1}),
+])
+def test_wheels_that_spin_as_they_set_off_do_not_turn_the_robot(speed, robot, heading):
+    with empty_world() as world:
+        model = drive(world, castered(acceleration=0.0, **robot), 2, heading, speed)
+        assert yaw_of(model.pose.orientation) == pytest.approx(heading, abs=0.02)
+        assert forward_speed(model) == pytest.approx(speed, rel=0.1)
+
+
+@pytest.mark.parametrize('heading', [0.0, 0.4, 1.0])
+def test_a_robot_that_its_motors_cannot_move_does_not_turn(heading):
+    with empty_world() as world:
+        stuck = castered(casters=1, torque=0.05, rear=0.3)
+        model = drive(world, stuck, 20, heading)
+        assert yaw_of(model.pose.orientation) == pytest.approx(heading, abs=0.02)
+        assert math.hypot(*model.pose.position[:2]) < 0.01
+
+
 def test_two_casters_drive_on_a_floor_that_is_no_plane():
     with empty_world() as world:
         world.delete('ground_plane')

@@ -55,7 +55,11 @@ class FakeModel:
         self.wheels = {'left': Wheel('left', self), 'right': Wheel('right', self)}
         self.now = (Pose(), Twist())
         y = {'left': 0.4, 'right': -0.4}
-        self.links = {f'{name}_link': SimpleNamespace(pose=Pose((0.1, y[name], 0.2))) for name in y}
+        self.ground = 0.0  # [m/s] at which it drives along x
+        self.links = {f'{name}_link': SimpleNamespace(
+            pose=Pose((0.1, y[name], 0.2)),
+            state=lambda: (Pose((0.0, 0.0, 0.2), side), Twist((self.ground, 0.0, 0.0), (0.0,) * 3)),
+        ) for name in y}
         side = from_rpy(-math.pi / 2, 0.0, 0.0)
         wheel_links = [
             LinkSpec(f'{name}_link', Pose((0.0, y[name], 0.2), side), collisions=wheel_collisions)
@@ -64,9 +68,9 @@ class FakeModel:
         self.spec = ModelSpec('robot', (LinkSpec('base'), *wheel_links))
         self.body = None
         self.rolling = set()  # links that were let to roll
-        self.holds = []  # shares of the friction along the axle, as they were asked for
+        self.holds = {}  # shares of the friction of each link along the axle
         self.engine = SimpleNamespace(
-            set_hold=lambda *call: self.holds.append(call[-1]),
+            set_hold=lambda _, link, axis, share: self.holds.__setitem__(link, share),
             let_sink=lambda *_: None,
             let_roll=lambda _, link: self.rolling.add(link),
         )

@@ -74,18 +74,30 @@ def surface(link_name: str, mu: float) -> str:
 
 
 def castered(
-    mass: float = 5.0, size: float = 0.4, casters: int = 2, mu: float = 1.0, weak: bool = False
+    mass: float = 5.0,
+    size: float = 0.4,
+    casters: int = 2,
+    mu: float = 1.0,
+    acceleration: float = 1.0,
+    torque: float = 1.0,
+    rear: float = 0.0,
 ) -> ModelSpec:
     """Return a symmetric robot on two wheels and casters in front (2) and behind (1 and 2).
 
     Args:
+        mass: of all of it [kg].
         size: length of its body [m]; everything scales with it.
-        weak: whether a tenth of the torque is all it has, and nothing limits its acceleration.
+        mu: friction of its casters.
+        acceleration: at the rims, at most [m/s^2]; 0 for no limit.
+        torque: of each motor, in multiples of what lifts the robot by the rim of one wheel.
+        rear: share of the way from the axle to the caster behind at which its weight is.
     """
     radius = size / 4.0
     caster = radius / 3.0
     height = radius  # of the body's middle over the ground
-    body = box('base', (size, 0.7 * size, radius), 0.8 * mass)
+    body = box('base', (size, 0.7 * size, radius), 0.8 * mass).replace(
+        '<inertial>', f'<inertial><origin xyz="{-0.4 * size * rear} 0 0"/>'
+    )
     for k, x in enumerate((-0.4 * size, 0.4 * size)[:casters]):
         # A ball that is part of the body: it drags, as the article's caster does.
         body += ball(f'caster{k}', caster, 0.02 * mass)
@@ -99,8 +111,8 @@ def castered(
     body += DRIVE_PLUGIN.format(
         separation=0.8 * size,
         diameter=2.0 * radius,
-        torque=mass * GRAVITY * radius * (0.1 if weak else 1.0),
-        acceleration=0 if weak else 1,
+        torque=torque * mass * GRAVITY * radius,
+        acceleration=acceleration,
     )
     return urdf_spec(body)
 
@@ -325,7 +337,7 @@ SCENES: dict[str, Scene] = {
     'veer, two casters': veer(castered()),
     'veer, 0.2 kg': veer(castered(0.2, 0.12, casters=1)),
     'veer, broad wheels': veer(mirrored(robot_spec())),
-    'veer, weak motors': veer(castered(casters=1, weak=True)),
+    'veer, weak motors': veer(castered(casters=1, torque=0.1, acceleration=0.0)),
     "veer, the article's": veer(robot_spec()),
     'skid steer straight': skid_straight,
     'skid steer turns': skid_turn,

@@ -123,7 +123,7 @@ def test_what_a_robot_drags_holds_sideways_in_curves_and_at_rest(command, share)
     plugin = make(wheelAcceleration='0')
     plugin.command(*command)
     run(plugin, PERIOD_STEPS + 1)
-    assert plugin.model.holds[-1] == pytest.approx(share)
+    assert plugin.model.holds['base'] == pytest.approx(share)
 
 
 @pytest.mark.parametrize('command', [(1e308, 1e308), (1e-320, 0.0), (0.0, 1e-320)])
@@ -131,7 +131,7 @@ def test_no_command_asks_for_a_share_that_is_none(command):
     plugin = make(wheelAcceleration='0')
     plugin.command(*command)
     run(plugin, PERIOD_STEPS + 1)
-    assert 0.0 <= plugin.model.holds[-1] <= 1.0
+    assert 0.0 <= plugin.model.holds['base'] <= 1.0
 
 
 def test_a_wheel_that_nothing_rests_on_does_not_creep():
@@ -141,3 +141,49 @@ def test_a_wheel_that_nothing_rests_on_does_not_creep():
     plugin.command(0.52, 0.0)
     run(plugin, 10 * PERIOD_STEPS)
     assert rim_speeds(plugin) == pytest.approx((0.52, 0.52))
+
+
+def tyres(plugin):
+    """Return how much each tyre holds along the axle."""
+    return [plugin.model.holds.get(f'{side}_link', 1.0) for side in ('left', 'right')]
+
+
+def test_tyres_hold_nothing_sideways_while_they_slide_straight_on():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    assert tyres(plugin) == [0.0, 0.0]
+    plugin.model.ground = 0.4
+    run(plugin, PERIOD_STEPS)
+    assert tyres(plugin) == [0.0, 0.0]
+    plugin.model.ground = 0.515
+    run(plugin, PERIOD_STEPS)
+    assert tyres(plugin) == [1.0, 1.0]
+    plugin.model.ground = 0.0  # somebody holds it; that takes no jump
+    run(plugin, PERIOD_STEPS)
+    assert tyres(plugin) == [1.0, 1.0]
+
+
+@pytest.mark.parametrize(('acceleration', 'command'), [('0', (0.0, 1.0)), ('4', (0.52, 0.0))])
+def test_tyres_that_do_not_slide_straight_on_hold(acceleration, command):
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration=acceleration)
+    plugin.command(*command)
+    run(plugin, 5 * PERIOD_STEPS)
+    assert tyres(plugin) == [1.0, 1.0]
+
+
+def test_a_reset_lets_tyres_hold():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    plugin.reset()
+    assert tyres(plugin) == [1.0, 1.0]
+
+
+def test_what_is_dragged_by_wheels_that_stand_holds():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (0.0, 5.0)  # the motors are too weak
+    plugin.command(0.52, 0.0)
+    run(plugin, 5 * PERIOD_STEPS)
+    assert plugin.model.holds['base'] == 1.0

@@ -16,7 +16,7 @@ import math
 from typing import TYPE_CHECKING
 
 from .clock import NANOSECONDS, SimClock
-from .pose import Vector, compose, dot, rotate
+from .pose import Vector, compose, cross, dot, rotate
 from .spec import Cylinder, LinkSpec, Sphere
 from .surfaces import friction
 
@@ -31,6 +31,8 @@ CREEP = 0.092  # how much faster the tyre turns than the ground passes [m/s]
 RELAXATION = 0.1
 TRIMMING = 0.5  # time in which the motor comes to its lag [s]; a ramp passes before
 TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
+CRAWL = 0.002  # [m/s] at the rim
+UP = (0.0, 0.0, 1.0)
 ALL = 0.999  # of its torque: a motor that gives as much cannot do more
 
 
@@ -53,6 +55,7 @@ class Wheel:
         self.name = joint.name
         self.radius = _radius(self._link())
         self._grip = _grip(self._link())
+        self._axis = rotate(joint.spec.pose.orientation, joint.spec.axis)  # in the link's frame
         self._torque = torque
         self._clock = clock
         self._asked = 0.0  # hub speed [rad/s]
@@ -101,6 +104,21 @@ class Wheel:
             return 0.0, 0.0
         return self.joint.effort / self.radius, self.joint.normal_force() * self._grip
 
+    def slip(self) -> float:
+        """Return how much faster the rim runs than the ground passes under it [m/s]."""
+        pose, twist = self.joint.model.links[self.joint.spec.child].state()
+        forward = cross(rotate(pose.orientation, self._axis), UP)
+        return self.joint.velocity * (self.radius or 0.0) - dot(forward, twist.linear)
+
+    def crawls(self) -> bool:
+        """Tell whether the wheel hardly turns."""
+        return abs(self.joint.velocity) * (self.radius or math.inf) < CRAWL
+
+    def hold(self, share: float) -> None:
+        """Let the tyre hold only so much of its friction along the axle: 0 nothing, 1 all."""
+        model = self.joint.model
+        model.engine.set_hold(model.body, self.joint.spec.child, self._axis, share)
+
     def give_way(self, use: float) -> None:
         """Bring creep and lag towards what belongs to a share of the grip in use, -1 to 1.
 
@@ -139,8 +157,7 @@ class Wheel:
     @property
     def axle(self) -> Vector:
         """Return the direction of the axis, in the frame of the model as it was spawned."""
-        spec = self.joint.spec
-        return rotate(self._link().pose.orientation, rotate(spec.pose.orientation, spec.axis))
+        return rotate(self._link().pose.orientation, self._axis)
 
     def place_on_axle(self) -> Vector:
         """Return where the touching shape stands along the axle, in the model frame [m].

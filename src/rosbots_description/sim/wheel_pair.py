@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from .clock import SimClock
 from .dragging import Dragged
+from .sliding import Sliding
 from .wheel import Wheel
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ class WheelPair:
         """Describe them; `release` takes over the motors."""
         self.wheels = (left, right)
         self._dragged = Dragged(model, left)
+        self._sliding = Sliding(self.wheels)
         self._clock = clock
         self._looked_ns = 0
 
@@ -37,12 +39,14 @@ class WheelPair:
         for wheel in self.wheels:
             wheel.release()
         self._dragged.hold(1.0)
+        self._sliding.rest()
 
     def rest(self) -> None:
         """Take note that the wheels stand still."""
         self._looked_ns = self._clock.now_ns
         for wheel in self.wheels:
             wheel.rest()
+        self._sliding.rest()
 
     def drive(self, left: float, right: float) -> None:
         """Turn the hubs at these speeds [rad/s] from now on."""
@@ -54,7 +58,8 @@ class WheelPair:
             self._give_way(bend)
         for wheel in self.wheels:
             wheel.turn()
-        self._dragged.hold(bend)
+        self._dragged.hold(1.0 if all(wheel.crawls() for wheel in self.wheels) else bend)
+        self._sliding.watch((left, right), bend)
 
     def _give_way(self, bend: float) -> None:
         """Let each wheel lag and creep as the share of the grip in use tells."""

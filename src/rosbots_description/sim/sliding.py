@@ -1,0 +1,51 @@
+"""Tyres that slide: the wheels spin as a robot sets off, or stand while it still goes on.
+
+Friction is limited along the world's axes each (tuning.py), so a tyre that slides across them is
+pushed aside as hard as it is pulled ahead. But friction points against the slip: what slides
+straight on is not held sideways at all. So wheels that are asked to run alike hold nothing along
+their axle while they slide.
+"""
+
+from collections.abc import Sequence
+
+from .wheel import Wheel
+
+JUMP = 0.05  # [m/s] a rim that is asked for that much more or less at once may begin to slide
+SLIP = 0.02  # [m/s] a rim that passes the ground slower than that rolls
+
+
+class Sliding:
+    """Watches two wheels about one axle, and lets go of the ground sideways while they slide."""
+
+    def __init__(self, wheels: Sequence[Wheel]) -> None:
+        """Describe them; `rest` lets them hold."""
+        self._wheels = wheels
+        self._asked: tuple[float, ...] = (0.0,) * len(wheels)  # [rad/s]
+        self._slides = False
+
+    def rest(self) -> None:
+        """Let the tyres hold: they stand still."""
+        self._asked = (0.0,) * len(self._wheels)
+        self._slides = False
+        self._hold(1.0)
+
+    def watch(self, asked: Sequence[float], bend: float) -> None:
+        """Let the tyres hold as much as they do.
+
+        Args:
+            asked: speeds of the hubs from now on [rad/s].
+            bend: how far from straight the way is that they are to go, 0 to 1.
+        """
+        jumps = any(
+            abs(now - then) * (wheel.radius or 0.0) > JUMP
+            for wheel, now, then in zip(self._wheels, asked, self._asked, strict=True)
+        )
+        self._asked = tuple(asked)
+        if not jumps and not self._slides:
+            return
+        self._slides = jumps or any(abs(wheel.slip()) > SLIP for wheel in self._wheels)
+        self._hold(bend if self._slides else 1.0)
+
+    def _hold(self, share: float) -> None:
+        for wheel in self._wheels:
+            wheel.hold(share)
