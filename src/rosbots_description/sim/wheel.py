@@ -31,7 +31,7 @@ CREEP = 0.092  # how much faster the tyre turns than the ground passes [m/s]
 RELAXATION = 0.1
 TRIMMING = 0.5  # time in which the motor comes to its lag [s]; a ramp passes before
 TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
-CRAWL = 0.002  # [m/s] at the rim
+CRAWL = 0.002  # [m/s] a rim slower than that hardly turns
 UP = (0.0, 0.0, 1.0)
 ALL = 0.999  # of its torque: a motor that gives as much cannot do more
 
@@ -111,7 +111,7 @@ class Wheel:
         return self.joint.velocity * (self.radius or 0.0) - dot(forward, twist.linear)
 
     def crawls(self) -> bool:
-        """Tell whether the wheel hardly turns."""
+        """Tell whether the wheel hardly turns; one of unknown radius never does."""
         return abs(self.joint.velocity) * (self.radius or math.inf) < CRAWL
 
     def hold(self, share: float) -> None:
