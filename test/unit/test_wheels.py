@@ -172,6 +172,17 @@ def test_tyres_that_do_not_slide_straight_on_hold(acceleration, command):
     assert tyres(plugin) == [1.0, 1.0]
 
 
+def test_tyres_hold_again_beside_a_wheel_of_unknown_radius():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.wheels[1].radius = None
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    assert tyres(plugin) == [0.0, 0.0]
+    plugin.model.ground = 0.515
+    run(plugin, PERIOD_STEPS)
+    assert tyres(plugin) == [1.0, 1.0]
+
+
 def test_a_reset_lets_tyres_hold():
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
     plugin.command(0.52, 0.0)

@@ -1,9 +1,9 @@
-"""Tyres that slide: the wheels spin as a robot sets off, or stand while it still goes on.
+"""Tyres that slide: the wheels of a robot that sets off spin.
 
 Friction is limited along the world's axes each (tuning.py), so a tyre that slides across them is
 pushed aside as hard as it is pulled ahead. But friction points against the slip: what slides
 straight on is not held sideways at all. So wheels that are asked to run alike hold nothing along
-their axle while they slide.
+their axle while they slide. Wheels that are asked to stand hold all, sliding or not.
 """
 
 from collections.abc import Sequence

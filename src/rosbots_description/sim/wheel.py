@@ -32,8 +32,8 @@ RELAXATION = 0.1
 TRIMMING = 0.5  # time in which the motor comes to its lag [s]; a ramp passes before
 TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
 CRAWL = 0.002  # [m/s] a rim slower than that hardly turns
-UP = (0.0, 0.0, 1.0)
 ALL = 0.999  # of its torque: a motor that gives as much cannot do more
+UP = (0.0, 0.0, 1.0)
 
 
 class Wheel:
@@ -105,10 +105,15 @@ class Wheel:
         return self.joint.effort / self.radius, self.joint.normal_force() * self._grip
 
     def slip(self) -> float:
-        """Return how much faster the rim runs than the ground passes under it [m/s]."""
+        """Return how much faster the rim runs than the ground passes under it [m/s].
+
+        None is known of a wheel of unknown radius: 0.
+        """
+        if not self.radius:
+            return 0.0
         pose, twist = self.joint.model.links[self.joint.spec.child].state()
         forward = cross(rotate(pose.orientation, self._axis), UP)
-        return self.joint.velocity * (self.radius or 0.0) - dot(forward, twist.linear)
+        return self.joint.velocity * self.radius - dot(forward, twist.linear)
 
     def crawls(self) -> bool:
         """Tell whether the wheel hardly turns; one of unknown radius never does."""
