@@ -54,7 +54,8 @@ class BodyMaker:
         mesh_file = self._surface_file if tree.stands else self._mesh_file
         groups = [surface_groups(tree, i) for i in range(len(tree.links))]
         text = describe_tree(tree, coms, groups, mesh_file)
-        number = self._load_urdf(text, tree, compose(model_pose, tree.links[0].pose))
+        place = compose(model_pose, tree.links[0].pose)
+        number = self._load_urdf(text, tree, place, is_one_body(tree, groups))
         body.bodies.append(number)
         shapes = [collision.geometry for link in tree.links for collision in link.collisions]
         meshes = [mesh_file(shape) for shape in shapes if isinstance(shape, Mesh)]
@@ -111,7 +112,7 @@ class BodyMaker:
         pybullet.resetSimulation(physicsClientId=self._client)
         self._untouching.clear()
 
-    def _load_urdf(self, text: str, tree: Tree, pose: Pose) -> int:
+    def _load_urdf(self, text: str, tree: Tree, pose: Pose, one_body: bool) -> int:
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
         if self._tuning.exact_cylinders:
             flags |= pybullet.URDF_USE_IMPLICIT_CYLINDER
@@ -126,7 +127,7 @@ class BodyMaker:
                 f'/proc/self/fd/{descriptor}',
                 *pose,
                 useFixedBase=tree.fixed_base,
-                useMaximalCoordinates=is_one_body(tree),
+                useMaximalCoordinates=one_body,
                 flags=flags,
                 physicsClientId=self._client,
             )
