@@ -198,3 +198,30 @@ def test_what_is_dragged_by_wheels_that_stand_holds():
     plugin.command(0.52, 0.0)
     run(plugin, 5 * PERIOD_STEPS)
     assert plugin.model.holds['base'] == 1.0
+
+
+def driving():
+    """Return a plugin whose robot drives straight on and rolls."""
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.model.ground = 0.52
+    plugin.command(0.52, 0.0)
+    run(plugin, 10 * PERIOD_STEPS)
+    return plugin
+
+
+def test_wheels_that_do_as_they_are_asked_are_left_alone_but_for_looks():
+    plugin, told = driving(), []
+    plugin.model.wheels['left'].gives = lambda asked: told.append(asked) or (asked, 0.0)
+    run(plugin, 10 * PERIOD_STEPS)  # two looks
+    assert told == [2.0, 2.0]
+    plugin.command(0.26, 0.0)
+    run(plugin, PERIOD_STEPS)
+    assert told[2:] == pytest.approx([1.0])
+
+
+def test_wheels_of_a_body_that_was_made_anew_are_told_everything_at_once():
+    plugin = driving()
+    plugin.model.body = object()
+    plugin.model.rolling.clear()
+    run(plugin, PERIOD_STEPS)
+    assert plugin.model.rolling == {'left_link', 'right_link'}

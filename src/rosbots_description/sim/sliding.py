@@ -15,18 +15,21 @@ SLIP = 0.02  # [m/s] a rim that passes the ground slower than that rolls
 
 
 class Sliding:
-    """Watches two wheels about one axle, and lets go of the ground sideways while they slide."""
+    """Watches two wheels about one axle, and lets go of the ground sideways while they slide.
+
+    `slides` tells whether they do.
+    """
 
     def __init__(self, wheels: Sequence[Wheel]) -> None:
         """Describe them; `rest` lets them hold."""
         self._wheels = wheels
         self._asked: tuple[float, ...] = (0.0,) * len(wheels)  # [rad/s]
-        self._slides = False
+        self.slides = False
 
     def rest(self) -> None:
         """Let the tyres hold: they stand still."""
         self._asked = (0.0,) * len(self._wheels)
-        self._slides = False
+        self.slides = False
         self._hold(1.0)
 
     def watch(self, asked: Sequence[float], bend: float) -> None:
@@ -41,10 +44,10 @@ class Sliding:
             for wheel, now, then in zip(self._wheels, asked, self._asked, strict=True)
         )
         self._asked = tuple(asked)
-        if not jumps and not self._slides:
+        if not jumps and not self.slides:
             return
-        self._slides = jumps or any(abs(wheel.slip()) > SLIP for wheel in self._wheels)
-        self._hold(bend if self._slides else 1.0)
+        self.slides = jumps or any(abs(wheel.slip()) > SLIP for wheel in self._wheels)
+        self._hold(bend if self.slides else 1.0)
 
     def _hold(self, share: float) -> None:
         for wheel in self._wheels:

@@ -9,6 +9,7 @@ its own.
 import math
 from typing import TYPE_CHECKING
 
+from .body import Body
 from .clock import SimClock
 from .dragging import Dragged
 from .sliding import Sliding
@@ -28,14 +29,18 @@ class WheelPair:
     def __init__(self, model: 'Model', left: Wheel, right: Wheel, clock: SimClock) -> None:
         """Describe them; `release` takes over the motors."""
         self.wheels = (left, right)
+        self._model = model
         self._dragged = Dragged(model, left)
         self._sliding = Sliding(self.wheels)
         self._clock = clock
         self._looked_ns = 0
+        self._driven: tuple[Body, float, float] | None = None  # what was asked of which body last
+        self._settled = False  # nothing but a new look would change anything
 
     def release(self) -> None:
         """Forget speeds and ways; the motors hold the wheels."""
         self._looked_ns = self._clock.now_ns
+        self._settled = False
         for wheel in self.wheels:
             wheel.release()
         self._dragged.hold(1.0)
@@ -44,22 +49,31 @@ class WheelPair:
     def rest(self) -> None:
         """Take note that the wheels stand still."""
         self._looked_ns = self._clock.now_ns
+        self._settled = False
         for wheel in self.wheels:
             wheel.rest()
         self._sliding.rest()
 
     def drive(self, left: float, right: float) -> None:
         """Turn the hubs at these speeds [rad/s] from now on."""
+        now_ns = self._clock.now_ns
+        looks = now_ns - self._looked_ns >= LOOK_NS
+        driven = (self._model.body, left, right)
+        if driven == self._driven and self._settled and not looks:
+            return
+        self._driven = driven
         bend = bend_of(left, right)
         for wheel, speed in zip(self.wheels, (left, right), strict=True):
             wheel.ask(speed)
-        if self._clock.now_ns - self._looked_ns >= LOOK_NS:
-            self._looked_ns = self._clock.now_ns
+        if looks:
+            self._looked_ns = now_ns
             self._give_way(bend)
         for wheel in self.wheels:
             wheel.turn()
-        self._dragged.hold(1.0 if all(wheel.crawls() for wheel in self.wheels) else bend)
+        stuck = bend < 1.0 and all(wheel.crawls() for wheel in self.wheels)
+        self._dragged.hold(1.0 if stuck else bend)
         self._sliding.watch((left, right), bend)
+        self._settled = not stuck and not self._sliding.slides
 
     def _give_way(self, bend: float) -> None:
         """Let each wheel lag and creep as the share of the grip in use tells."""
