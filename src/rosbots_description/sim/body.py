@@ -37,7 +37,8 @@ class Body:
 
     def __init__(self) -> None:
         self.parts: dict[str, Part] = {}
-        self.joints: dict[str, tuple[int, int]] = {}
+        self.joints: dict[str, tuple[int, int]] = {}  # PyBullet's body and index
+        self.indices: dict[int, list[int]] = {}  # those of all joints, by body
         self.roots: list[str] = []  # links that the engine moves as bases
         self.bolted: set[str] = set()  # roots that the world holds
         self.bodies: list[int] = []

@@ -80,6 +80,7 @@ class BodyMaker:
             self._set_surfaces(body, tree, i, groups[i], index_of, step_size)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
+                body.indices.setdefault(number, []).append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
                 body.weightless.append((number, part.index, inertials[i].mass))
 

@@ -118,7 +118,7 @@ class Engine:
         """Return where a model is and how it moves, all of it."""
         return Motion(
             {link: self.link_state(body, link) for link in body.roots},
-            {name: self.joint_state(body, name) for name in body.joints},
+            {name: self.joint_reading(body, name)[:2] for name in body.joints},
             dict(body.motors),
         )
 
@@ -208,20 +208,16 @@ class Engine:
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
         )
 
-    def joint_state(self, body: Body, joint: str) -> tuple[float, float]:
-        """Return position [rad or m] and velocity [rad/s or m/s] of a joint."""
-        return self._joint_reading(body, joint)[:2]
+    def joint_reading(self, body: Body, joint: str) -> tuple:
+        """Return PyBullet's state of a joint; all joints of a body are read in one call.
 
-    def joint_effort(self, body: Body, joint: str) -> float:
-        """Return what the joint's motor gave in the last step [N m or N]."""
-        return self._joint_reading(body, joint)[3]
-
-    def _joint_reading(self, body: Body, joint: str) -> tuple:
-        """Return PyBullet's state of a joint; all joints of a body are read in one call."""
+        It begins with position [rad or m] and velocity [rad/s or m/s]; the fourth is what the motor
+        gave in the last step [N m or N].
+        """
         number, index = body.joints[joint]
         readings = self._joint_readings.get(number)
         if readings is None:
-            indices = [index for of, index in body.joints.values() if of == number]
+            indices = body.indices[number]
             states = pybullet.getJointStates(number, indices, self._client)
             readings = self._joint_readings[number] = dict(zip(indices, states, strict=True))
         return readings[index]

@@ -77,21 +77,21 @@ class Joint:
     @property
     def position(self) -> float:
         """Return the position [rad or m]."""
-        return self.state()[0]
+        return self._reading()[0]
 
     @property
     def velocity(self) -> float:
         """Return the velocity [rad/s or m/s]."""
-        return self.state()[1]
+        return self._reading()[1]
 
     def state(self) -> tuple[float, float]:
         """Return position and velocity at once."""
-        return self.model.engine.joint_state(self.model.body, self.name)
+        return self._reading()[:2]
 
     @property
     def effort(self) -> float:
         """Return what the motor gave in the last step [N m or N]."""
-        return self.model.engine.joint_effort(self.model.body, self.name)
+        return self._reading()[3]
 
     @property
     def motor(self) -> tuple[float, float]:
@@ -119,6 +119,9 @@ class Joint:
     def set_position(self, position: float) -> None:
         """Put the joint at `position` [rad or m], at rest."""
         self.model.engine.set_joint_position(self.model.body, self.name, position)
+
+    def _reading(self) -> tuple:
+        return self.model.engine.joint_reading(self.model.body, self.name)
 
 
 class Model:

@@ -29,27 +29,21 @@ class JointStates(NamedTuple):
 
 
 class Port:
-    """An output of a plugin. Nothing is computed for it while nobody wants it."""
+    """An output of a plugin. Nothing is computed for it while nobody wants it.
+
+    `wanted()` tells whether a reading would be used; only then it is handed to `send(reading)`.
+    """
 
     def __init__(self) -> None:
-        self._send: Callable | None = None
-        self._wanted: Callable[[], bool] = _nobody
+        self.disconnect()
 
     def connect(self, send: Callable, wanted: Callable[[], bool]) -> None:
         """Give every reading to `send(reading)` while `wanted()` is true."""
-        self._send, self._wanted = send, wanted
+        self.send, self.wanted = send, wanted
 
     def disconnect(self) -> None:
         """Give readings to nobody."""
-        self._send, self._wanted = None, _nobody
-
-    def wanted(self) -> bool:
-        """Tell whether a reading would be used."""
-        return self._wanted()
-
-    def send(self, reading: object) -> None:
-        """Hand out a reading; the caller has asked `wanted` first."""
-        self._send(reading)
+        self.send, self.wanted = None, _nobody
 
 
 def _nobody() -> bool:

@@ -71,7 +71,7 @@ class Schedule:
 
     def next_due(self) -> int:
         """Return the earliest step count at which a hook wants to run."""
-        return min((hook.due for hook in self._hooks), default=NEVER)
+        return min([hook.due for hook in self._hooks], default=NEVER)
 
     def run(self, step: int) -> None:
         """Run every hook that is due at `step` or was due before.
