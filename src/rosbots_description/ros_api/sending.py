@@ -127,6 +127,18 @@ class Outlet:
                 self._waiting.clear()
 
 
+def has_readers(*publishers: rospy.Publisher | None) -> bool:
+    """Tell whether anybody reads one of the topics; None is one that was left out.
+
+    What rospy offers for it takes a lock, which matters where every robot asks at 100 Hz.
+    """
+    for publisher in publishers:
+        topic = publisher.impl if publisher is not None else None
+        if topic is not None and topic.connections:
+            return True
+    return False
+
+
 def next_number(publisher: rospy.Publisher) -> int:
     """Return what the header of the publisher's next message has as `seq`, as rospy counts."""
     topic = publisher.impl

@@ -13,8 +13,8 @@ Parameters:
 import logging
 import math
 import time
+from functools import partial
 
-import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
@@ -25,7 +25,7 @@ from ...sim.readings import FrameTransform, JointStates, Odometry
 from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
 from ..log_bridge import set_level
 from ..names import find_tf_prefix, frame_name, topic_name
-from ..sending import next_number, publish_serialized
+from ..sending import has_readers, next_number, publish_serialized
 from ..server import Server
 from .registry import Adapter, adapter
 
@@ -83,12 +83,12 @@ class DiffDriveAdapter(Adapter):
         plugin, config = self.plugin, self.plugin.config
         if self._odometry is not None:
             shown = (self._odometry, self._tf) if config.publish_odom_tf else (self._odometry,)
-            plugin.odometry.connect(self._send_odometry, lambda: any(map(_has_readers, shown)))
+            plugin.odometry.connect(self._send_odometry, partial(has_readers, *shown))
         if self._tf is not None:
-            plugin.wheel_transform.connect(self._send_transform, lambda: _has_readers(self._tf))
+            plugin.wheel_transform.connect(self._send_transform, partial(has_readers, self._tf))
         if self._joint_states is not None:
             plugin.joint_states.connect(
-                self._send_joint_states, lambda: _has_readers(self._joint_states)
+                self._send_joint_states, partial(has_readers, self._joint_states)
             )
 
     def disconnect(self) -> None:
@@ -98,10 +98,10 @@ class DiffDriveAdapter(Adapter):
 
     def _send_odometry(self, reading: Odometry) -> None:
         config = self.plugin.config
-        if config.publish_odom_tf and _has_readers(self._tf):
+        if config.publish_odom_tf and has_readers(self._tf):
             edge = FrameTransform(config.odometry_frame, config.robot_base_frame, reading.pose)
             self._send_transform(edge)
-        if _has_readers(self._odometry):
+        if has_readers(self._odometry):
             number = next_number(self._odometry)
             message = self._odometry_layout.pack(number, self._now_ns(), reading)
             publish_serialized(self._odometry, message)
@@ -138,7 +138,3 @@ class DiffDriveAdapter(Adapter):
                 'finite numbers', self.plugin.log_prefix, self.plugin.config.command_topic,
                 x, yaw_rate,
             )
-
-
-def _has_readers(publisher: rospy.Publisher | None) -> bool:
-    return publisher is not None and publisher.get_num_connections() > 0
