@@ -17,7 +17,7 @@ from . import SETTLED, empty_world, robot_spec, urdf_spec
 
 GRAVITY = 9.8  # [m/s^2]
 SPEED = 0.5  # [m/s] commanded
-HEADINGS = (0.0, math.pi / 4.0, 1.0)  # [rad] of straight drives; at 0 friction is along the axes
+HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.0)  # [rad] of straight drives; at 0 friction is along the axes
 ABOVE = 1e-3  # height from which robots are let down [m]
 RADIUS = 0.1  # of the skid steer's wheels [m]
 DRIVE_PLUGIN = (
@@ -334,6 +334,7 @@ SCENES: dict[str, Scene] = {
     '50 kg': speed_error(castered(50.0, 1.0, casters=1)),
     '0.2 kg': speed_error(castered(0.2, 0.12, casters=1)),
     'veer, one caster': veer(castered(casters=1)),
+    'veer, laden caster': veer(castered(casters=1, rear=0.4)),
     'veer, two casters': veer(castered()),
     'veer, 0.2 kg': veer(castered(0.2, 0.12, casters=1)),
     'veer, broad wheels': veer(mirrored(robot_spec())),

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from support.fake_drive import PERIOD_STEPS, collect, make, rim_speeds, run, wheel_of
 
+from rosbots_description.sim.plugins.diff_drive import REACHED
 from rosbots_description.sim.wheel import CREEP, LAG
 
 
@@ -46,6 +47,16 @@ def test_a_motor_that_falls_behind_is_brought_to_the_lag_of_its_force():
     run(plugin, 800 * PERIOD_STEPS)
     for wheel in plugin.wheels:  # both pull at half of their grip
         assert wheel.velocity == pytest.approx(2.0 - 0.5 * LAG / 0.26)
+
+
+def test_however_hard_it_pulls_a_motor_does_not_lag_by_what_a_drive_would_make_up_for():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelTorque='20')
+    for wheel in plugin.model.wheels.values():
+        wheel.weight, wheel.gives = 10.0, lambda asked: (0.99 * asked, 2.6)  # all of its grip
+    plugin.command(0.52, 0.0)
+    run(plugin, 800 * PERIOD_STEPS)
+    for wheel in plugin.wheels:
+        assert 0.0 < 0.52 - 0.26 * wheel.velocity < REACHED
 
 
 def pulling(weights, efforts):

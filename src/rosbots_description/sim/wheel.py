@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 # At the rim of a wheel whose tyre uses all of its grip, before it slides:
 LAG = 0.0125  # how much slower the motor turns than asked [m/s]
+# Of that at most so much [m/s]: what lags by 0.01 m/s a drive asks for more and more of, in leaps.
+MOST_LAG = 0.0075
 CREEP = 0.092  # how much faster the tyre turns than the ground passes [m/s]
 # Time in which creep follows the force [s]; a tyre's follows over a length. Without it the force,
 # which a rigid contact lets jump from step to step, would shake the wheels.
@@ -137,7 +139,7 @@ class Wheel:
         self._creep += (steady - self._creep) * min(1.0, elapsed / RELAXATION)
         if elapsed <= 0.0 or abs(self.joint.effort) >= ALL * self._torque:
             return
-        missing = behind / elapsed - LAG * use / radius
+        missing = behind / elapsed - max(-MOST_LAG, min(MOST_LAG, LAG * use)) / radius
         if abs(missing) < TRIM:
             trim = self._trim + missing * min(1.0, elapsed / TRIMMING)
             self._trim = max(-TRIM, min(TRIM, trim))
