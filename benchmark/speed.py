@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measure steps per wall second of the whole server, beside a bare PyBullet loop in the same run.
 
-The server is roscore, rosout and gzserver, as fast as it can, with /clock at 100 Hz and nobody else
+The server is roscore, rosout and gzserver, as fast as it can, with /clock at each step, nobody else
 subscribed; robots carry the diff-drive plugin at 100 Hz. The bare loop, in a process of its own,
 takes the article's URDF as it is (17 links) and does nothing but step. Gazebo was once measured
 beside that loop; the bare loop's speed times the quotient of then is what Gazebo would do here.
