@@ -17,7 +17,7 @@ from . import SETTLED, empty_world, robot_spec, urdf_spec
 
 GRAVITY = 9.8  # [m/s^2]
 SPEED = 0.5  # [m/s] commanded
-HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.0)  # [rad] of straight drives; at 0 friction is along the axes
+HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.0)  # [rad] of straight drives; at 0 along the axes
 ABOVE = 1e-3  # height from which robots are let down [m]
 RADIUS = 0.1  # of the skid steer's wheels [m]
 DRIVE_PLUGIN = (

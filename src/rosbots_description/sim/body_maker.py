@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 from .body import Body, Part, Touching
+from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .inertia import principal_axes
@@ -13,16 +14,21 @@ from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec, Surfac
 from .surfaces import (
     contact_spring,
     friction,
+    is_floor,
     is_one_body,
     is_rigid,
     rolling_arm,
     surface_groups,
+    with_inner_first,
 )
 from .tuning import Tuning
 from .untouching import Place, Untouching
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 _MASSLESS = Inertial(0.0)
+# Groups of bodies. Two collide if the group of either is in the mask of the other.
+_STANDING = 2  # PyBullet's own for what never moves; its mask is all but these
+_INNER = 8  # what no plane can touch
 
 
 class BodyMaker:
@@ -53,6 +59,10 @@ class BodyMaker:
         ]
         mesh_file = self._surface_file if tree.stands else self._mesh_file
         groups = [surface_groups(tree, i) for i in range(len(tree.links))]
+        inner_first = None
+        if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
+            inner_first = with_inner_first(tree, groups[0], mesh_file)
+            groups[0] = inner_first or groups[0]
         text = describe_tree(tree, coms, groups, mesh_file)
         place = compose(model_pose, tree.links[0].pose)
         number = self._load_urdf(text, tree, place, is_one_body(tree, groups))
@@ -83,6 +93,14 @@ class BodyMaker:
                 body.indices.setdefault(number, []).append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
                 body.weightless.append((number, part.index, inertials[i].mass))
+        if inner_first:
+            self._set_filter(number, _INNER, ~_STANDING)
+        elif is_floor(tree):
+            self._set_filter(number, _STANDING, ~(_STANDING | _INNER))
+
+    def _set_filter(self, number: int, group: int, mask: int) -> None:
+        """Put the base of a body into a group, and let it meet those of the mask."""
+        pybullet.setCollisionFilterGroupMask(number, -1, group, mask, self._client)
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Let those links of a model pass through each other that do so in Gazebo."""

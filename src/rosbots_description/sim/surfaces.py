@@ -6,11 +6,26 @@ PyBullet knows one friction, and one pair of axes for it, for each body of its o
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import compress
+from operator import not_
 
-from .bullet_description import Tree
+from .bullet_description import MeshFile, Tree
 from .inertia import principal_axes
+from .inner_shapes import inner_shapes
 from .pose import dot, rotate
-from .spec import FIXED, REVOLUTE, Collision, Cylinder, Inertial, JointSpec, LinkSpec, Surface
+from .spec import (
+    FIXED,
+    REVOLUTE,
+    Collision,
+    Cylinder,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    Plane,
+    Surface,
+)
+
+Groups = list[tuple[Collision, ...]]  # of a link: what it touches with itself, then its riders
 
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
 
@@ -24,10 +39,12 @@ _ROLLING_RESISTANCE = 0.005
 # are. Points that are nearer to each other than 0.02 of it are one contact to PyBullet, and what is
 # nearer to the floor than that is a contact, which costs.
 _CREST, _CROWN = 0.01, 0.022
+# Looking at a shape above a plane takes 1.7 % of a step of the article's robot, a rider 5 %.
+_WORTH_A_RIDER = 6
 _SINKS_IN = 5e-5  # [m] one side of a wheel may be so much lower, and both still touch the floor
 
 
-def surface_groups(tree: Tree, i: int) -> list[tuple[Collision, ...]]:
+def surface_groups(tree: Tree, i: int) -> Groups:
     """Return the collisions of link `i` by equal surface: first the link's own, then the riders'.
 
     PyBullet takes the axes of the inertia for a body's own. Where those of a robot's root are
@@ -41,13 +58,35 @@ def surface_groups(tree: Tree, i: int) -> list[tuple[Collision, ...]]:
     return groups or [()]
 
 
-def is_one_body(tree: Tree, groups: Sequence[Sequence[Sequence[Collision]]]) -> bool:
+def with_inner_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups | None:
+    """Return the groups of a robot's root anew: first what no plane can touch, which needs no look.
+
+    The rest rides, as it does anyway where the root's axes are askew. None if it is not worth it.
+    """
+    touching = [group for group in groups if group]
+    if not touching or not _drives(tree):
+        return None
+    first, *others = touching
+    inner = inner_shapes(first, mesh_file)
+    if sum(inner) < (1 if len(touching) < len(groups) else _WORTH_A_RIDER):
+        return None
+    halves = [tuple(compress(first, half)) for half in (inner, map(not_, inner))]
+    return [*halves, *others]
+
+
+def is_one_body(tree: Tree, groups: Sequence[Groups]) -> bool:
     """Tell whether a tree with these groups of surfaces is to be a rigid body, not a multibody.
 
     What stands is: in a contact with a multibody, even one without joints, PyBullet solves for six
     unknowns more. A step of the article's robot is 12 % cheaper on a floor that is a rigid body.
     """
     return tree.stands and len(groups[0]) == 1
+
+
+def is_floor(tree: Tree) -> bool:
+    """Tell whether a tree stands and is planes and nothing else."""
+    shapes = [collision.geometry for collision in tree.links[0].collisions]
+    return tree.stands and bool(shapes) and all(isinstance(shape, Plane) for shape in shapes)
 
 
 def crowned(

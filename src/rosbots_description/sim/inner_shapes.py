@@ -1,0 +1,121 @@
+"""Shapes of a body that no plane can touch, because they lie between others.
+
+A plane touches a body where it touches the body's hull. PyBullet looks at each shape of a body that
+is above a plane, in each step, and of a robot of plates and posts most need not be looked at.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from itertools import combinations, product
+from pathlib import Path
+
+import numpy as np
+
+from .bullet_description import MeshFile
+from .pose import Pose, rotate
+from .spec import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
+from .stl import read_stl
+
+_ONTO = 1e-6  # share of its size by which a body is taken for larger than it is
+_MOST = 40  # points of a hull, whose sides take time with the cube of it
+_CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
+_POLES = np.concatenate([np.eye(3), -np.eye(3)])
+_RIM = [(math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)) for k in range(8)]
+_RIMS = np.array([(x, y, z) for x, y in _RIM for z in (-1.0, 1.0)])
+_WAYS = [way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)]
+
+
+def inner_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tuple[bool, ...]:
+    """Tell of each shape of a rigid body whether it surely lies within the hull of the others.
+
+    Args:
+        collisions: what the body touches with.
+        mesh_file: gives the .stl file of a mesh's hull, named by what it holds.
+    """
+    shapes = [one.geometry for one in collisions]
+    if any(isinstance(shape, Plane) for shape in shapes):
+        return (False,) * len(shapes)
+    files = (mesh_file(shape) if isinstance(shape, Mesh) else shape for shape in shapes)
+    return _inner(tuple(zip(files, (one.pose for one in collisions), strict=True)))
+
+
+@lru_cache(maxsize=64)  # most models come more than once
+@np.errstate(all='ignore')  # of absurd sizes nothing is known to be within
+def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
+    outlines = [_points(shape) for shape, _ in shapes]
+    poses = [pose for _, pose in shapes]
+    placed = [_placed(outline, pose) for outline, pose in zip(outlines, poses, strict=True)]
+    points = np.concatenate(placed)
+    owners = np.repeat(np.arange(len(placed)), [len(some) for some in placed])
+    # A hull of few points, and one that reaches farther out over each side of that.
+    farthest = _farthest(points, _WAYS)
+    sides, _ = _hull(points[farthest])
+    farthest += sorted({*_farthest(points, sides.tolist())} - {*farthest})
+    farthest = farthest[:_MOST]
+    sides, reaches = _hull(points[farthest])
+    if not len(sides):
+        return (False,) * len(shapes)
+    outer = set(owners[farthest].tolist())
+    boxes = [_placed(_box(outline), pose) for outline, pose in zip(outlines, poses, strict=True)]
+    return tuple(
+        i not in outer and bool((box @ sides.T <= reaches).all()) for i, box in enumerate(boxes)
+    )
+
+
+def _points(shape: Geometry | str) -> np.ndarray:
+    """Return points (n, 3) of a shape's surface, among them all that its box touches [m]."""
+    match shape:
+        case Box(size):
+            return _CUBE * np.array(size) / 2.0
+        case Sphere(radius):
+            return _POLES * radius
+        case Cylinder(radius, length):
+            return _RIMS * (radius, radius, length / 2.0)
+        case str():
+            return read_stl(Path(shape).read_bytes()).reshape(-1, 3)
+
+
+def _box(points: np.ndarray) -> np.ndarray:
+    """Return the corners of the box, along the axes, around points."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    return (low + high) / 2.0 + _CUBE * (high - low) / 2.0
+
+
+def _placed(points: np.ndarray, pose: Pose) -> np.ndarray:
+    return np.stack(rotate(pose.orientation, tuple(points.T)), axis=1) + np.array(pose.position)
+
+
+def _farthest(points: np.ndarray, ways: Iterable[Sequence[float]]) -> list[int]:
+    """Return which points are the farthest ones in some directions."""
+    # Plain sums: of two points equally far each library would take another (see meshes.py).
+    x, y, z = points.T.copy()
+    return sorted({int(np.argmax(a * x + b * y + c * z)) for a, b, c in ways})
+
+
+def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the sides of the hull of a few points: normals (n, 3) and how far out each is [m].
+
+    Each plane through three points is one that has all of the others behind it. What is flat has no
+    sides.
+    """
+    a, b, c = points[_triples(len(points))]
+    normals = np.cross(b - a, c - a)
+    lengths = np.sqrt((normals**2).sum(axis=1))
+    size = np.ptp(points, axis=0).max()
+    real = lengths > _ONTO * size**2
+    normals, a = normals[real] / lengths[real, None], a[real]
+    reaches = (normals * a).sum(axis=1)
+    heights = normals @ points.T
+    lowest, highest = heights.min(axis=1) - reaches, heights.max(axis=1) - reaches
+    if (highest - lowest <= _ONTO * size).any():
+        return np.empty((0, 3)), np.empty(0)
+    above, below = highest <= _ONTO * size, lowest >= -_ONTO * size
+    sides = np.concatenate([normals[above], -normals[below]])
+    return sides, np.concatenate([reaches[above], -reaches[below]]) + _ONTO * size
+
+
+@lru_cache(maxsize=16)
+def _triples(count: int) -> np.ndarray:
+    """Return all triples of so many, (3, n)."""
+    return np.array(list(combinations(range(count), 3)), dtype=int).reshape(-1, 3).T

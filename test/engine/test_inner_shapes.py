@@ -1,0 +1,117 @@
+"""What lies between other shapes of a robot: no floor looks at it, everything else meets it."""
+
+import math
+from dataclasses import replace
+from itertools import product
+
+import pytest
+from support import empty_world, urdf_spec
+from support.scenes import ball, box, wheel
+
+from rosbots_description.sim.bullet import pybullet
+from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy
+
+CORNERS = list(product((-0.2, 0.2), (-0.15, 0.15), (0.145, 0.355)))  # of the plates [m]
+
+
+def robot(ixz):
+    """Return a robot of two plates, eight posts between them, two wheels and a belly.
+
+    Args:
+        ixz: product of inertia [kg m^2] that turns its principal axes.
+    """
+    shapes = [(f'0 0 {z}', '<box size="0.4 0.3 0.01"/>') for z in (0.15, 0.35)]
+    shapes += [('-0.15 0 0.07', '<sphere radius="0.07"/>')]
+    shapes += [(f'{x} {y} 0.25', '<cylinder radius="0.02" length="0.18"/>')
+               for x in (-0.15, -0.05, 0.05, 0.15) for y in (-0.1, 0.1)]
+    collisions = ''.join(f'<collision><origin xyz="{at}"/><geometry>{shape}</geometry></collision>'
+                         for at, shape in shapes)
+    body = (f'<link name="base"><inertial><origin xyz="0 0 0.15"/><mass value="5"/><inertia '
+            f'ixx="0.1" iyy="0.12" izz="0.15" ixy="0" ixz="{ixz}" iyz="0"/></inertial>'
+            f'{collisions}</link>')
+    for side, y in (('left', 0.2), ('right', -0.2)):
+        body += wheel(side, f'{side}_joint', 0.1, 0.04, 0.5, f'0.1 {y} 0.1')
+    return urdf_spec(body)
+
+
+@pytest.fixture(params=[0.0, 0.02], ids=['straight', 'askew'])
+def spec(request):
+    return robot(request.param)
+
+
+@pytest.fixture
+def world():
+    with empty_world() as made:
+        yield made
+
+
+def corners(model):
+    """Return where the corners of the plates are in the world [m]."""
+    return [compose(model.pose, Pose(corner)).position for corner in CORNERS]
+
+
+def test_a_robot_with_posts_stands_as_any_other(world, spec):
+    model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
+    world.run(2000)
+    assert model.pose.position == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+
+
+@pytest.mark.parametrize('roll', [math.pi / 2.0, math.pi])
+def test_one_that_has_fallen_lies_on_its_plates(world, spec, roll):
+    model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.5), from_rpy(roll, 0.0, 0.0)))
+    world.run(4000)
+    assert min(z for _, _, z in corners(model)) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_posts_pass_through_a_floor(world, spec):
+    model = world.spawn(spec, 'robot', Pose((0.0, 0.0, -0.2)))
+    world.run(1)
+    (number,) = model.body.bodies
+    contacts = pybullet.getContactPoints(number, physicsClientId=world.engine._client)
+    assert {index for _, _, _, index, *_ in contacts} == {0, 1, 2}  # the plates and the wheels
+
+
+def test_a_floor_that_comes_later_carries_it(world, spec):
+    ground = world.models['ground_plane'].spec
+    world.delete('ground_plane')
+    model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
+    world.spawn(ground, 'ground_plane', Pose())
+    world.run(2000)
+    assert model.pose.position[2] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_what_flies_between_the_plates_meets_a_post(world, spec):
+    world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
+    world.run(500)
+    model = world.spawn(urdf_spec(ball('ball', 0.03, 0.1)), 'ball', Pose((-0.3, 0.1, 0.25)))
+    model.set_twist(Twist((5.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    world.run(60)
+    assert model.pose.position[0] < -0.15
+
+
+def test_what_stands_between_the_plates_meets_a_post(world, spec):
+    model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
+    world.run(500)
+    pole = replace(urdf_spec(box('pole', (0.02, 0.02, 0.1), 1.0)), static=True)
+    world.spawn(pole, 'pole', Pose((0.1, 0.1, 0.25)))
+    model.set_twist(Twist((-1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    world.run(300)
+    assert model.pose.position[0] > -0.05
+
+
+def test_another_robot_that_comes_and_goes_leaves_those_that_stand_in_touch(spec):
+    def driven(disturbed):
+        with empty_world() as world:
+            model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
+            for joint in model.joints.values():
+                joint.set_motor(3.0, 5.0)
+            world.run(500)
+            if disturbed:
+                world.spawn(spec, 'another', Pose((0.0, 5.0, 0.001)))
+            world.run(500)
+            if disturbed:
+                world.delete('another')
+            world.run(500)
+            return model.state()
+
+    assert driven(disturbed=True) == driven(disturbed=False)
