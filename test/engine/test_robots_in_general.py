@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from support import empty_world, urdf_spec
-from support.scenes import SCENES, SPEED, box, castered, drive, forward_speed, link
+from support.scenes import GRAVITY, SCENES, SPEED, box, castered, drive, forward_speed, link
 
 from rosbots_description.sim.pose import Pose, Twist, from_rpy, yaw_of
 
@@ -48,6 +48,23 @@ def test_mechanics_is_obeyed(name):
 def test_a_skid_steer_turns_though_its_wheels_slip():
     least, most = SKID_TURNS
     assert least < SCENES['skid steer turns']() < most
+
+
+@pytest.mark.parametrize(('mass', 'size'), [(0.2, 0.12), (5.0, 0.4), (50.0, 1.0)])
+def test_wheels_to_both_sides_carry_the_same(mass, size):
+    with empty_world() as world:
+        model = drive(world, castered(mass, size, casters=1, rear=0.4), 1, speed=0.0)
+        left, right = (model.joint(f'{side}_joint').normal_force() for side in ('left', 'right'))
+        assert left == pytest.approx(right, rel=1e-4)
+        assert left > 0.3 * mass * GRAVITY
+
+
+@pytest.mark.parametrize(('mass', 'size', 'speed'), [(0.2, 0.12, 0.5), (5.0, 0.4, 1.0)])
+def test_wheels_that_spin_as_they_set_off_do_not_turn_a_robot(mass, size, speed):
+    spec = castered(mass, size, casters=1, acceleration=0.0, rear=0.4)
+    with empty_world() as world:
+        model = drive(world, spec, 2, speed=speed)
+        assert yaw_of(model.pose.orientation) == pytest.approx(0.0, abs=0.01)
 
 
 @pytest.mark.parametrize('heading', [-1.2, -0.8, 0.3, 1.1])

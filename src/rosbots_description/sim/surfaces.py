@@ -35,10 +35,15 @@ ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is th
 # enough to keep a can, a barrel and a robot on free wheels in their place.
 _ROLLING_RESISTANCE = 0.005
 
-# Of a wheel, as shares of its half diagonal: width of the crest, and how much lower the shoulders
-# are. Points that are nearer to each other than 0.02 of it are one contact to PyBullet, and what is
-# nearer to the floor than that is a contact, which costs.
-_CREST, _CROWN = 0.01, 0.022
+# Width of a wheel's crest [m]. PyBullet takes a margin of 1 mm off each end of a cylinder, so what
+# is left of this one touches exactly in the middle. Of another it would be one side, the same for
+# both wheels, by up to a millimetre, and one of them would have more load, and more grip.
+_CREST = 0.002
+
+# How much lower the shoulders of a wheel are, as a share of its half diagonal. What is nearer to
+# the floor than 0.02 of that is a contact, which costs.
+_CROWN = 0.022
+
 # Looking at a shape above a plane takes 1.7 % of a step of the article's robot, a rider 5 %.
 _WORTH_A_RIDER = 6
 _SINKS_IN = 5e-5  # [m] one side of a wheel may be so much lower, and both still touch the floor
@@ -108,7 +113,7 @@ def crowned(
     reach = math.hypot(wheel.radius, wheel.radius, wheel.length / 2.0)
     shoulders = max(wheel.radius - _CROWN * reach, wheel.radius / 2.0)
     return (
-        replace(collision, geometry=Cylinder(wheel.radius, min(_CREST * reach, wheel.length))),
+        replace(collision, geometry=Cylinder(wheel.radius, min(_CREST, wheel.length))),
         replace(collision, geometry=Cylinder(shoulders, wheel.length)),
     )
 
