@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from rosbots_description.sim.clock import SimClock
 from rosbots_description.sim.errors import NotFoundError
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.pose import Pose, Twist, from_rpy
+from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy
 from rosbots_description.sim.spec import (
     Collision,
     Cylinder,
@@ -65,6 +65,7 @@ class FakeModel:
             LinkSpec(f'{name}_link', Pose((0.0, y[name], 0.2), side), collisions=wheel_collisions)
             for name in y
         ]
+        self.radius = wheel_collisions[0].geometry.radius if wheel_collisions else 0.0
         self.spec = ModelSpec('robot', (LinkSpec('base'), *wheel_links))
         self.body = None
         self.rolling = set()  # links that were let to roll
@@ -77,6 +78,13 @@ class FakeModel:
 
     def state(self):
         return self.now
+
+    @property
+    def pose(self):
+        """Return where it is by `now`, turned as its wheels have turned it."""
+        left, right = (self.wheels[side].position * self.radius for side in ('left', 'right'))
+        told = from_rpy(0.0, 0.0, (right - left) / 0.8)
+        return compose(self.now[0], Pose((0.0, 0.0, 0.0), told))
 
     def joint(self, name):
         if name not in self.wheels:

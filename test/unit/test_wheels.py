@@ -6,6 +6,7 @@ import pytest
 from support.fake_drive import PERIOD_STEPS, collect, make, rim_speeds, run, wheel_of
 
 from rosbots_description.sim.plugins.diff_drive import REACHED
+from rosbots_description.sim.pose import Pose, Twist, from_rpy
 from rosbots_description.sim.wheel import CREEP, LAG
 
 
@@ -236,3 +237,39 @@ def test_wheels_of_a_body_that_was_made_anew_are_told_everything_at_once():
     plugin.model.rolling.clear()
     run(plugin, PERIOD_STEPS)
     assert plugin.model.rolling == {'left_link', 'right_link'}
+
+
+def turning(plugin, rate):
+    """Let the robot turn at that rate [rad/s], whatever its wheels do, for two seconds."""
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (asked, 0.0)
+    for k in range(40):
+        plugin.model.now = (Pose((0.0, 0.0, 0.0), from_rpy(0.0, 0.0, 0.05 * rate * k)), Twist())
+        run(plugin, 5 * PERIOD_STEPS)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_what_the_solver_lets_a_robot_turn_by_its_wheels_make_up_for(sign):
+    plugin = driving()
+    turning(plugin, 0.002 * sign)  # of wheels 0.8 m apart: 0.8 mm/s each
+    left, right = rim_speeds(plugin)
+    assert sign * (left - 0.52) == pytest.approx(0.8e-3, rel=0.1)
+    assert sign * (0.52 - right) == pytest.approx(0.8e-3, rel=0.1)
+    turning(plugin, 0.0)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52), abs=1e-4)
+
+
+def test_what_turns_a_robot_by_more_is_no_matter_of_its_wheels():
+    plugin = driving()
+    turning(plugin, 0.02)
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52), abs=1e-4)
+
+
+@pytest.mark.parametrize('command', [(0.52, 0.5), (0.0, 0.5), (0.0, 0.0)])
+def test_in_curves_and_at_rest_wheels_make_up_for_nothing(command):
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.command(*command)
+    run(plugin, 10 * PERIOD_STEPS)
+    before = rim_speeds(plugin)
+    turning(plugin, 0.002)
+    assert rim_speeds(plugin) == pytest.approx(before, abs=1e-6)

@@ -126,10 +126,13 @@ class Wheel:
         model = self.joint.model
         model.engine.set_hold(model.body, self.joint.spec.child, self._axis, share)
 
-    def give_way(self, use: float) -> None:
+    def give_way(self, use: float, ahead: float = 0.0) -> None:
         """Bring creep and lag towards what belongs to a share of the grip in use, -1 to 1.
 
         A wheel that is asked to stand neither lags nor creeps: a parked robot stays where it is.
+
+        Args:
+            ahead: how much farther it has come than its tyre tells since it was looked at last [m].
         """
         if not self._asked:
             use = 0.0
@@ -139,7 +142,8 @@ class Wheel:
         self._creep += (steady - self._creep) * min(1.0, elapsed / RELAXATION)
         if elapsed <= 0.0 or abs(self.joint.effort) >= ALL * self._torque:
             return
-        missing = behind / elapsed - max(-MOST_LAG, min(MOST_LAG, LAG * use)) / radius
+        lag = max(-MOST_LAG, min(MOST_LAG, LAG * use)) / radius
+        missing = (behind - ahead / radius) / elapsed - lag
         if abs(missing) < TRIM:
             trim = self._trim + missing * min(1.0, elapsed / TRIMMING)
             self._trim = max(-TRIM, min(TRIM, trim))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from .body import Body
 from .clock import SimClock
 from .dragging import Dragged
+from .drifting import Drift
 from .sliding import Sliding
 from .wheel import Wheel
 
@@ -32,6 +33,7 @@ class WheelPair:
         self._model = model
         self._dragged = Dragged(model, left)
         self._sliding = Sliding(self.wheels)
+        self._drift = Drift(model, left, right, clock)
         self._clock = clock
         self._looked_ns = 0
         self._driven: tuple[Body, float, float] | None = None  # what was asked of which body last
@@ -45,6 +47,7 @@ class WheelPair:
             wheel.release()
         self._dragged.hold(1.0)
         self._sliding.rest()
+        self._drift.rest()
 
     def rest(self) -> None:
         """Take note that the wheels stand still."""
@@ -53,6 +56,7 @@ class WheelPair:
         for wheel in self.wheels:
             wheel.rest()
         self._sliding.rest()
+        self._drift.rest()
 
     def drive(self, left: float, right: float) -> None:
         """Turn the hubs at these speeds [rad/s] from now on."""
@@ -79,8 +83,10 @@ class WheelPair:
         """Let each wheel lag and creep as the share of the grip in use tells."""
         pulls, grips = zip(*(wheel.pull_and_grip() for wheel in self.wheels), strict=True)
         both = _share(sum(pulls), sum(grips))
-        for wheel, pull, grip in zip(self.wheels, pulls, grips, strict=True):
-            wheel.give_way(both + bend * (_share(pull, grip) - both))
+        farther = (1.0 - bend) * self._drift.look()
+        ahead = (-farther, farther)
+        for wheel, pull, grip, way in zip(self.wheels, pulls, grips, ahead, strict=True):
+            wheel.give_way(both + bend * (_share(pull, grip) - both), way)
 
 
 def bend_of(left: float, right: float) -> float:
