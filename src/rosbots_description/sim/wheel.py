@@ -126,7 +126,7 @@ class Wheel:
         model = self.joint.model
         model.engine.set_hold(model.body, self.joint.spec.child, self._axis, share)
 
-    def give_way(self, use: float, ahead: float = 0.0) -> None:
+    def give_way(self, use: float, ahead: float) -> None:
         """Bring creep and lag towards what belongs to a share of the grip in use, -1 to 1.
 
         A wheel that is asked to stand neither lags nor creeps: a parked robot stays where it is.

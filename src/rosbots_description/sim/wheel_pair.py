@@ -41,13 +41,10 @@ class WheelPair:
 
     def release(self) -> None:
         """Forget speeds and ways; the motors hold the wheels."""
-        self._looked_ns = self._clock.now_ns
-        self._settled = False
+        self.rest()
         for wheel in self.wheels:
             wheel.release()
         self._dragged.hold(1.0)
-        self._sliding.rest()
-        self._drift.rest()
 
     def rest(self) -> None:
         """Take note that the wheels stand still."""
