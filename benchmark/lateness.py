@@ -29,7 +29,7 @@ RECORD = OUTPUT / 'lateness.json'
 STEP = 0.001  # [s]
 WINDOW = 2000  # steps
 
-Begins = list[tuple[float, float]]  # of steps: begun [s, monotonic], waited for a processor [s]
+Begins = list[tuple[float, float]]  # of steps: begun [s, monotonic], waited in all till then [s]
 
 
 class Recorder(Hook):
