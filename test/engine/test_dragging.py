@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from support import empty_world
 
+from rosbots_description.sim.body import HOLDS_ALL, Hold
 from rosbots_description.sim.dragging import Dragged
 from rosbots_description.sim.pose import Pose, from_rpy
 from rosbots_description.sim.spec import (
@@ -25,6 +26,7 @@ SIDEWAYS, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
 ROUND = Inertial(2.0, ixx=0.02, iyy=0.02, izz=0.02)
 ASKEW = Inertial(2.0, ixx=0.02, iyy=0.03, izz=0.04, ixy=0.005, ixz=0.004)
 PUSH = 10.0  # [N], half of what holds the sledge
+FREE = Hold(sideways=0.0)
 SHAPE = (Collision('c', Box((0.4, 0.4, 0.1))),)
 
 
@@ -40,11 +42,11 @@ def sledge(inertial, turn=0.0):
                                                          axis=SIDEWAYS),))
 
 
-def speed_after_a_push(spec, direction, share):
-    """Return how fast the sledge is after a push of 0.1 s against that share of its friction."""
+def speed_after_a_push(spec, direction, hold):
+    """Return how fast the sledge is after a push of 0.1 s against these shares of its friction."""
     with empty_world() as world:
         model = world.spawn(spec, 'sledge', Pose((0.0, 0.0, 0.05)))
-        Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock)).hold(share)
+        Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock)).hold(hold)
         world.run(100)
         for _ in range(100):
             force = tuple(PUSH * part for part in direction)
@@ -57,22 +59,29 @@ def speed_after_a_push(spec, direction, share):
 @pytest.mark.parametrize('inertial', [ROUND, ASKEW])
 def test_on_the_straight_nothing_is_held_sideways_but_ahead(inertial, turn):
     spec = sledge(inertial, turn)
-    assert speed_after_a_push(spec, SIDEWAYS, 0.0) == pytest.approx(0.5, rel=0.02)
-    assert speed_after_a_push(spec, AHEAD, 0.0) < 1e-3
+    assert speed_after_a_push(spec, SIDEWAYS, FREE) == pytest.approx(0.5, rel=0.02)
+    assert speed_after_a_push(spec, AHEAD, FREE) < 1e-3
+
+
+def test_ahead_a_share_of_it_holds():
+    spec = sledge(ASKEW)
+    quarter = Hold(ahead=0.25)
+    assert speed_after_a_push(spec, AHEAD, quarter) == pytest.approx(0.25, abs=0.02)
+    assert speed_after_a_push(spec, SIDEWAYS, quarter) < 1e-3
 
 
 def test_in_curves_and_at_rest_all_holds():
-    assert speed_after_a_push(sledge(ASKEW), SIDEWAYS, 1.0) < 1e-3
-    assert speed_after_a_push(sledge(ASKEW), AHEAD, 1.0) < 1e-3
+    assert speed_after_a_push(sledge(ASKEW), SIDEWAYS, HOLDS_ALL) < 1e-3
+    assert speed_after_a_push(sledge(ASKEW), AHEAD, HOLDS_ALL) < 1e-3
 
 
 def test_what_was_free_holds_again():
     with empty_world() as world:
         model = world.spawn(sledge(ASKEW), 'sledge', Pose((0.0, 0.0, 0.05)))
         dragged = Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock))
-        dragged.hold(0.0)
+        dragged.hold(FREE)
         world.run(100)
-        dragged.hold(1.0)
+        dragged.hold(HOLDS_ALL)
         for _ in range(100):
             model.links['base'].push((0.0, PUSH, 0.0), (0.0, 0.0, 0.0))
             world.run(1)
@@ -85,15 +94,15 @@ def test_what_is_fixed_to_the_base_is_dragged_with_it():
     spec = sledge(ROUND)
     spec = ModelSpec('sledge', (base, spec.links[1], skid),
                      (*spec.joints, JointSpec('bolt', FIXED, 'base', 'skid')))
-    assert speed_after_a_push(spec, SIDEWAYS, 0.0) > 0.2
-    assert speed_after_a_push(spec, AHEAD, 0.0) < 1e-3
+    assert speed_after_a_push(spec, SIDEWAYS, FREE) > 0.2
+    assert speed_after_a_push(spec, AHEAD, FREE) < 1e-3
 
 
 def test_a_robot_bolted_to_the_world_has_nothing_to_drag_but_itself():
     spec = sledge(ROUND)
     spec = ModelSpec('sledge', spec.links, (JointSpec('bolt', FIXED, 'world', 'base'),
                                             *spec.joints))
-    assert speed_after_a_push(spec, SIDEWAYS, 0.0) == 0.0
+    assert speed_after_a_push(spec, SIDEWAYS, FREE) == 0.0
 
 
 @pytest.mark.parametrize('kp', [1e12, 1e5])
@@ -104,7 +113,7 @@ def test_what_is_dragged_sinks_in_by_a_hair_or_as_described(kp):
     with empty_world() as world:
         model = world.spawn(spec, 'sledge', Pose((0.0, 0.0, 0.05)))
         dragged = Dragged(model, Wheel(model.joint('axle'), 1.0, world.clock))
-        dragged.hold(1.0)
+        dragged.hold(HOLDS_ALL)
         world.run(2000)
         depth = Tuning().dragged_sinks if kp > 1e9 else 2.001 * 9.8 / kp
         # on four corners

@@ -16,6 +16,7 @@ from rosbots_description.sim.spec import (
     ModelSpec,
     PluginSpec,
 )
+from rosbots_description.sim.tuning import Tuning
 
 TAGS = {
     'robotNamespace': '/',
@@ -69,9 +70,10 @@ class FakeModel:
         self.spec = ModelSpec('robot', (LinkSpec('base'), *wheel_links))
         self.body = None
         self.rolling = set()  # links that were let to roll
-        self.holds = {}  # shares of the friction of each link along the axle
+        self.holds = {}  # which shares of its friction each link holds
         self.engine = SimpleNamespace(
-            set_hold=lambda _, link, axis, share: self.holds.__setitem__(link, share),
+            set_hold=lambda _, link, axis, hold: self.holds.__setitem__(link, hold),
+            friction_towards=Tuning().friction_towards,
             let_sink=lambda *_: None,
             let_roll=lambda _, link: self.rolling.add(link),
         )

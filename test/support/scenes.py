@@ -156,12 +156,26 @@ def speed_error(spec: ModelSpec) -> Scene:
     return scene
 
 
-def veer(spec: ModelSpec) -> Scene:
+def heading_error(spec: ModelSpec) -> Scene:
+    """Return a scene: the share by which a robot's speed depends on where it drives to."""
+
+    def speed(yaw: float, tuning: Tuning | None) -> float:
+        with empty_world(tuning) as world:
+            return forward_speed(drive(world, spec, 4, yaw))
+
+    def scene(tuning: Tuning | None = None) -> float:
+        speeds = [speed(yaw, tuning) for yaw in HEADINGS]
+        return max(speeds) / min(speeds) - 1.0
+
+    return scene
+
+
+def veer(spec: ModelSpec, speed: float = SPEED) -> Scene:
     """Return a scene: by how much a robot turns at most in a straight drive of 20 s [rad]."""
 
     def turned(yaw: float, tuning: Tuning | None) -> float:
         with empty_world(tuning) as world:
-            return abs(yaw_of(drive(world, spec, 20, yaw).pose.orientation) - yaw)
+            return abs(yaw_of(drive(world, spec, 20, yaw, speed).pose.orientation) - yaw)
 
     return lambda tuning=None: max(turned(yaw, tuning) for yaw in HEADINGS)
 
@@ -333,9 +347,11 @@ SCENES: dict[str, Scene] = {
     'two casters, mu 0.1': speed_error(castered(mu=0.1)),
     '50 kg': speed_error(castered(50.0, 1.0, casters=1)),
     '0.2 kg': speed_error(castered(0.2, 0.12, casters=1)),
+    'speed, any heading': heading_error(castered(casters=1, rear=0.4)),
     'veer, one caster': veer(castered(casters=1)),
     'veer, laden caster': veer(castered(casters=1, rear=0.4)),
     'veer, two casters': veer(castered()),
+    'veer, backs at once': veer(castered(acceleration=0.0, rear=0.4), -SPEED),
     'veer, 0.2 kg': veer(castered(0.2, 0.12, casters=1)),
     'veer, broad wheels': veer(mirrored(robot_spec())),
     'veer, weak motors': veer(castered(casters=1, torque=0.1, acceleration=0.0)),

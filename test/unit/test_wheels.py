@@ -1,10 +1,12 @@
 """Driven wheels lag and creep by the force they pass on; what is dragged holds in curves."""
 
+import math
 from dataclasses import replace
 
 import pytest
 from support.fake_drive import PERIOD_STEPS, collect, make, rim_speeds, run, wheel_of
 
+from rosbots_description.sim.body import HOLDS_ALL
 from rosbots_description.sim.plugins.diff_drive import REACHED
 from rosbots_description.sim.pose import Pose, Twist, from_rpy
 from rosbots_description.sim.wheel import CREEP, LAG
@@ -135,7 +137,21 @@ def test_what_a_robot_drags_holds_sideways_in_curves_and_at_rest(command, share)
     plugin = make(wheelAcceleration='0')
     plugin.command(*command)
     run(plugin, PERIOD_STEPS + 1)
-    assert plugin.model.holds['base'] == pytest.approx(share)
+    assert plugin.model.holds['base'].sideways == pytest.approx(share)
+
+
+@pytest.mark.parametrize('heading', [0.0, 0.4, math.pi / 4.0, 2.0, -2.5])
+def test_straight_on_what_slides_is_held_back_alike_at_any_heading(heading):
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.model.now = (Pose(orientation=from_rpy(0.0, 0.0, heading)), Twist())
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    limits = abs(math.cos(heading)) + abs(math.sin(heading))  # along the world's axes, together
+    for hold in plugin.model.holds.values():
+        assert hold.ahead * limits == pytest.approx(1.0, abs=0.01)
+    plugin.command(0.52, 0.5)
+    run(plugin, PERIOD_STEPS)
+    assert set(plugin.model.holds.values()) == {HOLDS_ALL}
 
 
 @pytest.mark.parametrize('command', [(1e308, 1e308), (1e-320, 0.0), (0.0, 1e-320)])
@@ -143,7 +159,7 @@ def test_no_command_asks_for_a_share_that_is_none(command):
     plugin = make(wheelAcceleration='0')
     plugin.command(*command)
     run(plugin, PERIOD_STEPS + 1)
-    assert 0.0 <= plugin.model.holds['base'] <= 1.0
+    assert all(0.0 <= share <= 1.0 for share in plugin.model.holds['base'])
 
 
 def test_a_wheel_that_nothing_rests_on_does_not_creep():
@@ -157,7 +173,8 @@ def test_a_wheel_that_nothing_rests_on_does_not_creep():
 
 def tyres(plugin):
     """Return how much each tyre holds along the axle."""
-    return [plugin.model.holds.get(f'{side}_link', 1.0) for side in ('left', 'right')]
+    holds = plugin.model.holds
+    return [holds.get(f'{side}_link', HOLDS_ALL).sideways for side in ('left', 'right')]
 
 
 def test_tyres_hold_nothing_sideways_while_they_slide_straight_on():
@@ -209,7 +226,7 @@ def test_what_is_dragged_by_wheels_that_stand_holds():
         wheel.gives = lambda asked: (0.0, 5.0)  # the motors are too weak
     plugin.command(0.52, 0.0)
     run(plugin, 5 * PERIOD_STEPS)
-    assert plugin.model.holds['base'] == 1.0
+    assert plugin.model.holds['base'] == HOLDS_ALL
 
 
 def driving():

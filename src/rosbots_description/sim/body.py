@@ -32,6 +32,16 @@ class Touching(NamedTuple):
     rigid: bool
 
 
+class Hold(NamedTuple):
+    """Which shares of its friction a surface holds: along an axle, and in the other directions."""
+
+    sideways: float = 1.0
+    ahead: float = 1.0
+
+
+HOLDS_ALL = Hold()
+
+
 class Body:
     """A model in the engine. Links and joints are addressed by their names."""
 
@@ -47,7 +57,7 @@ class Body:
         self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
         self.surfaces: dict[str, list[Touching]] = {}  # what each link touches with
-        self.holds: dict[str, float] = {}  # last share of each link's friction along an axis
+        self.holds: dict[str, Hold] = {}  # last shares of each link's friction
         self.rolling: set[str] = set()  # links that roll without resistance
         self.sinking: set[str] = set()  # links that give way by a hair
 

@@ -7,7 +7,7 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
-from .body import Body, Motion, Part
+from .body import HOLDS_ALL, Body, Hold, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
@@ -234,20 +234,27 @@ class Engine:
                     forces[contact[4]] = forces.get(contact[4], 0.0) + contact[9]
         return forces.get(part.index, 0.0)
 
-    def set_hold(self, body: Body, link: str, axis: Vector, share: float) -> None:
-        """Let a link's surfaces hold only `share` of their friction along `axis` of its frame.
+    def set_hold(self, body: Body, link: str, axis: Vector, hold: Hold) -> None:
+        """Let a link's surfaces hold only shares of their friction; `axis` of its frame is an axle.
 
         Surfaces none of whose own axes it is hold as they did.
         """
-        if body.holds.get(link, 1.0) == share:
+        if body.holds.get(link, HOLDS_ALL) == hold:
             return  # it does so already
-        body.holds[link] = share
+        body.holds[link] = hold
         for part in body.surfaces[link]:
             own = rotate(conjugate(part.axes), axis)
-            scales = [share if abs(component) > ALONG else 1.0 for component in own]
+            along = [abs(component) > ALONG for component in own]
+            if not any(along):
+                continue
+            scales = [hold.sideways if is_axle else hold.ahead for is_axle in along]
             pybullet.changeDynamics(
                 part.body, part.index, anisotropicFriction=scales, physicsClientId=self._client
             )
+
+    def friction_towards(self, yaw: float) -> float:
+        """Return how many times its mu what slides in that direction [rad] is held back by."""
+        return self._tuning.friction_towards(yaw)
 
     def let_sink(self, body: Body, link: str, weight: float) -> None:
         """Let a link give way by a hair under a weight [N], if nobody described how it does."""

@@ -2,12 +2,14 @@
 
 Friction is limited along the world's axes each (tuning.py), so a tyre that slides across them is
 pushed aside as hard as it is pulled ahead. But friction points against the slip: what slides
-straight on is not held sideways at all. So wheels that are asked to run alike hold nothing along
-their axle while they slide. Wheels that are asked to stand hold all, sliding or not.
+straight on is not held sideways at all, and ahead alike at any heading. So wheels that are asked to
+run alike hold nothing along their axle while they slide. Wheels that are asked to stand hold all,
+sliding or not.
 """
 
 from collections.abc import Sequence
 
+from .body import HOLDS_ALL, Hold
 from .wheel import Wheel
 
 JUMP = 0.05  # [m/s] a rim that is asked for that much more or less at once may begin to slide
@@ -30,14 +32,14 @@ class Sliding:
         """Let the tyres hold: they stand still."""
         self._asked = (0.0,) * len(self._wheels)
         self.slides = False
-        self._hold(1.0)
+        self._hold(HOLDS_ALL)
 
-    def watch(self, asked: Sequence[float], bend: float) -> None:
+    def watch(self, asked: Sequence[float], hold: Hold) -> None:
         """Let the tyres hold as much as they do.
 
         Args:
             asked: speeds of the hubs from now on [rad/s].
-            bend: how far from straight the way is that they are to go, 0 to 1.
+            hold: what tyres hold that slide on the way they are to go.
         """
         jumps = any(
             abs(now - then) * (wheel.radius or 0.0) > JUMP
@@ -47,8 +49,8 @@ class Sliding:
         if not jumps and not self.slides:
             return
         self.slides = jumps or any(abs(wheel.slip()) > SLIP for wheel in self._wheels)
-        self._hold(bend if self.slides else 1.0)
+        self._hold(hold if self.slides else HOLDS_ALL)
 
-    def _hold(self, share: float) -> None:
+    def _hold(self, hold: Hold) -> None:
         for wheel in self._wheels:
-            wheel.hold(share)
+            wheel.hold(hold)

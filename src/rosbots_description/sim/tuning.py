@@ -1,5 +1,6 @@
 """What the engine is free to choose: the settings that nothing in a model or a world prescribes."""
 
+import math
 from dataclasses import dataclass
 
 
@@ -22,3 +23,7 @@ class Tuning:
     exact_cylinders: bool = True
     push_out: float = 10.0
     dragged_sinks: float = 5e-4
+
+    def friction_towards(self, yaw: float) -> float:
+        """Return how many times its mu what slides in that direction [rad] is held back by."""
+        return 1.0 if self.friction_cone else abs(math.cos(yaw)) + abs(math.sin(yaw))

@@ -15,6 +15,7 @@ What the force is, and when to look at it, a WheelPair says.
 import math
 from typing import TYPE_CHECKING
 
+from .body import Hold
 from .clock import NANOSECONDS, SimClock
 from .pose import Vector, compose, cross, dot, rotate
 from .spec import Cylinder, LinkSpec, Sphere
@@ -121,10 +122,10 @@ class Wheel:
         """Tell whether the wheel hardly turns; one of unknown radius never does."""
         return abs(self.joint.velocity) * (self.radius or math.inf) < CRAWL
 
-    def hold(self, share: float) -> None:
-        """Let the tyre hold only so much of its friction along the axle: 0 nothing, 1 all."""
+    def hold(self, hold: Hold) -> None:
+        """Let the tyre hold only these shares of its friction."""
         model = self.joint.model
-        model.engine.set_hold(model.body, self.joint.spec.child, self._axis, share)
+        model.engine.set_hold(model.body, self.joint.spec.child, self._axis, hold)
 
     def give_way(self, use: float, ahead: float) -> None:
         """Bring creep and lag towards what belongs to a share of the grip in use, -1 to 1.

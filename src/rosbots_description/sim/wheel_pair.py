@@ -9,10 +9,11 @@ its own.
 import math
 from typing import TYPE_CHECKING
 
-from .body import Body
+from .body import HOLDS_ALL, Body, Hold
 from .clock import SimClock
 from .dragging import Dragged
 from .drifting import Drift
+from .pose import yaw_of
 from .sliding import Sliding
 from .wheel import Wheel
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 # In a curve where the speeds of the wheels differ by this share of their sum, they share nothing.
 BEND = 0.1
+_DIGITS = 2  # of a share: friction does not change with each bit that a robot turns by
 LOOK_NS = 50_000_000  # time between two looks at force and load, half of what steering costs [ns]
 
 
@@ -44,7 +46,7 @@ class WheelPair:
         self.rest()
         for wheel in self.wheels:
             wheel.release()
-        self._dragged.hold(1.0)
+        self._dragged.hold(HOLDS_ALL)
 
     def rest(self) -> None:
         """Take note that the wheels stand still."""
@@ -72,8 +74,9 @@ class WheelPair:
         for wheel in self.wheels:
             wheel.turn()
         stuck = bend < 1.0 and all(wheel.crawls() for wheel in self.wheels)
-        self._dragged.hold(1.0 if stuck else bend)
-        self._sliding.watch((left, right), bend)
+        hold = self._holds_straight_on(bend)
+        self._dragged.hold(HOLDS_ALL if stuck else hold)
+        self._sliding.watch((left, right), hold)
         self._settled = not stuck and not self._sliding.slides
 
     def _give_way(self, bend: float) -> None:
@@ -84,6 +87,18 @@ class WheelPair:
         ahead = (-farther, farther)
         for wheel, pull, grip, way in zip(self.wheels, pulls, grips, ahead, strict=True):
             wheel.give_way(both + bend * (_share(pull, grip) - both), way)
+
+    def _holds_straight_on(self, bend: float) -> Hold:
+        """Return what holds of that which slides on the way that the wheels are to go.
+
+        The straighter it is, the less of it along the axle, and the more nearly as much ahead as
+        at any other heading.
+        """
+        if bend >= 1.0:
+            return HOLDS_ALL
+        yaw = yaw_of(self._model.pose.orientation)
+        same = 1.0 / self._model.engine.friction_towards(yaw)
+        return Hold(bend, round(same + bend * (1.0 - same), _DIGITS))
 
 
 def bend_of(left: float, right: float) -> float:
