@@ -11,19 +11,18 @@ from __future__ import annotations
 import resource
 import statistics
 import sys
-import threading
 import time
 from dataclasses import replace
 from itertools import cycle
 
+import recorded
 import rospy
 import rosservice
 from article import FORWARD, ROOT, robot_spec
-from gazebo_msgs.msg import LinkStates
 from gazebo_msgs.srv import GetLinkState, GetModelState, GetWorldProperties
-from lateness import report
+from lateness import STEP, report
 from loops import Loop
-from server import Server, in_a_process_of_its_own, wait_until
+from server import Server, in_a_process_of_its_own
 
 from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.meshes import MeshStore
@@ -38,7 +37,7 @@ GAZEBO_BARE = 25_300.0  # steps/s of the bare loop beside Gazebo, one robot driv
 SPAWNS = 20
 COMMANDS = 50
 SLOW = 0.1  # [m/s] of the commands whose effect is awaited
-TURNING = 0.004  # [rad/s] at which a wheel has begun to turn; the first step gives twice as much
+RAMP = 0.2  # [s] in which the robot has come to that speed, or to rest
 HAMMER_RATE, HAMMER_SECONDS = 200.0, 10.0  # [Hz], [s, wall] of service calls
 CALLS = 50  # of each service
 SLOWEST = 5  # services to be named
@@ -86,46 +85,13 @@ def _least_share(server: Server) -> tuple[float, float]:
 
 
 def measure_answers() -> tuple[float, float]:
-    """Print how soon spawns, commands and services take effect; return the times to start."""
+    """Print how soon robots are spawned and services answer; return the times to start."""
     with Server() as server:
-        print_times('command to wheel', _command_times(server), 'one period of 10 ms and 3 ms')
         print_times('spawn of the robot', [server.spawn() for _ in range(SPAWNS)], '100 ms')
         print(f'memory with {SPAWNS + 1} robots: {server.memory():.0f} MB '
               f'(Gazebo with 20: {GAZEBO_MEMORY[20]:.0f})')
         _print_services()
         return _start(server)
-
-
-def _command_times(server: Server) -> list[float]:
-    """Return how long after each of several commands a wheel of a standing robot turns [s, wall].
-
-    What is seen is a step later than the wheel's target, and has come over the wire.
-    """
-    speed, moved = [0.0], threading.Event()
-
-    def see(message: LinkStates) -> None:
-        twist = message.twist[message.name.index(WHEEL)].angular
-        speed[0] = max(abs(twist.x), abs(twist.y), abs(twist.z))
-        if speed[0] > TURNING:
-            moved.set()
-
-    server.spawn()
-    server.settle(2.0)
-    subscriber = rospy.Subscriber('/gazebo/link_states', LinkStates, see, tcp_nodelay=True)
-    wait_until(subscriber.get_num_connections, 'link_states')
-    times = []
-    for _ in range(COMMANDS):
-        server.drive(0.0)
-        wait_until(lambda: speed[0] < TURNING / 10.0, 'a standing wheel')
-        time.sleep(0.1 + 0.01 * len(times) / COMMANDS)  # at all phases of the plugin's period
-        moved.clear()
-        begin = time.monotonic()
-        server.drive(SLOW)
-        if not moved.wait(1.0):
-            raise TimeoutError('the wheel did not turn within 1 s of the command')
-        times.append(time.monotonic() - begin)
-    subscriber.unregister()
-    return times
 
 
 def measure_trials() -> None:
@@ -176,26 +142,62 @@ def _print_services() -> None:
         print(f'{name:37} answers in {1000 * median:.2f} ms (median)')
 
 
-def measure_lateness() -> None:
-    """Print how late steps are while one robot drives and a client calls services."""
+def measure_promptness() -> None:
+    """Print how soon commands reach wheels, and how late steps are while services are called."""
     with Server(launch=[str(ROOT / 'benchmark' / 'recorded.launch')]) as server:
         server.spawn()
         server.settle(2.0)
+        sent = _command(server)
         server.drive(FORWARD)
-        model = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
-        link = rospy.ServiceProxy('/gazebo/get_link_state', GetLinkState)
-        world = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)
-        requests = cycle((lambda: model('robot0', ''), lambda: link(WHEEL, ''), world))
-        begin, simulated = time.monotonic(), server.simulated()
-        for i in range(int(HAMMER_RATE * HAMMER_SECONDS)):
-            next(requests)()
-            time.sleep(max(0.0, begin + (i + 1) / HAMMER_RATE - time.monotonic()))
-        rate = HAMMER_RATE * HAMMER_SECONDS / (time.monotonic() - begin)
-        end = server.simulated()
-    late = report(simulated, end)
+        begin, before = server.simulated(), _processor_time()
+        rate = _hammer()
+        end, after = server.simulated(), _processor_time()
+    record = recorded.read()
+    print_times('command to wheel', [_target_after(one, record) - one for one in sent],
+                'one period of 10 ms and 3 ms')
+    late = report(record.steps[round(begin / STEP) : round(end / STEP)])
     print(f'steps late in the quietest 2 s, at {rate:.0f} calls/s: '
           + ', '.join(f'{share} {1000 * seconds:.2f} ms' for share, seconds in late.items())
           + ' (aim: p99 below 2 ms)')
+    stolen, passed = (now - then for now, then in zip(after, before, strict=True))
+    print(f'meanwhile the host of this machine took {stolen / passed:.1%} of its processors away')
+
+
+def _processor_time() -> tuple[int, int]:
+    """Return how much of all processors' time a host took away, and all of it, in one unit."""
+    with open('/proc/stat', encoding='ascii') as stat:
+        times = [int(field) for field in stat.readline().split()[1:9]]
+    return times[-1], sum(times)
+
+
+def _command(server: Server) -> list[float]:
+    """Command a standing robot to drive, at all phases of its plugin's period; return when [s]."""
+    sent = []
+    for i in range(COMMANDS):
+        server.drive(0.0)
+        server.settle(RAMP + 0.01 * i / COMMANDS)
+        sent.append(time.monotonic())
+        server.drive(SLOW)
+        server.settle(RAMP)
+    return sent
+
+
+def _target_after(moment: float, record: recorded.Record) -> float:
+    """Return when the wheel got its first new target after a moment [s, monotonic]."""
+    return next(when for when, _ in record.targets if when > moment)
+
+
+def _hammer() -> float:
+    """Call services at a steady rate; return at which it was [Hz]."""
+    model = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
+    link = rospy.ServiceProxy('/gazebo/get_link_state', GetLinkState)
+    world = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)
+    requests = cycle((lambda: model('robot0', ''), lambda: link(WHEEL, ''), world))
+    begin = time.monotonic()
+    for i in range(int(HAMMER_RATE * HAMMER_SECONDS)):
+        next(requests)()
+        time.sleep(max(0.0, begin + (i + 1) / HAMMER_RATE - time.monotonic()))
+    return HAMMER_RATE * HAMMER_SECONDS / (time.monotonic() - begin)
 
 
 def slowness() -> float:
@@ -219,7 +221,7 @@ def main() -> int:
           f'master; {up / slower:.2f} s by the bare loop where Gazebo was measured '
           '(aim 1.1 s; Gazebo 0.9 to 1.5 s)')
     in_a_process_of_its_own(measure_trials)
-    in_a_process_of_its_own(measure_lateness)
+    in_a_process_of_its_own(measure_promptness)
     return 0
 
 
