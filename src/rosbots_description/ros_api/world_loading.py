@@ -77,12 +77,18 @@ class _Records(logging.Handler):
 
 
 def _find(name: str) -> Path:
-    places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), *_own_folder()]
-    places += [path for path in exported_directories('gazebo_media_path') if path not in places]
     try:
-        return find_world(name, places)
+        return find_world(name, _places())
     except NotFoundError as error:
         raise NotFoundError(f'{error}; always there are: {", ".join(own_worlds())}') from None
+
+
+def _places() -> Iterator[str]:
+    places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), *_own_folder()]
+    yield from places
+    for path in exported_directories('gazebo_media_path'):  # what takes long comes last
+        if path not in places:
+            yield path
 
 
 def _own_folder() -> list[str]:

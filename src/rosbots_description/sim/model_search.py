@@ -141,20 +141,23 @@ def find_world(name: str, directories: Iterable[str | os.PathLike] = ()) -> Path
     """Return the file of a world: as given, else along `directories`, e.g. 'worlds/empty.world'.
 
     In each directory the name may stand as it is, in `worlds/`, and without '.world'; so a
-    directory may be one of GAZEBO_RESOURCE_PATH, or itself hold the world files.
+    directory may be one of GAZEBO_RESOURCE_PATH, or itself hold the world files. No more
+    directories are asked for than it takes.
 
     Raises:
         NotFoundError: there is none; the sentence says where it was looked for.
     """
-    searched = [os.fspath(directory) for directory in directories]
     names = [name] if name.endswith(('.world', '.sdf')) else [name, f'{name}.world']
-    places = [Path(candidate) for candidate in names]
-    for directory in searched:
-        for candidate in names:
-            places += _places(Path(directory), candidate)
-    for path in places:
+    for path in map(Path, names):
         if path.is_file():
             return path.absolute()
+    searched = []
+    for directory in directories:
+        searched.append(os.fspath(directory))
+        for candidate in names:
+            for path in _places(Path(directory), candidate):
+                if path.is_file():
+                    return path.absolute()
     shown = ', '.join(searched) or 'nowhere else'
     raise NotFoundError(
         f"there is no world file '{name}' as given, nor in: {shown}; "
