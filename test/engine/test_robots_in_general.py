@@ -17,6 +17,8 @@ BOUNDS = {
     '50 kg': 0.002,
     '0.2 kg': 0.002,
     'speed, any heading': 0.005,
+    'curve, laden caster': 0.01,
+    'curve, 0.2 kg': 0.01,
     'veer, one caster': 0.002,
     'veer, laden caster': 0.002,
     'veer, two casters': 0.002,

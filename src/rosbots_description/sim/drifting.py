@@ -28,7 +28,7 @@ class Drift:
         self._clock = clock
         self._track = 0.0  # [m]
         if left.radius and right.radius:
-            self._track = math.dist(left.place_on_axle(), right.place_on_axle())
+            self._track = math.dist(left.touches_on_axle(), right.touches_on_axle())
         self.rest()
 
     def rest(self) -> None:

@@ -12,6 +12,7 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 ZERO: Vector = (0.0, 0.0, 0.0)
+UP: Vector = (0.0, 0.0, 1.0)
 NO_ROTATION: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 _SMALL, _LARGE = 1e-150, 1e150  # between these, squares neither vanish nor overflow

@@ -12,7 +12,7 @@ from operator import not_
 from .bullet_description import MeshFile, Tree
 from .inertia import principal_axes
 from .inner_shapes import inner_shapes
-from .pose import dot, rotate
+from .pose import UP, Vector, dot, rotate
 from .spec import (
     FIXED,
     REVOLUTE,
@@ -105,10 +105,9 @@ def crowned(
     wheel = collision.geometry
     if joint is None or joint.type != REVOLUTE or not isinstance(wheel, Cylinder):
         return (collision,)
-    axis = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
+    axis = rotate(collision.pose.orientation, UP)
     axle = rotate(joint.pose.orientation, joint.axis)
-    tilt = rotate(link.pose.orientation, axis)[2]
-    if abs(dot(axis, axle)) < ALONG or abs(tilt) * wheel.length > _SINKS_IN:
+    if abs(dot(axis, axle)) < ALONG or touching_end(wheel, rotate(link.pose.orientation, axis)):
         return (collision,)
     reach = math.hypot(wheel.radius, wheel.radius, wheel.length / 2.0)
     shoulders = max(wheel.radius - _CROWN * reach, wheel.radius / 2.0)
@@ -116,6 +115,17 @@ def crowned(
         replace(collision, geometry=Cylinder(wheel.radius, min(_CREST, wheel.length))),
         replace(collision, geometry=Cylinder(shoulders, wheel.length)),
     )
+
+
+def touching_end(wheel: Cylinder, axis: Vector) -> float:
+    """Return how far from its middle, along `axis`, a lying cylinder touches a floor [m].
+
+    One that leans does so with its lower end; one that is level with its crest, in the middle.
+    """
+    tilt = axis[2]
+    if abs(tilt) * wheel.length <= _SINKS_IN:
+        return 0.0
+    return -math.copysign(wheel.length / 2.0, tilt)
 
 
 def _drives(tree: Tree) -> bool:

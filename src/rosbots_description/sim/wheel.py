@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 from .body import Hold
 from .clock import NANOSECONDS, SimClock
-from .pose import Vector, compose, cross, dot, rotate
+from .pose import UP, Vector, add, compose, cross, dot, rotate
 from .spec import Cylinder, LinkSpec, Sphere
-from .surfaces import friction
+from .surfaces import friction, touching_end
 
 if TYPE_CHECKING:
     from .model import Joint
@@ -36,7 +36,6 @@ TRIMMING = 0.5  # time in which the motor comes to its lag [s]; a ramp passes be
 TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
 CRAWL = 0.002  # [m/s] a rim slower than that hardly turns
 ALL = 0.999  # of its torque: a motor that gives as much cannot do more
-UP = (0.0, 0.0, 1.0)
 
 
 class Wheel:
@@ -181,6 +180,16 @@ class Wheel:
         ax, ay, az = self.axle
         along = dot(self.axle, compose(link.pose, link.collisions[0].pose).position)
         return (along * ax, along * ay, along * az)
+
+    def touches_on_axle(self) -> Vector:
+        """Return the same for where that shape touches a floor under the model [m]."""
+        link = self._link()
+        shape = link.collisions[0]
+        if not isinstance(shape.geometry, Cylinder):
+            return self.place_on_axle()
+        axis = rotate(compose(link.pose, shape.pose).orientation, UP)
+        end = touching_end(shape.geometry, axis) * dot(self.axle, axis)
+        return add(self.place_on_axle(), tuple(end * part for part in self.axle))
 
     def _link(self) -> LinkSpec:
         return self.joint.model.spec.link(self.joint.spec.child)

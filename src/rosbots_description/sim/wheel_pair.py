@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .model import Model
 
 # In a curve where the speeds of the wheels differ by this share of their sum, they share nothing.
-BEND = 0.1
+BEND = 0.5
 _DIGITS = 2  # of a share: friction does not change with each bit that a robot turns by
 LOOK_NS = 50_000_000  # time between two looks at force and load, half of what steering costs [ns]
 
@@ -102,9 +102,12 @@ class WheelPair:
 
 
 def bend_of(left: float, right: float) -> float:
-    """Return how far from straight two speeds make the way: 0 straight, 1 a curve or at rest."""
+    """Return how far from straight two speeds make the way: 0 straight, 1 a curve or at rest.
+
+    It grows with the square: what is dragged in a gentle curve slides hardly sideways.
+    """
     difference, straight = abs(right - left), BEND * abs(right + left)
-    return difference / straight if difference < straight else 1.0
+    return (difference / straight) ** 2 if difference < straight else 1.0
 
 
 def _share(pull: float, grip: float) -> float:
