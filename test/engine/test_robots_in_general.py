@@ -18,6 +18,7 @@ BOUNDS = {
     '0.2 kg': 0.002,
     'speed, any heading': 0.005,
     'curve, laden caster': 0.01,
+    'sharp, laden caster': 0.4,
     'curve, 0.2 kg': 0.01,
     'veer, one caster': 0.002,
     'veer, laden caster': 0.002,

@@ -170,17 +170,18 @@ def heading_error(spec: ModelSpec) -> Scene:
     return scene
 
 
-def curve_error(spec: ModelSpec, rate: float) -> Scene:
+def curve_error(spec: ModelSpec, rate: float, speed: float = SPEED) -> Scene:
     """Return a scene: the largest share by which a robot turns unlike asked, once about.
 
     Args:
-        rate: commanded, while it drives on at SPEED [rad/s].
+        rate: commanded [rad/s].
+        speed: commanded [m/s].
     """
 
     def scene(tuning: Tuning | None = None) -> float:
         with empty_world(tuning) as world:
-            model = drive(world, spec)
-            model.plugins[0].command(SPEED, rate)
+            model = drive(world, spec, speed=speed)
+            model.plugins[0].command(speed, rate)
             world.run(1000)
             errors, turned = [], 0.0
             while turned < math.tau:
@@ -373,6 +374,7 @@ SCENES: dict[str, Scene] = {
     '0.2 kg': speed_error(castered(0.2, 0.12, casters=1)),
     'speed, any heading': heading_error(castered(casters=1, rear=0.4)),
     'curve, laden caster': curve_error(castered(casters=1, rear=0.4), 0.3),
+    'sharp, laden caster': curve_error(castered(casters=1, rear=0.4), 0.7, 0.2),
     'curve, 0.2 kg': curve_error(castered(0.2, 0.12, casters=1, rear=0.3), 0.9),
     'veer, one caster': veer(castered(casters=1)),
     'veer, laden caster': veer(castered(casters=1, rear=0.4)),

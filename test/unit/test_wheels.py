@@ -141,6 +141,17 @@ def test_what_a_robot_drags_holds_sideways_in_curves_and_at_rest(command, share)
     assert plugin.model.holds['base'].sideways == pytest.approx(share)
 
 
+@pytest.mark.parametrize(('force', 'share'), [(4.0, 1.0), (5.5, 0.5), (7.0, 0.0), (20.0, 0.0)])
+def test_what_a_robot_drags_lets_go_before_it_holds_the_robot_for_good(force, share):
+    plugin = pulling((10.0, 10.0), (force * 0.26, -force * 0.26))
+    plugin.command(0.0, 1.0)
+    run(plugin, 500 * PERIOD_STEPS)
+    assert plugin.model.holds['base'].sideways == pytest.approx(share, abs=0.01)
+    plugin.command(0.0, 0.0)  # it stands, held on a slope, say
+    run(plugin, 200 * PERIOD_STEPS)
+    assert plugin.model.holds['base'] == HOLDS_ALL
+
+
 @pytest.mark.parametrize('heading', [0.0, 0.4, math.pi / 4.0, 2.0, -2.5])
 def test_straight_on_what_slides_is_held_back_alike_at_any_heading(heading):
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')

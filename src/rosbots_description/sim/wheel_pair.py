@@ -3,7 +3,7 @@
 How much a robot turns is the small difference of what its two wheels do. Force and load of each
 jump from step to step with the contacts, and a robot whose wheels are asked to run alike would turn
 by those jumps. So there both give way by the grip that both together use. In a curve each goes by
-its own.
+its own, and what is dragged holds sideways, too; how far from straight a way is, `bend_of` tells.
 """
 
 import math
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 # In a curve where the speeds of the wheels differ by this share of their sum, they share nothing.
 BEND = 0.5
+# From the first of these shares of the wheels' grip on, what they drag gives way sideways, and at
+# the second it holds nothing there: it would hold the robot for good.
+EASES = (0.45, 0.65)
+_EASING = 0.1  # of the way to what the grip in use tells, at each look; a ramp passes before
 _DIGITS = 2  # of a share: friction does not change with each bit that a robot turns by
 LOOK_NS = 50_000_000  # time between two looks at force and load, half of what steering costs [ns]
 
@@ -39,6 +43,7 @@ class WheelPair:
         self._clock = clock
         self._looked_ns = 0
         self._driven: tuple[Body, float, float] | None = None  # what was asked of which body last
+        self._eased = 1.0  # share of what it would hold sideways else that what is dragged holds
         self._settled = False  # nothing but a new look would change anything
 
     def release(self) -> None:
@@ -51,6 +56,7 @@ class WheelPair:
     def rest(self) -> None:
         """Take note that the wheels stand still."""
         self._looked_ns = self._clock.now_ns
+        self._eased = 1.0
         self._settled = False
         for wheel in self.wheels:
             wheel.rest()
@@ -73,23 +79,27 @@ class WheelPair:
             self._give_way(bend)
         for wheel in self.wheels:
             wheel.turn()
-        stuck = bend < 1.0 and all(wheel.crawls() for wheel in self.wheels)
-        hold = self._holds_straight_on(bend)
-        self._dragged.hold(HOLDS_ALL if stuck else hold)
-        self._sliding.watch((left, right), hold)
+        dragged = self._holds_on(bend * self._eased)
+        stuck = dragged != HOLDS_ALL and all(wheel.crawls() for wheel in self.wheels)
+        self._dragged.hold(HOLDS_ALL if stuck else dragged)
+        self._sliding.watch((left, right), self._holds_on(bend))
         self._settled = not stuck and not self._sliding.slides
 
     def _give_way(self, bend: float) -> None:
         """Let each wheel lag and creep as the share of the grip in use tells."""
         pulls, grips = zip(*(wheel.pull_and_grip() for wheel in self.wheels), strict=True)
         both = _share(sum(pulls), sum(grips))
+        eases, free = EASES
+        in_use = _share(sum(map(abs, pulls)), sum(grips))
+        target = min(1.0, max(0.0, (free - in_use) / (free - eases)))
+        self._eased += (target - self._eased) * _EASING
         farther = (1.0 - bend) * self._drift.look()
         ahead = (-farther, farther)
         for wheel, pull, grip, way in zip(self.wheels, pulls, grips, ahead, strict=True):
             wheel.give_way(both + bend * (_share(pull, grip) - both), way)
 
-    def _holds_straight_on(self, bend: float) -> Hold:
-        """Return what holds of that which slides on the way that the wheels are to go.
+    def _holds_on(self, bend: float) -> Hold:
+        """Return what holds of that which slides on a way so far from straight.
 
         The straighter it is, the less of it along the axle, and the more nearly as much ahead as
         at any other heading.
@@ -98,7 +108,7 @@ class WheelPair:
             return HOLDS_ALL
         yaw = yaw_of(self._model.pose.orientation)
         same = 1.0 / self._model.engine.friction_towards(yaw)
-        return Hold(bend, round(same + bend * (1.0 - same), _DIGITS))
+        return Hold(round(bend, _DIGITS), round(same + bend * (1.0 - same), _DIGITS))
 
 
 def bend_of(left: float, right: float) -> float:
