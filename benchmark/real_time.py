@@ -87,6 +87,7 @@ def _least_share(server: Server) -> tuple[float, float]:
 def measure_answers() -> tuple[float, float]:
     """Print how soon robots are spawned and services answer; return the times to start."""
     with Server() as server:
+        print(f'first spawn of the robot, its trial included: {1000 * server.spawn():.1f} ms')
         print_times('spawn of the robot', [server.spawn() for _ in range(SPAWNS)], '100 ms')
         print(f'memory with {SPAWNS + 1} robots: {server.memory():.0f} MB '
               f'(Gazebo with 20: {GAZEBO_MEMORY[20]:.0f})')

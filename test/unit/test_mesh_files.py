@@ -1,6 +1,5 @@
 """Mesh files: read as RViz reads them, refused when broken, made ready for the engine."""
 
-import logging
 import math
 import os
 import shutil
@@ -198,11 +197,10 @@ def test_a_broken_file_that_is_mended_is_read_again(write):
 
 
 def test_nothing_is_printed_about_odd_files(write, capfd, caplog, recwarn):
-    logging.getLogger('trimesh').propagate = True  # as if nobody had read a mesh yet
-    mesh_reading._quiet_trimesh.cache_clear()
     path = write('m.obj', 'mtllib gone.mtl\nusemtl red\n' + TRIANGLE)
     check_mesh(path)
     complaint(write('n.stl', ASCII_STL.replace('vertex 1 0 0', 'vertex 1 x 0')))
+    complaint(write('p.dae', '<COLLADA/>'))
     assert capfd.readouterr() == ('', '')
     assert caplog.text == ''
     assert len(recwarn) == 0

@@ -6,7 +6,6 @@ applies it and picture and physics must agree. Nothing here prints or opens the 
 """
 
 import hashlib
-import io
 import logging
 import os
 import threading
@@ -17,6 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from .collada_guard import ColladaError, safe_collada
+from .collada_reading import ColladaPart, read_collada
 from .errors import AbsentError, ModelError
 from .files import read_file, regular_state, within
 from .markup import shortened
@@ -149,26 +149,8 @@ def _parse(path: str, extension: str, content: bytes) -> list[Part]:
 
 
 def _parse_collada(content: bytes, path: str) -> list[Part]:
-    _quiet_trimesh()
-    from trimesh.exchange.dae import load_collada
-
-    content = safe_collada(content)
-    scene = load_collada(io.BytesIO(content))
-    if not scene['graph']:
-        # What is broken was left out, as in RViz; where nothing is left, say why.
-        load_collada(io.BytesIO(content), ignore_broken=False)
-    parts = []
-    for node in scene['graph']:
-        geometry = scene['geometry'][node['geometry']]
-        unit = _metres(geometry['metadata'].get('units', 'meters'))
-        matrix = np.array(node['matrix'], dtype=float)
-        parts.append(_part(geometry, matrix, unit))
-    return parts
-
-
-def _metres(units: str) -> float:
-    """Return the length of a Collada unit [m], as trimesh words it: '0.01 * meters'."""
-    return float(units.split('*', maxsplit=1)[0]) if '*' in units else 1.0
+    parts, unit = read_collada(safe_collada(content))
+    return [_collada_part(part, unit) for part in parts]
 
 
 def _parse_obj(content: bytes, path: str) -> list[Part]:
@@ -207,25 +189,16 @@ def _parse_stl(content: bytes, path: str) -> list[Part]:
 _PARSERS = {'.dae': _parse_collada, '.obj': _parse_obj, '.stl': _parse_stl}
 
 
-@lru_cache(maxsize=1)
-def _quiet_trimesh() -> None:
-    """Keep trimesh's remarks off the terminal; it is imported late, as it costs start-up time."""
-    log = logging.getLogger('trimesh')
-    log.addHandler(logging.NullHandler())
-    log.propagate = False
-
-
-def _part(geometry: dict, matrix: np.ndarray, unit: float) -> Part:
-    vertices = np.asarray(geometry['vertices'], dtype=float).reshape(-1, 3)
-    faces = np.asarray(geometry['faces'], dtype=np.int64).reshape(-1, 3)
-    normals = geometry.get('vertex_normals')
+def _collada_part(part: ColladaPart, unit: float) -> Part:
+    faces, normals = part.faces, part.normals
+    matrix = np.asarray(part.matrix, dtype=float)
     linear = matrix[:3, :3]
-    vertices = (vertices @ linear.T + matrix[:3, 3]) * unit
+    vertices = (np.asarray(part.vertices, dtype=float) @ linear.T + matrix[:3, 3]) * unit
     if np.linalg.det(linear) < 0.0:
         faces = faces[:, ::-1]  # a mirror turns the triangles inside out
     if normals is not None:
         normals = _turn_normals(np.asarray(normals, dtype=float), linear, len(vertices))
-    return Part(vertices, faces, normals, _colour(geometry.get('visual')))
+    return Part(vertices, faces, normals, _colour(part.rgba))
 
 
 def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.ndarray | None:
@@ -239,12 +212,8 @@ def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.nda
     return normals / length
 
 
-def _colour(visual: object) -> Colour:
-    material = getattr(visual, 'material', None)
-    if material is None:
-        return GREY
-    rgba = np.asarray(material.main_color, dtype=float)[:4] / 255.0
-    if rgba.shape != (4,) or not np.isfinite(rgba).all():
+def _colour(rgba: np.ndarray | None) -> Colour:
+    if rgba is None or rgba.shape != (4,) or not np.isfinite(rgba).all():
         return GREY
     red, green, blue, alpha = (float(value) for value in np.clip(rgba, 0.0, 1.0))
     return (red, green, blue, alpha if alpha > _INVISIBLE else 1.0)

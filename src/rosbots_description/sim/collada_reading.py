@@ -1,0 +1,76 @@
+"""Read what a Collada file shows: the triangles of its scene, node by node.
+
+Of materials only the diffuse colour counts, as in RViz; a texture counts as white.
+"""
+
+import io
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+
+class ColladaPart(NamedTuple):
+    """Triangles of one material, as a node shows them; each has three vertices of its own."""
+
+    vertices: np.ndarray  # (n, 3) in the file's unit, before the node's matrix
+    faces: np.ndarray  # (m, 3), numbers of vertices
+    normals: np.ndarray | None  # (n, 3)
+    matrix: np.ndarray  # (4, 4), from the node's frame to the scene's
+    rgba: np.ndarray | None  # (4,), None without a material
+
+
+def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
+    """Return the parts of a Collada file, and the length of its unit [m].
+
+    What is broken is left out, as in RViz. Where nothing is left, or the file is none, whatever
+    pycollada raises tells why.
+    """
+    import collada  # noqa: PLC0415  seldom needed, and costs start-up time
+
+    file = collada.Collada(io.BytesIO(content), ignore=[collada.common.DaeError])
+    parts = [part for node in file.scene.nodes for part in _shown_by(node, np.eye(4))]
+    if not parts:
+        collada.Collada(io.BytesIO(content))
+    unit = file.assetInfo.unitmeter
+    return parts, 1.0 if unit is None else float(unit)
+
+
+def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
+    from collada.scene import GeometryNode, Node  # noqa: PLC0415  as above
+
+    if isinstance(node, GeometryNode):
+        colours = {one.symbol: _colour(one.target) for one in node.materials}
+        for primitive in node.geometry.primitives:
+            yield from _triangles(primitive, matrix, colours)
+    elif isinstance(node, Node):
+        for child in node.children or ():
+            yield from _shown_by(child, matrix @ node.matrix)
+
+
+def _triangles(
+    primitive: object, matrix: np.ndarray, colours: dict[str, np.ndarray]
+) -> Iterator[ColladaPart]:
+    from collada.polylist import Polylist  # noqa: PLC0415  as above
+    from collada.triangleset import TriangleSet  # noqa: PLC0415
+
+    if isinstance(primitive, Polylist):
+        primitive = primitive.triangleset()
+    if not isinstance(primitive, TriangleSet) or primitive.vertex is None:
+        return
+    vertices = primitive.vertex[primitive.vertex_index].reshape(-1, 3)
+    normals = None
+    if primitive.normal is not None:
+        normals = primitive.normal[primitive.normal_index].reshape(-1, 3)
+    faces = np.arange(len(vertices)).reshape(-1, 3)
+    yield ColladaPart(vertices, faces, normals, matrix, colours.get(primitive.material))
+
+
+def _colour(material: object) -> np.ndarray:
+    effect = material.effect
+    rgba = np.ones(4)
+    if isinstance(effect.diffuse, tuple | list):
+        rgba = np.array(effect.diffuse, dtype=float)
+    if isinstance(effect.transparent, tuple | list):
+        rgba = np.append(rgba[:3], float(effect.transparent[3]))
+    return rgba
