@@ -79,14 +79,16 @@ class WheelPair:
             self._give_way(bend)
         for wheel in self.wheels:
             wheel.turn()
-        dragged = self._holds_on(bend * self._eased)
+        yaw = yaw_of(self._model.pose.orientation)
+        alike = 1.0 / self._model.engine.friction_towards(yaw)
+        dragged = _hold(bend * self._eased, alike)
         stuck = dragged != HOLDS_ALL and all(wheel.crawls() for wheel in self.wheels)
         self._dragged.hold(HOLDS_ALL if stuck else dragged)
-        self._sliding.watch((left, right), self._holds_on(bend))
+        self._sliding.watch((left, right), _hold(bend, alike))
         self._settled = not stuck and not self._sliding.slides
 
     def _give_way(self, bend: float) -> None:
-        """Let each wheel lag and creep as the share of the grip in use tells."""
+        """Let wheels lag and creep, and what is dragged let go, as the grip in use tells."""
         pulls, grips = zip(*(wheel.pull_and_grip() for wheel in self.wheels), strict=True)
         both = _share(sum(pulls), sum(grips))
         eases, free = EASES
@@ -98,18 +100,6 @@ class WheelPair:
         for wheel, pull, grip, way in zip(self.wheels, pulls, grips, ahead, strict=True):
             wheel.give_way(both + bend * (_share(pull, grip) - both), way)
 
-    def _holds_on(self, bend: float) -> Hold:
-        """Return what holds of that which slides on a way so far from straight.
-
-        The straighter it is, the less of it along the axle, and the more nearly as much ahead as
-        at any other heading.
-        """
-        if bend >= 1.0:
-            return HOLDS_ALL
-        yaw = yaw_of(self._model.pose.orientation)
-        same = 1.0 / self._model.engine.friction_towards(yaw)
-        return Hold(round(bend, _DIGITS), round(same + bend * (1.0 - same), _DIGITS))
-
 
 def bend_of(left: float, right: float) -> float:
     """Return how far from straight two speeds make the way: 0 straight, 1 a curve or at rest.
@@ -118,6 +108,15 @@ def bend_of(left: float, right: float) -> float:
     """
     difference, straight = abs(right - left), BEND * abs(right + left)
     return (difference / straight) ** 2 if difference < straight else 1.0
+
+
+def _hold(bend: float, alike: float) -> Hold:
+    """Return what holds of that which slides on a way so far from straight.
+
+    The straighter it is, the less holds along the axle, and the nearer is what holds ahead to
+    `alike`, the share that makes it as much as at any other heading.
+    """
+    return Hold(round(bend, _DIGITS), round(alike + bend * (1.0 - alike), _DIGITS))
 
 
 def _share(pull: float, grip: float) -> float:
