@@ -1,6 +1,7 @@
 """Read what a Collada file shows: the triangles of its scene, node by node.
 
-Of materials only the diffuse colour counts, as in RViz; a texture counts as white.
+Of materials only the diffuse colour and how transparent they are count; a texture counts as white.
+To be imported late: pycollada takes a tenth of the simulator's start, and is seldom needed.
 """
 
 import io
@@ -8,6 +9,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from collada import Collada
+from collada.common import DaeError
+from collada.polylist import Polylist
+from collada.scene import GeometryNode, Node
+from collada.triangleset import TriangleSet
 
 
 class ColladaPart(NamedTuple):
@@ -26,19 +32,15 @@ def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
     What is broken is left out, as in RViz. Where nothing is left, or the file is none, whatever
     pycollada raises tells why.
     """
-    import collada  # noqa: PLC0415  seldom needed, and costs start-up time
-
-    file = collada.Collada(io.BytesIO(content), ignore=[collada.common.DaeError])
+    file = Collada(io.BytesIO(content), ignore=[DaeError])
     parts = [part for node in file.scene.nodes for part in _shown_by(node, np.eye(4))]
     if not parts:
-        collada.Collada(io.BytesIO(content))
+        Collada(io.BytesIO(content))
     unit = file.assetInfo.unitmeter
     return parts, 1.0 if unit is None else float(unit)
 
 
 def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
-    from collada.scene import GeometryNode, Node  # noqa: PLC0415  as above
-
     if isinstance(node, GeometryNode):
         colours = {one.symbol: _colour(one.target) for one in node.materials}
         for primitive in node.geometry.primitives:
@@ -51,9 +53,6 @@ def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
 def _triangles(
     primitive: object, matrix: np.ndarray, colours: dict[str, np.ndarray]
 ) -> Iterator[ColladaPart]:
-    from collada.polylist import Polylist  # noqa: PLC0415  as above
-    from collada.triangleset import TriangleSet  # noqa: PLC0415
-
     if isinstance(primitive, Polylist):
         primitive = primitive.triangleset()
     if not isinstance(primitive, TriangleSet) or primitive.vertex is None:

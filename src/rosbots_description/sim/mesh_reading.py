@@ -12,11 +12,11 @@ import threading
 import warnings
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .collada_guard import ColladaError, safe_collada
-from .collada_reading import ColladaPart, read_collada
 from .errors import AbsentError, ModelError
 from .files import read_file, regular_state, within
 from .markup import shortened
@@ -24,6 +24,9 @@ from .markup_values import LONGEST
 from .mesh_thinning import thinned
 from .stl import read_stl
 from .wavefront import ObjPart, read_obj
+
+if TYPE_CHECKING:
+    from .collada_reading import ColladaPart
 
 logger = logging.getLogger(__name__)
 
@@ -149,6 +152,8 @@ def _parse(path: str, extension: str, content: bytes) -> list[Part]:
 
 
 def _parse_collada(content: bytes, path: str) -> list[Part]:
+    from .collada_reading import read_collada  # noqa: PLC0415  as it says
+
     parts, unit = read_collada(safe_collada(content))
     return [_collada_part(part, unit) for part in parts]
 
@@ -189,11 +194,10 @@ def _parse_stl(content: bytes, path: str) -> list[Part]:
 _PARSERS = {'.dae': _parse_collada, '.obj': _parse_obj, '.stl': _parse_stl}
 
 
-def _collada_part(part: ColladaPart, unit: float) -> Part:
+def _collada_part(part: 'ColladaPart', unit: float) -> Part:
     faces, normals = part.faces, part.normals
-    matrix = np.asarray(part.matrix, dtype=float)
-    linear = matrix[:3, :3]
-    vertices = (np.asarray(part.vertices, dtype=float) @ linear.T + matrix[:3, 3]) * unit
+    linear, offset = part.matrix[:3, :3], part.matrix[:3, 3]
+    vertices = (np.asarray(part.vertices, dtype=float) @ linear.T + offset) * unit
     if np.linalg.det(linear) < 0.0:
         faces = faces[:, ::-1]  # a mirror turns the triangles inside out
     if normals is not None:
