@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rosbots_description.sim import mesh_reading
+from rosbots_description.sim import mesh_reading, meshes
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.mesh_reading import GREY, read_mesh
 from rosbots_description.sim.meshes import HULL_DIRECTIONS, MeshStore, check_mesh, visual_parts
@@ -241,6 +241,13 @@ def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, s
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     lost = (full @ directions.T).max(axis=0) - (points @ directions.T).max(axis=0)
     assert lost.max() < 0.01
+
+
+def test_points_that_coincide_count_once():
+    random = np.random.default_rng(1)
+    points = random.integers(-2, 3, size=(200, 3)).astype(float)
+    np.testing.assert_array_equal(meshes._distinct(points), np.unique(points, axis=0))
+    assert len(meshes._distinct(points[:1])) == 1
 
 
 def test_the_hull_leaves_out_points_no_triangle_uses(write, store):

@@ -5,25 +5,27 @@ is above a plane, in each step, and of a robot of plates and posts most need not
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
-from itertools import combinations, product
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
 from .bullet_description import MeshFile
+from .extremes import farthest
 from .pose import Pose, rotate
 from .spec import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from .stl import read_stl
 
 _ONTO = 1e-6  # share of its size by which a body is taken for larger than it is
 _MOST = 40  # points of a hull, whose sides take time with the cube of it
+_AT_ONCE = 1000  # planes, for which memory need not be fetched anew each time
 _CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 _POLES = np.concatenate([np.eye(3), -np.eye(3)])
 _RIM = [(math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)) for k in range(8)]
 _RIMS = np.array([(x, y, z) for x, y in _RIM for z in (-1.0, 1.0)])
-_WAYS = [way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)]
+_WAYS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
 
 
 def inner_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tuple[bool, ...]:
@@ -49,14 +51,14 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     points = np.concatenate(placed)
     owners = np.repeat(np.arange(len(placed)), [len(some) for some in placed])
     # A hull of few points, and one that reaches farther out over each side of that.
-    farthest = _farthest(points, _WAYS)
-    sides, _ = _hull(points[farthest])
-    farthest += sorted({*_farthest(points, sides.tolist())} - {*farthest})
-    farthest = farthest[:_MOST]
-    sides, reaches = _hull(points[farthest])
+    corners = farthest(points, _WAYS)
+    sides, _ = _hull(points[corners])
+    corners += sorted({*farthest(points, sides)} - {*corners})
+    corners = corners[:_MOST]
+    sides, reaches = _hull(points[corners])
     if not len(sides):
         return (False,) * len(shapes)
-    outer = set(owners[farthest].tolist())
+    outer = set(owners[corners].tolist())
     boxes = [_placed(_box(outline), pose) for outline, pose in zip(outlines, poses, strict=True)]
     return tuple(
         i not in outer and bool((box @ sides.T <= reaches).all()) for i, box in enumerate(boxes)
@@ -86,36 +88,35 @@ def _placed(points: np.ndarray, pose: Pose) -> np.ndarray:
     return np.stack(rotate(pose.orientation, tuple(points.T)), axis=1) + np.array(pose.position)
 
 
-def _farthest(points: np.ndarray, ways: Iterable[Sequence[float]]) -> list[int]:
-    """Return which points are the farthest ones in some directions."""
-    # Plain sums: of two points equally far each library would take another (see meshes.py).
-    x, y, z = points.T.copy()
-    return sorted({int(np.argmax(a * x + b * y + c * z)) for a, b, c in ways})
-
-
 def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the sides of the hull of a few points: normals (n, 3) and how far out each is [m].
 
     Each plane through three points is one that has all of the others behind it. What is flat has no
     sides.
     """
-    a, b, c = points[_triples(len(points))]
-    normals = np.cross(b - a, c - a)
-    lengths = np.sqrt((normals**2).sum(axis=1))
     size = np.ptp(points, axis=0).max()
-    real = lengths > _ONTO * size**2
-    normals, a = normals[real] / lengths[real, None], a[real]
-    reaches = (normals * a).sum(axis=1)
-    heights = normals @ points.T
-    lowest, highest = heights.min(axis=1) - reaches, heights.max(axis=1) - reaches
-    if (highest - lowest <= _ONTO * size).any():
-        return np.empty((0, 3)), np.empty(0)
-    above, below = highest <= _ONTO * size, lowest >= -_ONTO * size
-    sides = np.concatenate([normals[above], -normals[below]])
-    return sides, np.concatenate([reaches[above], -reaches[below]]) + _ONTO * size
+    margin = _ONTO * size
+    triples = _triples(len(points))
+    sides, reaches = [np.empty((0, 3))], [np.empty(0)]
+    for start in range(0, triples.shape[1], _AT_ONCE):
+        a, b, c = points[triples[:, start : start + _AT_ONCE]]
+        normals = np.cross(b - a, c - a)
+        lengths = np.sqrt((normals**2).sum(axis=1))
+        real = lengths > margin * size
+        normals, a = normals[real] / lengths[real, None], a[real]
+        reach = (normals * a).sum(axis=1)
+        heights = normals @ points.T
+        lowest, highest = heights.min(axis=1) - reach, heights.max(axis=1) - reach
+        if (highest - lowest <= margin).any():
+            return np.empty((0, 3)), np.empty(0)
+        for way, outer in ((1.0, highest <= margin), (-1.0, lowest >= -margin)):
+            sides.append(way * normals[outer])
+            reaches.append(way * reach[outer] + margin)
+    return np.concatenate(sides), np.concatenate(reaches)
 
 
 @lru_cache(maxsize=16)
 def _triples(count: int) -> np.ndarray:
     """Return all triples of so many, (3, n)."""
-    return np.array(list(combinations(range(count), 3)), dtype=int).reshape(-1, 3).T
+    i = np.arange(count)
+    return np.stack(np.nonzero((i[:, None, None] < i[:, None]) & (i[:, None] < i)))
