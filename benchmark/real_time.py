@@ -25,9 +25,8 @@ from loops import Loop
 from server import Server, in_a_process_of_its_own
 
 from rosbots_description.sim.bullet_description import mesh_needs
-from rosbots_description.sim.meshes import MeshStore
-from rosbots_description.sim.physics import PhysicsSettings
 from rosbots_description.sim.trial import Trials
+from rosbots_description.sim.world import World
 
 WINDOW = 3.0  # [s, wall]
 ROUNDS = 4
@@ -97,17 +96,18 @@ def measure_answers() -> tuple[float, float]:
 
 def measure_trials() -> None:
     """Print how long robots that are new to the server are tried before they come in."""
-    robot, meshes, trials = robot_spec(), MeshStore(), Trials()
-    files = {(mesh, exact): meshes.collision_hull(mesh.path, mesh.scale)
+    robot, world = robot_spec(), World()
+    trials = Trials(world.engine.emptied)
+    files = {(mesh, exact): world.meshes.collision_hull(mesh.path, mesh.scale)
              for mesh, exact in mesh_needs(robot)}
     times, computing = [], []
     for i in range(SPAWNS):
         other = replace(robot.joints[0], damping=0.01 * i)
         used, begin = _computed_by_children(), time.monotonic()
-        trials.require(replace(robot, joints=(other, *robot.joints[1:])), PhysicsSettings(), files)
+        trials.require(replace(robot, joints=(other, *robot.joints[1:])), files)
         times.append(time.monotonic() - begin)
         computing.append(_computed_by_children() - used)
-    meshes.close()
+    world.close()
     print_times('trial of a robot that is new', times, '150 ms')
     print_times('its processor time', computing, '150 ms')
 

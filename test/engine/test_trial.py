@@ -10,16 +10,18 @@ import socket
 import threading
 import time
 from dataclasses import replace
+from functools import partial
 
 import pytest
-from support import box_urdf, robot_spec, urdf_spec
+from support import box_urdf, empty_world, robot_spec, urdf_spec
 
-from rosbots_description.sim import trial
+from rosbots_description.sim import inner_shapes, trial
+from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.meshes import MeshStore
 from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.pose import IDENTITY, Pose
 from rosbots_description.sim.spec import (
     REVOLUTE,
     Box,
@@ -38,8 +40,8 @@ SHORT = 0.3  # [s] for a model that is never done with
 LONG = 50.0  # [s] never reached
 
 
-def engine_that(does):
-    """Return a class of engines that does something when a model other than the ground comes."""
+def engine_that(does=lambda: None, at_step=lambda: None):
+    """Return what opens an engine that does things when models but the ground come, and step."""
 
     class Odd(Engine):
         def add(self, spec, pose):
@@ -47,7 +49,12 @@ def engine_that(does):
                 does()
             return super().add(spec, pose)
 
-    return Odd
+        def step(self, steps):
+            for _ in range(steps):
+                at_step()
+                super().step(1)
+
+    return partial(Odd, PhysicsSettings())
 
 
 def burn(seconds):
@@ -69,19 +76,16 @@ def steps_of_a_trial(at_start=lambda: None, at_step=lambda: None):
     """Return how many steps the engine makes with a crate."""
     steps = mmap.mmap(-1, 1)  # shared with the child
 
-    class Counting(engine_that(at_start)):
-        def step(self, count):
-            for _ in range(count):
-                steps[0] += 1
-                at_step()
-                super().step(1)
+    def count():
+        steps[0] += 1
+        at_step()
 
-    require(Trials(Counting))
+    require(Trials(engine_that(at_start, count)))
     return steps[0]
 
 
 def require(trials, spec=CRATE, files=None):
-    trials.require(spec, PhysicsSettings(), files or {})
+    trials.require(spec, files or {})
 
 
 def fault_of(does):
@@ -115,7 +119,7 @@ def fixture_nothing_is_left():
 
 
 def test_a_content_is_tried_once_whatever_it_is_called_and_looks_like(forks):
-    trials = Trials()
+    trials = Trials(engine_that())
     require(trials)
     assert len(forks) == 1
     (link,) = CRATE.links
@@ -127,7 +131,7 @@ def test_a_content_is_tried_once_whatever_it_is_called_and_looks_like(forks):
 
 
 def test_a_mesh_is_known_by_what_its_file_holds(forks, tmp_path):
-    trials, meshes = Trials(), MeshStore()
+    trials, meshes = Trials(engine_that()), MeshStore()
     source = tmp_path / 'part.stl'
     try:
         for height in (1.0, 1.0, 2.0):
@@ -154,7 +158,7 @@ def tetrahedron(height):
 
 def test_the_contents_that_passed_first_are_forgotten_first(forks, monkeypatch):
     monkeypatch.setattr(trial, 'REMEMBERED', 1)
-    trials = Trials()
+    trials = Trials(engine_that())
     static = replace(CRATE, static=True)
     for spec, tried in ((CRATE, 1), (static, 2), (static, 2), (CRATE, 3)):
         require(trials, spec)
@@ -167,7 +171,7 @@ def test_the_robot_of_the_article_passes():
         files = {(collision.geometry, False): meshes.collision_hull(collision.geometry.path)
                  for link in spec.links for collision in link.collisions
                  if hasattr(collision.geometry, 'path')}
-        require(Trials(), spec, files)
+        require(Trials(engine_that()), spec, files)
     finally:
         meshes.close()
 
@@ -253,7 +257,7 @@ def test_a_model_that_the_engine_cannot_be_asked_about_is_refused():
                    for i in range(200))
     link = LinkSpec('link', inertial=Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0), collisions=shapes)
     with pytest.raises(ModelError, match='the physics engine failed: error.*BasePosition'):
-        require(Trials(), ModelSpec('rough', (link,)))
+        require(Trials(engine_that()), ModelSpec('rough', (link,)))
 
 
 def test_a_model_that_is_lost_at_once_is_refused():
@@ -261,7 +265,7 @@ def test_a_model_that_is_lost_at_once_is_refused():
     links = (LinkSpec('near', inertial=heavy), LinkSpec('far', Pose((1e150, 0.0, 0.0)), heavy))
     spec = ModelSpec('wide', links, (JointSpec('joint', REVOLUTE, 'near', 'far'),))
     with pytest.raises(ModelError, match='its pose or velocity was no finite number'):
-        require(Trials(), spec)
+        require(Trials(engine_that()), spec)
 
 
 def test_a_model_that_failed_is_tried_again(forks):
@@ -308,5 +312,68 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(monkeypatch,
         raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
 
     monkeypatch.setattr(trial.os, 'fork', full)
-    require(Trials())
+    require(Trials(engine_that()))
     assert "model 'crate' comes in untried: Resource temporarily unavailable" in caplog.text
+
+
+def test_an_engine_that_was_emptied_moves_things_as_a_new_one_does():
+    def fall(engine):
+        engine.add(GROUND_PLANE, IDENTITY)
+        crate = engine.add(CRATE, Pose((0.1, 0.2, 0.7)))
+        engine.step(400)
+        return engine.motion(crate)
+
+    engines = [engine_that()(None, None) for _ in range(2)]
+    try:
+        first, second = engines
+        expected = fall(first)
+        second.add(replace(CRATE, static=True), Pose((0.0, 0.0, 0.5)))  # in the way, if it stayed
+        second.step(7)
+        assert fall(second.emptied(None, None)) == expected
+    finally:
+        for engine in engines:
+            engine.close()
+
+
+def test_a_trial_leaves_the_world_as_it_is():
+    motions = []
+    for tries in (False, True):
+        with empty_world() as world:
+            crate = world.spawn(CRATE, 'crate', Pose((0.1, 0.2, 0.7)))
+            world.run(200)
+            if tries:
+                require(Trials(world.engine.emptied))
+            world.run(200)
+            motions.append(world.engine.motion(crate.body))
+    assert motions[0] == motions[1]
+
+
+def test_models_are_tried_while_the_world_goes_on():
+    with empty_world() as world:
+        world.spawn(CRATE, 'crate', Pose((0.0, 0.0, 0.7)))
+        trials, goes_on = Trials(world.engine.emptied), threading.Event()
+        (link,) = CRATE.links
+
+        def try_some():
+            for mass in range(1, 21):
+                require(trials, replace(CRATE, links=(
+                    replace(link, inertial=replace(link.inertial, mass=mass)),)))
+            goes_on.set()
+
+        other = threading.Thread(target=try_some)
+        other.start()
+        while other.is_alive():
+            world.run(1)
+        assert goes_on.is_set()
+
+
+def test_what_takes_long_to_find_out_is_found_out_before_the_trial():
+    inner_shapes._inner.cache_clear()
+    with empty_world() as world:
+        spec = robot_spec()
+        files = {(mesh, exact): world.meshes.collision_hull(mesh.path, mesh.scale)
+                 for mesh, exact in mesh_needs(spec)}
+        require(Trials(world.engine.emptied), spec, files)
+        known = inner_shapes._inner.cache_info().currsize
+        world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.5)))
+        assert inner_shapes._inner.cache_info().currsize == known > 0

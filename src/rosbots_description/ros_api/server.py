@@ -23,11 +23,14 @@ class Server:
     registrar: Registrar
     find_package: FindPackage
     find_model: FindModel
-    trials: Trials = field(default_factory=Trials)  # of models that ask to come in
+    trials: Trials = field(init=False)  # of models that ask to come in
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)
     parameters: list[Callable[[], None]] = field(default_factory=list)  # write those that are ours
     stepping: threading.Lock = field(default_factory=threading.Lock)  # one caller of step at a time
+
+    def __post_init__(self) -> None:
+        self.trials = Trials(self.world.engine.emptied)
 
     @property
     def meshes(self) -> MeshStore:

@@ -12,6 +12,7 @@ from .inertia import principal_axes
 from .pose import NO_ROTATION, Pose, Vector, compose, inverse
 from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec, Surface
 from .surfaces import (
+    Groups,
     contact_spring,
     friction,
     is_floor,
@@ -29,6 +30,18 @@ _MASSLESS = Inertial(0.0)
 # Groups of bodies. Two collide if the group of either is in the mask of the other.
 _STANDING = 2  # PyBullet's own for what never moves; its mask is all but these
 _INNER = 8  # what no plane can touch
+
+
+def grouped(tree: Tree, mesh_file: MeshFile) -> tuple[list[Groups], bool]:
+    """Return the groups of each link of a tree (surfaces.py); of the root first what lies inside.
+
+    And whether there is something inside. What takes time about it is remembered.
+    """
+    groups = [surface_groups(tree, i) for i in range(len(tree.links))]
+    inner_first = None
+    if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
+        inner_first = with_inner_first(tree, groups[0], mesh_file)
+    return [inner_first or groups[0], *groups[1:]], inner_first is not None
 
 
 class BodyMaker:
@@ -58,11 +71,7 @@ class BodyMaker:
             for inertial, orientation in zip(inertials, axes, strict=True)
         ]
         mesh_file = self._surface_file if tree.stands else self._mesh_file
-        groups = [surface_groups(tree, i) for i in range(len(tree.links))]
-        inner_first = None
-        if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
-            inner_first = with_inner_first(tree, groups[0], mesh_file)
-            groups[0] = inner_first or groups[0]
+        groups, inner_first = grouped(tree, mesh_file)
         text = describe_tree(tree, coms, groups, mesh_file)
         place = compose(model_pose, tree.links[0].pose)
         number = self._load_urdf(text, tree, place, is_one_body(tree, groups))
@@ -174,7 +183,7 @@ class BodyMaker:
         body: Body,
         tree: Tree,
         i: int,
-        groups: Sequence[Sequence[Collision]],
+        groups: Groups,
         index_of: dict[str, int],
         step_size: float,
     ) -> None:

@@ -99,12 +99,11 @@ def _arrival(
     if not name:
         raise ModelError('model_name is empty; give the model a name')
     pose = _initial_pose(request)
-    refusal, physics = server.loop.call(
-        lambda: (_refusal(server, name, frame), server.world.physics))
+    refusal = server.loop.call(lambda: _refusal(server, name, frame))
     if refusal is not None:
         return refusal
     spec, origin = load()
-    server.trials.require(spec, physics, _mesh_files(server, spec))
+    server.trials.require(spec, _mesh_files(server, spec))
     return _Arrival(name, spec, compose(pose, origin), frame)
 
 
