@@ -4,6 +4,8 @@ import math
 import os
 import shutil
 import struct
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -80,6 +82,16 @@ def corners(path):
 ])
 def test_every_format_gives_the_same_triangle(write, name, content):
     assert corners(write(name, content)) == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+def test_what_reads_collada_is_loaded_ahead_and_not_before():
+    program = (
+        'import sys; from rosbots_description.sim import meshes, mesh_reading; '
+        "before = 'collada' in sys.modules; mesh_reading.load_readers(); "
+        "sys.exit(before or 'collada' not in sys.modules)"
+    )
+    subprocess.run([sys.executable, '-c', program], check=True, timeout=30,
+                   env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)})
 
 
 def test_unit_and_node_transform_of_a_collada_file_are_applied(write):

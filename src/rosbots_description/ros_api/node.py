@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import rosgraph
 import rospy
 
+from ..sim.mesh_reading import load_readers
 from ..sim.world import World
 from ..sim.world_spec import WorldSpec
 from . import adapters, services  # noqa: F401  both register what they hold
@@ -145,6 +146,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
         if extensions:
             advertise(server, EXTENSIONS)
         server.registrar.post(lambda: _advertise_reconfigure(server))
+    server.registrar.post(load_readers)
 
 
 def _use_simulated_time() -> None:

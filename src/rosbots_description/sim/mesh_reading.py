@@ -109,6 +109,11 @@ def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | 
     return tuple((p.vertices, p.faces, p.normals, p.rgba) for p in read_mesh(path).parts)
 
 
+def load_readers() -> None:
+    """Load what reading Collada files takes, so that the first one need not wait for it."""
+    from . import collada_reading  # noqa: F401, PLC0415  as it says
+
+
 def _state(path: str) -> tuple[int, int]:
     """Return what changes when the file changes: time of change [ns] and size."""
     if not os.path.exists(path):
