@@ -94,6 +94,12 @@ def measure_answers() -> tuple[float, float]:
         return _start(server)
 
 
+def measure_start(roscore: bool) -> tuple[float, float]:
+    """Return the times to start [s], beside a roscore or without one."""
+    with Server(roscore=roscore) as server:
+        return _start(server)
+
+
 def measure_trials() -> None:
     """Print how long robots that are new to the server are tried before they come in."""
     robot, world = robot_spec(), World()
@@ -208,6 +214,14 @@ def slowness() -> float:
         return GAZEBO_BARE / max(loop.speed(0.5) for _ in range(2 * ROUNDS))
 
 
+def _print_start(of_what: str, starts: list[tuple[float, float]], slower: float) -> None:
+    """Print how soon the spawn service was there after roslaunch."""
+    up, began = min(starts)
+    print(f'spawn service up {up:.2f} s after roslaunch, which took {began:.2f} s of it to start '
+          f'{of_what}; {up / slower:.2f} s by the bare loop where Gazebo was measured '
+          '(aim 1.1 s; Gazebo 0.9 to 1.5 s)')
+
+
 def main() -> int:
     """Measure each in a process of its own; return the exit code."""
     slower = slowness()
@@ -217,10 +231,9 @@ def main() -> int:
         in_a_process_of_its_own(measure_cost, 1000, slower),
         in_a_process_of_its_own(measure_answers),
     ]
-    up, began = min(starts)
-    print(f'spawn service up {up:.2f} s after roslaunch, which took {began:.2f} s of it to start a '
-          f'master; {up / slower:.2f} s by the bare loop where Gazebo was measured '
-          '(aim 1.1 s; Gazebo 0.9 to 1.5 s)')
+    _print_start('a master', starts, slower)
+    starts = [in_a_process_of_its_own(measure_start, True) for _ in range(ROUNDS)]
+    _print_start('the server where a roscore runs, as in the tutorial', starts, slower)
     in_a_process_of_its_own(measure_trials)
     in_a_process_of_its_own(measure_promptness)
     return 0

@@ -13,6 +13,7 @@ import subprocess
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -46,28 +47,37 @@ def in_a_process_of_its_own(function: Callable, *arguments: object) -> object:
 
 
 class Server:
-    """What `roslaunch gazebo_ros empty_world.launch gui:=false` starts, its own master included.
+    """What `roslaunch gazebo_ros empty_world.launch gui:=false` starts, with a master of its own.
 
     This process is the node /benchmark beside it, which does not listen to /clock.
     `seconds_to_spawn_service` [s, wall] is how long after roslaunch the spawn service was there,
-    `seconds_to_process` how long roslaunch took before to start a master and then gzserver.
+    `seconds_to_process` how long roslaunch took before to start gzserver.
     """
 
-    def __init__(self, *arguments: str, launch: Sequence[str] = EMPTY_WORLD) -> None:
-        """Start it, with further arguments for roslaunch, and wait for its services."""
+    def __init__(
+        self, *arguments: str, launch: Sequence[str] = EMPTY_WORLD, roscore: bool = False
+    ) -> None:
+        """Start it, with further arguments for roslaunch, and wait for its services.
+
+        Args:
+            roscore: whether a roscore runs before; else roslaunch starts the master.
+        """
         os.environ.update(ROS_MASTER_URI=_free_master(), ROS_HOSTNAME='localhost')
         logging.getLogger('rosout').setLevel(logging.WARNING)
         OUTPUT.mkdir(parents=True, exist_ok=True)
+        self._processes = ExitStack()
+        if roscore:
+            port = os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1]
+            self._launch('roscore.log', '--core', '-p', port)
+            wait_until(lambda: _is_registered('/rosout/get_loggers'), 'roscore')
         begin, begin_after_boot = time.monotonic(), time.clock_gettime(time.CLOCK_BOOTTIME)
-        self._launched = Launched(
-            [*launch, *arguments], OUTPUT / 'server.log', os.environ
-        )
+        launched = self._launch('server.log', *launch, *arguments)
         try:
             self.seconds_to_spawn_service = self._wait_for('spawn_urdf_model') - begin
             self._wait_for('step')  # the last one
         except TimeoutError:
-            self._launched.stop()
-            raise TimeoutError(f'no simulator: {self._launched.complaint()}') from None
+            self._processes.close()
+            raise TimeoutError(f'no simulator: {launched.complaint()}') from None
         rospy.init_node('benchmark', disable_rostime=True, disable_signals=True)
         self._world = self.service('get_world_properties', GetWorldProperties)
         self._pause = self.service('pause_physics', Empty)
@@ -84,7 +94,10 @@ class Server:
 
     def __exit__(self, *_exception) -> None:
         rospy.signal_shutdown('measured')
-        self._launched.stop()
+        self._processes.close()
+
+    def _launch(self, log: str, *arguments: str) -> Launched:
+        return self._processes.enter_context(Launched(arguments, OUTPUT / log, os.environ))
 
     def service(self, name: str, service_class: type) -> rospy.ServiceProxy:
         """Return one of its services over a lasting connection."""
@@ -153,16 +166,15 @@ class Server:
 
     def _wait_for(self, service: str) -> float:
         """Wait until a service is registered; return when that was [s, monotonic]."""
-        master = rosgraph.Master('/benchmark')
-
-        def registered() -> bool:
-            try:
-                return bool(master.lookupService(f'/gazebo/{service}'))
-            except (OSError, rosgraph.MasterError):
-                return False
-
-        wait_until(registered, f'/gazebo/{service}')
+        wait_until(lambda: _is_registered(f'/gazebo/{service}'), f'/gazebo/{service}')
         return time.monotonic()
+
+
+def _is_registered(service: str) -> bool:
+    try:
+        return bool(rosgraph.Master('/benchmark').lookupService(service))
+    except (OSError, rosgraph.MasterError):
+        return False
 
 
 def wait_until(condition: Callable[[], object], what: str) -> None:
