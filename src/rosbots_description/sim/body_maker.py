@@ -10,7 +10,7 @@ from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .inertia import principal_axes
 from .pose import NO_ROTATION, Pose, Vector, compose, inverse
-from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec, Surface
+from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec
 from .surfaces import (
     Groups,
     contact_spring,
@@ -222,11 +222,11 @@ class BodyMaker:
             physicsClientId=self._client,
         )
         if not is_rigid(surface):
-            self.set_spring(number, index, surface, step_size)
+            spring = contact_spring(surface, step_size, self._tuning.push_out)
+            self.set_spring(number, index, *spring)
 
-    def set_spring(self, number: int, index: int, surface: Surface, step_size: float) -> None:
-        """Let what a body touches with give way as the surface tells."""
-        stiffness, damping = contact_spring(surface, step_size, self._tuning.push_out)
+    def set_spring(self, number: int, index: int, stiffness: float, damping: float) -> None:
+        """Let what a body touches with give way: stiffness [N/m], damping [N s/m]."""
         pybullet.changeDynamics(
             number,
             index,

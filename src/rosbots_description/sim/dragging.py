@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from .model import Model
 
 
-GRAVITY = 9.8  # [m/s^2]
-
-
 class Dragged:
     """The links that move with the one which carries the wheels."""
 
@@ -36,7 +33,7 @@ class Dragged:
         """
         self._model = model
         masses = (link.inertial.mass for link in model.spec.links if link.inertial)
-        self._weight = GRAVITY * sum(masses)  # [N]
+        self._mass = sum(masses)  # [kg]
         links = [model.spec.link(name) for name in _fixed_to(wheel.joint.spec.parent, model.spec)]
         # Each with the direction of the axle in its frame.
         self._links = [
@@ -47,7 +44,7 @@ class Dragged:
         """Let them hold only these shares of their friction."""
         engine, body = self._model.engine, self._model.body
         for name, axle in self._links:
-            engine.let_sink(body, name, self._weight)
+            engine.let_sink(body, name, self._mass)
             engine.set_hold(body, name, axle, hold)
 
 

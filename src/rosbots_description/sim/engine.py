@@ -12,9 +12,9 @@ from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .physics import PhysicsSettings
-from .pose import Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
-from .spec import ModelSpec, Surface
-from .surfaces import ALONG, overlap_share
+from .pose import ALONG, Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
+from .spec import ModelSpec
+from .surfaces import overlap_share, sinking_spring
 from .tuning import Tuning
 
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then
@@ -266,15 +266,15 @@ class Engine:
         """Return how many times its mu what slides in that direction [rad] is held back by."""
         return self._tuning.friction_towards(yaw)
 
-    def let_sink(self, body: Body, link: str, weight: float) -> None:
-        """Let a link give way by a hair under a weight [N], if nobody described how it does."""
-        if link in body.sinking or not self._tuning.dragged_sinks or weight <= 0.0:
+    def let_sink(self, body: Body, link: str, mass: float) -> None:
+        """Let a link give way by a hair under a mass [kg], if nobody described how it does."""
+        if link in body.sinking or not self._tuning.dragged_sinks or mass <= 0.0:
             return  # it does so already, or not at all
         body.sinking.add(link)
-        soft = Surface(kp=weight / self._tuning.dragged_sinks)
+        spring = sinking_spring(mass, self._tuning.dragged_sinks)
         for part in body.surfaces[link]:
             if part.rigid:
-                self._maker.set_spring(part.body, part.index, soft, self._physics.step_size)
+                self._maker.set_spring(part.body, part.index, *spring)
 
     def let_roll(self, body: Body, link: str) -> None:
         """Take from a link what keeps cylinders from rolling off: a motor holds this one."""

@@ -14,6 +14,7 @@ Quaternion = tuple[float, float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
 UP: Vector = (0.0, 0.0, 1.0)
 NO_ROTATION: Quaternion = (0.0, 0.0, 0.0, 1.0)
+ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is that axis
 
 _SMALL, _LARGE = 1e-150, 1e150  # between these, squares neither vanish nor overflow
 

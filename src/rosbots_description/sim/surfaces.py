@@ -12,7 +12,7 @@ from operator import not_
 from .bullet_description import MeshFile, Tree
 from .inertia import principal_axes
 from .inner_shapes import inner_shapes
-from .pose import UP, Vector, dot, rotate
+from .pose import ALONG, UP, Vector, dot, rotate
 from .spec import (
     FIXED,
     REVOLUTE,
@@ -27,9 +27,8 @@ from .spec import (
 
 Groups = list[tuple[Collision, ...]]  # of a link: what it touches with itself, then its riders
 
+_GRAVITY = 9.8  # [m/s^2]
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
-
-ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is that axis
 
 # Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
 # enough to keep a can, a barrel and a robot on free wheels in their place.
@@ -197,3 +196,13 @@ def contact_spring(surface: Surface, step_size: float, push_out: float) -> tuple
     """
     least = step_size * surface.kp * (1.0 / overlap_share(step_size, push_out) - 1.0)
     return surface.kp, max(surface.kd, least)
+
+
+def sinking_spring(mass: float, depth: float) -> tuple[float, float]:
+    """Return stiffness [N/m] and damping [N s/m] of what sinks by a depth [m] under a mass [kg].
+
+    The damping is critical. With more a blow would be over in one step, before PyBullet has found
+    all that meets.
+    """
+    stiffness = mass * _GRAVITY / depth
+    return stiffness, 2.0 * math.sqrt(stiffness * mass)
