@@ -56,10 +56,10 @@ class FakeModel:
         self.wheels = {'left': Wheel('left', self), 'right': Wheel('right', self)}
         self.now = (Pose(), Twist())
         y = {'left': 0.4, 'right': -0.4}
-        self.ground = 0.0  # [m/s] at which it drives along x
+        self.ground = self.aside = 0.0  # [m/s] at which it drives along x, and is pushed along y
         self.links = {f'{name}_link': SimpleNamespace(
             pose=Pose((0.1, y[name], 0.2)),
-            state=lambda: (Pose((0.0, 0.0, 0.2), side), Twist((self.ground, 0.0, 0.0), (0.0,) * 3)),
+            state=lambda: (Pose((0.0, 0.0, 0.2), side), Twist((self.ground, self.aside, 0.0))),
         ) for name in y}
         side = from_rpy(-math.pi / 2, 0.0, 0.0)
         wheel_links = [

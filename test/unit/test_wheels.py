@@ -200,15 +200,39 @@ def test_tyres_hold_nothing_sideways_while_they_slide_straight_on():
     plugin.model.ground = 0.515
     run(plugin, PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
-    plugin.model.ground = 0.0  # somebody holds it; that takes no jump
+
+
+def test_tyres_that_begin_to_slide_later_hold_nothing_sideways_either():
+    plugin = driving()
+    assert tyres(plugin) == [1.0, 1.0]
+    plugin.model.ground = 0.0  # somebody holds it, or it comes down from a hop
+    run(plugin, 6 * PERIOD_STEPS)  # a look
+    assert tyres(plugin) == [0.0, 0.0]
+    plugin.model.ground = 0.52
     run(plugin, PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
 
 
-@pytest.mark.parametrize(('acceleration', 'command'), [('0', (0.0, 1.0)), ('4', (0.52, 0.0))])
-def test_tyres_that_do_not_slide_straight_on_hold(acceleration, command):
-    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration=acceleration)
-    plugin.command(*command)
+@pytest.mark.parametrize(('aside', 'share'), [(0.04, 0.0), (0.15, 0.25), (-0.15, 0.25), (2.0, 1.0)])
+def test_sliding_tyres_that_are_pushed_aside_hold_by_the_direction_of_the_slip(aside, share):
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.model.ground, plugin.model.aside = 0.12, aside
+    plugin.command(0.52, 0.0)
+    run(plugin, PERIOD_STEPS + 1)
+    assert tyres(plugin) == [share, share]
+
+
+def test_tyres_that_slide_as_the_robot_turns_on_the_spot_hold():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.command(0.0, 1.0)
+    run(plugin, 5 * PERIOD_STEPS)
+    assert tyres(plugin) == [1.0, 1.0]
+
+
+def test_tyres_that_roll_hold():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    plugin.model.ground = 0.52
+    plugin.command(0.52, 0.0)
     run(plugin, 5 * PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
 

@@ -1,10 +1,10 @@
-"""Tyres that slide: the wheels of a robot that sets off spin.
+"""Tyres that slide: the wheels of a robot spin as it sets off, or as it comes down from a hop.
 
 Friction is limited along the world's axes each (tuning.py), so a tyre that slides across them is
 pushed aside as hard as it is pulled ahead. But friction points against the slip: what slides
 straight on is not held sideways at all, and ahead alike at any heading. So wheels that are asked to
-run alike hold nothing along their axle while they slide. Wheels that are asked to stand hold all,
-sliding or not.
+run alike hold nothing along their axle while they slide, unless something pushes them aside: then
+they hold by the direction of the slip. Wheels that are asked to stand hold all, sliding or not.
 """
 
 from collections.abc import Sequence
@@ -14,6 +14,8 @@ from .wheel import Wheel
 
 JUMP = 0.05  # [m/s] a rim that is asked for that much more or less at once may begin to slide
 SLIP = 0.02  # [m/s] a rim that passes the ground slower than that rolls
+ASIDE = 0.05  # [m/s] what slides aside faster is pushed
+_DIGITS = 2  # of a share: friction does not change with each bit
 
 
 class Sliding:
@@ -46,10 +48,15 @@ class Sliding:
             for wheel, now, then in zip(self._wheels, asked, self._asked, strict=True)
         )
         self._asked = tuple(asked)
-        if not jumps and not self.slides:
+        slips = [wheel.slip() for wheel in self._wheels]
+        self.slides = jumps or any(abs(ahead) > SLIP for ahead, _ in slips)
+        if not self.slides:
+            self._hold(HOLDS_ALL)
             return
-        self.slides = jumps or any(abs(wheel.slip()) > SLIP for wheel in self._wheels)
-        self._hold(hold if self.slides else HOLDS_ALL)
+        pushed = max(
+            min(1.0, max(0.0, abs(aside) - ASIDE) / max(abs(ahead), SLIP)) for ahead, aside in slips
+        )
+        self._hold(hold._replace(sideways=max(hold.sideways, round(pushed, _DIGITS))))
 
     def _hold(self, hold: Hold) -> None:
         for wheel in self._wheels:
