@@ -24,6 +24,8 @@ BOUNDS = {
     'veer, laden caster': 0.002,
     'veer, two casters': 0.002,
     'veer, backs at once': 0.01,
+    'veer, tips over': 0.01,
+    'veer, on its nose': 0.01,
     'veer, 0.2 kg': 0.002,
     'veer, broad wheels': 0.002,
     'veer, weak motors': 0.015,

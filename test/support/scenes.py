@@ -380,6 +380,8 @@ SCENES: dict[str, Scene] = {
     'veer, laden caster': veer(castered(casters=1, rear=0.4)),
     'veer, two casters': veer(castered()),
     'veer, backs at once': veer(castered(acceleration=0.0, rear=0.4), -SPEED),
+    'veer, tips over': veer(castered(casters=1, acceleration=0.0, rear=0.4), -SPEED),
+    'veer, on its nose': veer(castered(casters=1, acceleration=0.0), -SPEED),
     'veer, 0.2 kg': veer(castered(0.2, 0.12, casters=1)),
     'veer, broad wheels': veer(mirrored(robot_spec())),
     'veer, weak motors': veer(castered(casters=1, torque=0.1, acceleration=0.0)),

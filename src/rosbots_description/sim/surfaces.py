@@ -10,9 +10,10 @@ from itertools import compress
 from operator import not_
 
 from .bullet_description import MeshFile, Tree
+from .edges import halves
 from .inertia import principal_axes
 from .inner_shapes import inner_shapes
-from .pose import ALONG, UP, Vector, dot, rotate
+from .pose import ALONG, UP, Vector, conjugate, dot, rotate
 from .spec import (
     FIXED,
     REVOLUTE,
@@ -56,7 +57,12 @@ def surface_groups(tree: Tree, i: int) -> Groups:
     has to hold sideways and ahead differently (dragging.py).
     """
     link, joint = tree.links[i], tree.joints[i]
-    groups = _by_surface([shape for one in link.collisions for shape in crowned(one, link, joint)])
+    shapes = [shape for one in link.collisions for shape in crowned(one, link, joint)]
+    axle = _axle(tree) if i == 0 and _drives(tree) else None
+    if axle is not None:
+        up = rotate(conjugate(link.pose.orientation), UP)
+        shapes = [half for shape in shapes for half in halves(shape, axle, up)]
+    groups = _by_surface(shapes)
     if groups and i == 0 and _drives(tree) and _is_askew(tree.links[0].inertial):
         return [(), *groups]
     return groups or [()]
@@ -132,6 +138,17 @@ def _drives(tree: Tree) -> bool:
     if tree.fixed_base or any(link.self_collide for link in tree.links):
         return False
     return any(joint is not None and joint.type != FIXED for joint in tree.joints)
+
+
+def _axle(tree: Tree) -> Vector | None:
+    """Return the direction of the first wheel's axle in the frame of the root that carries it."""
+    root = tree.links[0]
+    for link, joint in zip(tree.links[1:], tree.joints[1:], strict=True):
+        wheels = (len(crowned(one, link, joint)) > 1 for one in link.collisions)
+        if joint.parent == root.name and any(wheels):
+            axle = rotate(link.pose.orientation, rotate(joint.pose.orientation, joint.axis))
+            return rotate(conjugate(root.pose.orientation), axle)
+    return None
 
 
 def _is_askew(inertial: Inertial) -> bool:
