@@ -377,3 +377,14 @@ def test_what_takes_long_to_find_out_is_found_out_before_the_trial():
         known = inner_shapes._inner.cache_info().currsize
         world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.5)))
         assert inner_shapes._inner.cache_info().currsize == known > 0
+
+
+def test_what_cannot_be_found_out_before_is_left_to_the_trial(monkeypatch):
+    def fails(*_):
+        raise ValueError
+
+    monkeypatch.setattr(trial, 'grouped', fails)
+    require(Trials(engine_that()))
+    monkeypatch.setattr('rosbots_description.sim.body_maker.grouped', fails)
+    with pytest.raises(ModelError, match='the physics engine failed: ValueError'):
+        require(Trials(engine_that()), replace(CRATE, static=True))

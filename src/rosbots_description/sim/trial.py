@@ -74,8 +74,9 @@ class Trials:
         with self._lock:
             if content in self._passed:
                 return
-            for tree in kinematic_trees(spec):  # the child and the world recall what this finds
-                grouped(tree, lambda mesh, stands=tree.stands: files[mesh, stands])
+            with contextlib.suppress(Exception):  # it fails in the child, too, which tells why
+                for tree in kinematic_trees(spec):  # the child and the world recall what this finds
+                    grouped(tree, lambda mesh, stands=tree.stands: files[mesh, stands])
             try:
                 fault = _outcome(lambda: self._live(spec, files), _allowance(spec, files))
             except OSError as error:
