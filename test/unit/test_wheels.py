@@ -9,6 +9,7 @@ from support.fake_drive import PERIOD_STEPS, collect, make, rim_speeds, run, whe
 from rosbots_description.sim.body import HOLDS_ALL
 from rosbots_description.sim.plugins.diff_drive import REACHED
 from rosbots_description.sim.pose import Pose, Twist, from_rpy
+from rosbots_description.sim.sliding import ROLLS
 from rosbots_description.sim.wheel import CREEP, LAG
 
 
@@ -198,7 +199,7 @@ def test_tyres_hold_nothing_sideways_while_they_slide_straight_on():
     run(plugin, PERIOD_STEPS)
     assert tyres(plugin) == [0.0, 0.0]
     plugin.model.ground = 0.515
-    run(plugin, PERIOD_STEPS)
+    run(plugin, ROLLS * PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
 
 
@@ -208,7 +209,9 @@ def test_tyres_that_begin_to_slide_later_hold_nothing_sideways_either():
     plugin.model.ground = 0.0  # somebody holds it, or it comes down from a hop
     run(plugin, 6 * PERIOD_STEPS)  # a look
     assert tyres(plugin) == [0.0, 0.0]
-    plugin.model.ground = 0.52
+    plugin.model.ground = 0.52  # as fast as the tyres, maybe for a moment only
+    run(plugin, (ROLLS - 1) * PERIOD_STEPS)
+    assert tyres(plugin) == [0.0, 0.0]
     run(plugin, PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
 
@@ -233,7 +236,7 @@ def test_tyres_that_roll_hold():
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
     plugin.model.ground = 0.52
     plugin.command(0.52, 0.0)
-    run(plugin, 5 * PERIOD_STEPS)
+    run(plugin, (ROLLS + 2) * PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
 
 
@@ -244,7 +247,7 @@ def test_tyres_hold_again_beside_a_wheel_of_unknown_radius():
     run(plugin, PERIOD_STEPS + 1)
     assert tyres(plugin) == [0.0, 0.0]
     plugin.model.ground = 0.515
-    run(plugin, PERIOD_STEPS)
+    run(plugin, ROLLS * PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
 
 

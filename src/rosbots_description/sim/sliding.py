@@ -15,25 +15,29 @@ from .wheel import Wheel
 JUMP = 0.05  # [m/s] a rim that is asked for that much more or less at once may begin to slide
 SLIP = 0.02  # [m/s] a rim that passes the ground slower than that rolls
 ASIDE = 0.05  # [m/s] what slides aside faster is pushed
+# Times in a row that tyres must be seen to roll: one that comes down is as fast as the ground once.
+ROLLS = 5
 _DIGITS = 2  # of a share: friction does not change with each bit
 
 
 class Sliding:
-    """Watches two wheels about one axle, and lets go of the ground sideways while they slide.
-
-    `slides` tells whether they do.
-    """
+    """Watches two wheels about one axle, and lets go of the ground sideways while they slide."""
 
     def __init__(self, wheels: Sequence[Wheel]) -> None:
         """Describe them; `rest` lets them hold."""
         self._wheels = wheels
         self._asked: tuple[float, ...] = (0.0,) * len(wheels)  # [rad/s]
-        self.slides = False
+        self._rolled = ROLLS  # times in a row that they were seen to roll
+
+    @property
+    def slides(self) -> bool:
+        """Tell whether they do, or did so just now."""
+        return self._rolled < ROLLS
 
     def rest(self) -> None:
         """Let the tyres hold: they stand still."""
         self._asked = (0.0,) * len(self._wheels)
-        self.slides = False
+        self._rolled = ROLLS
         self._hold(HOLDS_ALL)
 
     def watch(self, asked: Sequence[float], hold: Hold) -> None:
@@ -49,7 +53,10 @@ class Sliding:
         )
         self._asked = tuple(asked)
         slips = [wheel.slip() for wheel in self._wheels]
-        self.slides = jumps or any(abs(ahead) > SLIP for ahead, _ in slips)
+        if jumps or any(abs(ahead) > SLIP for ahead, _ in slips):
+            self._rolled = 0
+        else:
+            self._rolled += 1
         if not self.slides:
             self._hold(HOLDS_ALL)
             return
