@@ -24,7 +24,7 @@ from rosbots_description.sim.pose import UP, rotate, yaw_of
 SIZES = {0.2: 0.12, 5.0: 0.4, 50.0: 0.9}  # [m] by mass [kg]
 ACCELERATIONS = (0.0, 1.0)  # [m/s^2]; 0: no limit
 CASTERS = (1, 2)
-REARS = (0.0, 0.4)  # where the weight is, from the axle to the caster behind
+REARS = (0.0, 0.2, 0.4)  # where the weight is, from the axle to the caster behind
 SPEEDS = (0.2, 0.5, 1.0, -0.5, -1.0)  # [m/s]
 HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.3)  # [rad]
 SECONDS = 20

@@ -1,13 +1,14 @@
-"""Boxes of a robot's body come as two halves that touch a floor with the outer corner each."""
+"""Shapes of a robot's body with edges come twice, and touch a floor with both ends of an edge."""
 
 import math
 from itertools import product
 
 import pytest
 
+from rosbots_description.sim.body_maker import grouped
 from rosbots_description.sim.bullet_description import Tree
-from rosbots_description.sim.edges import halves
-from rosbots_description.sim.pose import Pose, compose, from_rpy
+from rosbots_description.sim.edges import leaning
+from rosbots_description.sim.pose import IDENTITY, Pose, compose, from_rpy
 from rosbots_description.sim.spec import (
     REVOLUTE,
     Box,
@@ -16,16 +17,18 @@ from rosbots_description.sim.spec import (
     Inertial,
     JointSpec,
     LinkSpec,
+    Mesh,
     Sphere,
+    Surface,
 )
-from rosbots_description.sim.surfaces import surface_groups
 
-AXLE, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 QUARTER = math.pi / 2.0
-BODY = LinkSpec('body', Pose((0.0, 0.0, 0.2)), Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0),
-                (Collision('box', Box((0.5, 0.3, 0.1))),))
-WHEEL = LinkSpec('wheel', Pose((0.0, 0.2, 0.1), from_rpy(QUARTER, 0.0, 0.0)),
-                 collisions=(Collision('tyre', Cylinder(0.1, 0.05)),))
+BOX = Collision('box', Box((0.5, 0.3, 0.1)), Pose((0.1, 0.0, 0.2)))
+MASS = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
+BODY = LinkSpec('body', Pose((0.0, 0.0, 0.2)), MASS, (BOX, Collision('skid', Sphere(0.05))))
+WHEEL = LinkSpec('wheel', Pose((0.0, 0.2, 0.1), from_rpy(QUARTER, 0.0, 0.0)), MASS,
+                 (Collision('tyre', Cylinder(0.1, 0.05)),))
 JOINT = JointSpec('axle', REVOLUTE, 'body', 'wheel')
 
 
@@ -36,52 +39,72 @@ def corners(collision):
             for i, j, k in product((-0.5, 0.5), repeat=3)]
 
 
+def side_that_is_lowest(collision):
+    """Return the y [m] of the lowest corners."""
+    return min(corners(collision), key=lambda corner: corner[2])[1]
+
+
 @pytest.mark.parametrize('turn', [
-    (0.0, 0.0, 0.0), (0.0, 0.0, QUARTER), (QUARTER, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.02),
+    (0.0, 0.0, 0.0), (0.0, 0.0, QUARTER), (QUARTER, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4),
 ])
-def test_the_halves_fill_the_box_and_reach_lowest_at_its_sides(turn):
-    box = Collision('box', Box((0.5, 0.3, 0.1)), Pose((1.0, 2.0, 3.0), from_rpy(*turn)))
-    both = sorted(halves(box, AXLE, UP), key=lambda half: half.pose.position[1])
-    for whole in corners(box):
-        nearest = min((math.dist(whole, corner), corner)
-                      for half in both for corner in corners(half))
-        assert nearest[0] < 1e-4
-        assert nearest[1][2] == pytest.approx(whole[2], abs=1e-4)
-    for half, side in zip(both, (-1.0, 1.0), strict=True):
-        across = sorted(corners(half), key=lambda corner: side * corner[1])
-        inner, outer = across[:4], across[4:]
-        lowest = [min(z for _, _, z in some) for some in (inner, outer)]
-        assert 1e-6 < lowest[0] - lowest[1] < 2e-4
+def test_a_box_comes_twice_in_one_place_and_each_is_lowest_on_its_side(turn):
+    box = Collision('box', Box((0.5, 0.3, 0.1)), Pose((0.2, 0.0, 0.1), from_rpy(*turn)))
+    both = leaning([box], AXLE, UP)
+    for one in both:
+        for corner, original in zip(corners(one), corners(box), strict=True):
+            assert 0.0 < math.dist(corner, original) < 1e-4
+    assert sorted(math.copysign(1.0, side_that_is_lowest(one)) for one in both) == [-1.0, 1.0]
 
 
-def test_of_a_body_whose_frame_is_upside_down_the_other_side_is_the_lower():
-    box = Collision('box', Box((0.5, 0.3, 0.1)), Pose((1.0, 2.0, 3.0)))
-    for half in halves(box, AXLE, (0.0, 0.0, -1.0)):
-        by_distance = sorted(corners(half), key=lambda corner: abs(corner[1] - 2.0))
-        inner, outer = (max(z for _, _, z in some) for some in (by_distance[:4], by_distance[4:]))
-        assert inner < outer
+def test_in_a_frame_that_is_upside_down_each_is_highest_on_its_side():
+    for lower, upper in zip(leaning([BOX], AXLE, DOWN), leaning([BOX], AXLE, UP), strict=True):
+        assert side_that_is_lowest(lower) == pytest.approx(-side_that_is_lowest(upper), abs=1e-4)
 
 
-@pytest.mark.parametrize('collision', [
-    Collision('ball', Sphere(0.1)),
-    Collision('box', Box((1.0, 1.0, 1.0)), Pose((0.0, 0.0, 0.0), from_rpy(0.0, 0.0, 0.3))),
-])
-def test_what_is_no_box_along_the_axle_stays_as_it_is(collision):
-    assert halves(collision, AXLE, UP) == (collision,)
+def test_what_is_round_comes_once():
+    shapes = [Collision('ball', Sphere(0.1)), Collision('can', Cylinder(0.1, 0.2))]
+    assert leaning(shapes, AXLE, UP) == tuple(shapes)
 
 
-def test_the_body_that_carries_a_wheel_comes_in_halves():
+def test_a_mesh_has_edges_too():
+    assert len(leaning([Collision('hull', Mesh('hull.stl'))], AXLE, UP)) == 2
+
+
+def kinds(group):
+    return [type(shape.geometry) for shape in group]
+
+
+def no_file(_mesh):
+    raise AssertionError
+
+
+def test_the_body_that_carries_a_wheel_touches_with_both_ends_of_its_edges():
     tree = Tree([BODY, WHEEL], [None, JOINT], fixed_base=False)
-    (shapes,) = surface_groups(tree, 0)
-    assert [shape.geometry.size for shape in shapes] == [(0.5, 0.15, 0.1)] * 2
+    (body, wheel), inner_first = grouped(tree, no_file)
+    assert not inner_first
+    assert [kinds(group) for group in body] == [[Box, Box, Sphere]]
+    assert [kinds(group) for group in wheel] == [[Cylinder, Cylinder]]  # crest and shoulders
+
+
+def test_what_lies_inside_comes_once():
+    smooth = Collision('skid', Sphere(0.05), Pose((-0.2, 0.0, -0.1)), surface=Surface(mu=0.1))
+    plates = tuple(Collision(f'plate{z}', Box((0.5, 0.3, 0.01)), Pose((0.0, 0.0, z)))
+                   for z in (0.0, 0.2))
+    posts = tuple(Collision(f'post{i}', Box((0.02, 0.02, 0.18)), Pose((0.05 * i, 0.0, 0.1)))
+                  for i in range(-3, 3))
+    body = LinkSpec('body', IDENTITY, MASS, (*plates, *posts, smooth))
+    tree = Tree([body, WHEEL], [None, JOINT], fixed_base=False)
+    (groups, _), inner_first = grouped(tree, no_file)
+    assert inner_first
+    assert [kinds(group) for group in groups] == [[Box] * 6, [Box] * 4, [Sphere]]
 
 
 @pytest.mark.parametrize('tree', [
     Tree([BODY], [None], fixed_base=False),
     Tree([BODY, WHEEL], [None, JOINT], fixed_base=True),
-    Tree([BODY, LinkSpec('arm'), WHEEL],
-         [None, JointSpec('elbow', REVOLUTE, 'body', 'arm'), JointSpec('a', REVOLUTE, 'arm', 'w')],
-         fixed_base=False),
+    Tree([BODY, LinkSpec('arm', IDENTITY, MASS), WHEEL],
+         [None, JointSpec('elbow', REVOLUTE, 'body', 'arm'),
+          JointSpec('axle', REVOLUTE, 'arm', 'wheel')], fixed_base=False),
 ])
-def test_a_body_without_wheels_comes_in_one(tree):
-    assert surface_groups(tree, 0) == [BODY.collisions]
+def test_a_body_that_carries_no_wheel_stays_as_it_is(tree):
+    assert grouped(tree, no_file)[0][0] == [BODY.collisions]

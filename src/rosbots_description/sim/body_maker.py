@@ -20,6 +20,7 @@ from .surfaces import (
     is_rigid,
     rolling_arm,
     surface_groups,
+    with_edges,
     with_inner_first,
 )
 from .tuning import Tuning
@@ -41,7 +42,10 @@ def grouped(tree: Tree, mesh_file: MeshFile) -> tuple[list[Groups], bool]:
     inner_first = None
     if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
         inner_first = with_inner_first(tree, groups[0], mesh_file)
-    return [inner_first or groups[0], *groups[1:]], inner_first is not None
+    if inner_first:
+        inner, *outer = inner_first
+        return [[inner, *with_edges(tree, outer)], *groups[1:]], True
+    return [with_edges(tree, groups[0]), *groups[1:]], False
 
 
 class BodyMaker:

@@ -1,42 +1,35 @@
-"""Boxes whose edges touch a floor with both ends.
+"""Edges of a robot's body that touch a floor with both ends.
 
-Of a box above a plane PyBullet finds one corner in a step, and of two that are equally deep always
-the same. So a robot that falls on the front edge of its body, as one does that backs off at once,
-would take the blow with that corner, and turn. Two halves that lean outwards by a hair touch with
-the outer corner each.
+Of a box or a hull above a plane PyBullet finds one corner in a step, and of two that are equally
+deep always the same. So a robot that falls on the front edge of its body, as one does that backs
+at once, would take the blow with that corner, and turn. Two of the same shape in one place, each
+leaning to a side by a hair, touch with a corner each.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
-from .pose import ALONG, ZERO, Pose, Vector, add, compose, conjugate, cross, rotate
-from .spec import Box, Collision
+from .pose import Pose, Vector, compose, cross
+from .spec import Box, Collision, Mesh
 
 _LEAN = 2e-4  # [rad] more than a robot that drives straight on rolls by as it falls
-_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-def halves(collision: Collision, axle: Vector, up: Vector) -> tuple[Collision, ...]:
-    """Return what stands for a collision of a robot's body: of a box along its axle two halves.
+def leaning(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[Collision, ...]:
+    """Return what stands for the shapes of a robot's body: of each with edges two that lean.
 
     Args:
-        collision: a shape of the body.
-        axle, up: unit vectors in the frame of the body.
+        shapes: in the frame of the body, whose origin is not far from the middle of the axle.
+        axle, up: unit vectors in that frame.
     """
-    box = collision.geometry
-    if not isinstance(box, Box):
-        return (collision,)
-    turn = collision.pose.orientation
-    across = rotate(conjugate(turn), axle)
-    k = max(range(3), key=lambda i: abs(across[i]))
-    if abs(across[k]) < ALONG:
-        return (collision,)
-    size = replace(box, size=tuple(s / 2.0 if i == k else s for i, s in enumerate(box.size)))
+    ahead = cross(axle, up)
     found = []
-    for side in (1.0, -1.0):
-        outwards = rotate(turn, tuple(side * x for x in _AXES[k]))
-        lean = tuple(math.sin(_LEAN / 2.0) * x for x in cross(up, outwards))
-        place = tuple(box.size[k] / 4.0 * x for x in outwards)
-        half = Pose(add(collision.pose.position, place), (*lean, math.cos(_LEAN / 2.0)))
-        found.append(replace(collision, geometry=size, pose=compose(half, Pose(ZERO, turn))))
+    for shape in shapes:
+        if not isinstance(shape.geometry, Box | Mesh):
+            found.append(shape)
+            continue
+        for half in (_LEAN / 2.0, -_LEAN / 2.0):
+            turn = (*(math.sin(half) * x for x in ahead), math.cos(half))
+            found.append(replace(shape, pose=compose(Pose(orientation=turn), shape.pose)))
     return tuple(found)

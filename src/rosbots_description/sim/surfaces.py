@@ -10,7 +10,7 @@ from itertools import compress
 from operator import not_
 
 from .bullet_description import MeshFile, Tree
-from .edges import halves
+from .edges import leaning
 from .inertia import principal_axes
 from .inner_shapes import inner_shapes
 from .pose import ALONG, UP, Vector, conjugate, dot, rotate
@@ -57,12 +57,7 @@ def surface_groups(tree: Tree, i: int) -> Groups:
     has to hold sideways and ahead differently (dragging.py).
     """
     link, joint = tree.links[i], tree.joints[i]
-    shapes = [shape for one in link.collisions for shape in crowned(one, link, joint)]
-    axle = _axle(tree) if i == 0 and _drives(tree) else None
-    if axle is not None:
-        up = rotate(conjugate(link.pose.orientation), UP)
-        shapes = [half for shape in shapes for half in halves(shape, axle, up)]
-    groups = _by_surface(shapes)
+    groups = _by_surface([shape for one in link.collisions for shape in crowned(one, link, joint)])
     if groups and i == 0 and _drives(tree) and _is_askew(tree.links[0].inertial):
         return [(), *groups]
     return groups or [()]
@@ -82,6 +77,15 @@ def with_inner_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups 
         return None
     halves = [tuple(compress(first, half)) for half in (inner, map(not_, inner))]
     return [*halves, *others]
+
+
+def with_edges(tree: Tree, groups: Groups) -> Groups:
+    """Return the groups of a root anew: if it carries wheels, both ends of its edges can touch."""
+    axle = _axle(tree) if _drives(tree) else None
+    if axle is None:
+        return groups
+    up = rotate(conjugate(tree.links[0].pose.orientation), UP)
+    return [leaning(group, axle, up) for group in groups]
 
 
 def is_one_body(tree: Tree, groups: Sequence[Groups]) -> bool:
