@@ -65,19 +65,19 @@ class Server:
         os.environ.update(ROS_MASTER_URI=_free_master(), ROS_HOSTNAME='localhost')
         logging.getLogger('rosout').setLevel(logging.WARNING)
         OUTPUT.mkdir(parents=True, exist_ok=True)
-        self._processes = ExitStack()
-        if roscore:
-            port = os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1]
-            self._launch('roscore.log', '--core', '-p', port)
-            wait_until(lambda: _is_registered('/rosout/get_loggers'), 'roscore')
-        begin, begin_after_boot = time.monotonic(), time.clock_gettime(time.CLOCK_BOOTTIME)
-        launched = self._launch('server.log', *launch, *arguments)
-        try:
-            self.seconds_to_spawn_service = self._wait_for('spawn_urdf_model') - begin
-            self._wait_for('step')  # the last one
-        except TimeoutError:
-            self._processes.close()
-            raise TimeoutError(f'no simulator: {launched.complaint()}') from None
+        with ExitStack() as processes:  # they end here if one does not come
+            if roscore:
+                port = os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1]
+                processes.enter_context(_launched('roscore', '--core', '-p', port))
+                wait_until(lambda: _is_registered('/rosout/get_loggers'), 'roscore')
+            begin, begin_after_boot = time.monotonic(), time.clock_gettime(time.CLOCK_BOOTTIME)
+            launched = processes.enter_context(_launched('server', *launch, *arguments))
+            try:
+                self.seconds_to_spawn_service = self._wait_for('spawn_urdf_model') - begin
+                self._wait_for('step')  # the last one
+            except TimeoutError:
+                raise TimeoutError(f'no simulator: {launched.complaint()}') from None
+            self._processes = processes.pop_all()
         rospy.init_node('benchmark', disable_rostime=True, disable_signals=True)
         self._world = self.service('get_world_properties', GetWorldProperties)
         self._pause = self.service('pause_physics', Empty)
@@ -95,9 +95,6 @@ class Server:
     def __exit__(self, *_exception) -> None:
         rospy.signal_shutdown('measured')
         self._processes.close()
-
-    def _launch(self, log: str, *arguments: str) -> Launched:
-        return self._processes.enter_context(Launched(arguments, OUTPUT / log, os.environ))
 
     def service(self, name: str, service_class: type) -> rospy.ServiceProxy:
         """Return one of its services over a lasting connection."""
@@ -168,6 +165,10 @@ class Server:
         """Wait until a service is registered; return when that was [s, monotonic]."""
         wait_until(lambda: _is_registered(f'/gazebo/{service}'), f'/gazebo/{service}')
         return time.monotonic()
+
+
+def _launched(name: str, *arguments: str) -> Launched:
+    return Launched(arguments, OUTPUT / f'{name}.log', os.environ)
 
 
 def _is_registered(service: str) -> bool:
