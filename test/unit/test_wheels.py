@@ -240,6 +240,15 @@ def test_tyres_that_roll_hold():
     assert tyres(plugin) == [1.0, 1.0]
 
 
+def test_tyres_of_a_robot_that_keeps_up_as_they_speed_up_hold_all_the_time():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='1')
+    plugin.command(0.52, 0.0)
+    for _ in range(60):
+        run(plugin, PERIOD_STEPS)
+        plugin.model.ground = rim_speeds(plugin)[0]
+        assert tyres(plugin) == [1.0, 1.0]
+
+
 def test_tyres_hold_again_beside_a_wheel_of_unknown_radius():
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
     plugin.wheels[1].radius = None

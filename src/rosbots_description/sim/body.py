@@ -38,6 +38,10 @@ class Hold(NamedTuple):
     sideways: float = 1.0
     ahead: float = 1.0
 
+    def rounded(self) -> 'Hold':
+        """Return it in hundredths: friction does not change with each bit that a robot turns by."""
+        return Hold(*(round(share, 2) for share in self))
+
 
 HOLDS_ALL = Hold()
 

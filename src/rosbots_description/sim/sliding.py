@@ -17,7 +17,6 @@ SLIP = 0.02  # [m/s] a rim that passes the ground slower than that rolls
 ASIDE = 0.05  # [m/s] what slides aside faster is pushed
 # Times in a row that tyres must be seen to roll: one that comes down is as fast as the ground once.
 ROLLS = 5
-_DIGITS = 2  # of a share: friction does not change with each bit
 
 
 class Sliding:
@@ -63,7 +62,7 @@ class Sliding:
         pushed = max(
             min(1.0, max(0.0, abs(aside) - ASIDE) / max(abs(ahead), SLIP)) for ahead, aside in slips
         )
-        self._hold(hold._replace(sideways=max(hold.sideways, round(pushed, _DIGITS))))
+        self._hold(hold._replace(sideways=max(hold.sideways, pushed)).rounded())
 
     def _hold(self, hold: Hold) -> None:
         for wheel in self._wheels:

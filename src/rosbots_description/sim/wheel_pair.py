@@ -26,7 +26,6 @@ BEND = 0.5
 # the second it holds nothing there: it would hold the robot for good.
 EASES = (0.45, 0.65)
 _EASING = 0.1  # of the way to what the grip in use tells, at each look; a ramp passes before
-_DIGITS = 2  # of a share: friction does not change with each bit that a robot turns by
 LOOK_NS = 50_000_000  # time between two looks at force and load, half of what steering costs [ns]
 
 
@@ -116,7 +115,7 @@ def _hold(bend: float, alike: float) -> Hold:
     The straighter it is, the less holds along the axle, and the nearer is what holds ahead to
     `alike`, the share that makes it as much as at any other heading.
     """
-    return Hold(round(bend, _DIGITS), round(alike + bend * (1.0 - alike), _DIGITS))
+    return Hold(bend, alike + bend * (1.0 - alike)).rounded()
 
 
 def _share(pull: float, grip: float) -> float:
