@@ -13,7 +13,7 @@ from dataclasses import replace
 from .pose import Pose, Vector, compose, cross
 from .spec import Box, Collision, Mesh
 
-_LEAN = 2e-4  # [rad] more than a robot that drives straight on rolls by as it falls
+_LEAN = 2e-4  # [rad]; half and five times as much do as well
 
 
 def leaning(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[Collision, ...]:

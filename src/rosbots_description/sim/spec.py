@@ -8,7 +8,7 @@ URDF, SDF, PyBullet or ROS.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from .pose import IDENTITY, Pose, Vector
+from .pose import IDENTITY, Pose, Vector, rotate
 
 
 @dataclass(frozen=True)
@@ -185,6 +185,11 @@ class JointSpec:
     velocity: float | None = None
     damping: float = 0.0
     friction: float = 0.0
+
+    @property
+    def axis_in_child(self) -> Vector:
+        """Return the axis in the frame of the child link."""
+        return rotate(self.pose.orientation, self.axis)
 
 
 @dataclass(frozen=True)

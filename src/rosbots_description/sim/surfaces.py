@@ -115,8 +115,8 @@ def crowned(
     if joint is None or joint.type != REVOLUTE or not isinstance(wheel, Cylinder):
         return (collision,)
     axis = rotate(collision.pose.orientation, UP)
-    axle = rotate(joint.pose.orientation, joint.axis)
-    if abs(dot(axis, axle)) < ALONG or touching_end(wheel, rotate(link.pose.orientation, axis)):
+    tumbles = abs(dot(axis, joint.axis_in_child)) < ALONG
+    if tumbles or touching_end(wheel, rotate(link.pose.orientation, axis)):
         return (collision,)
     reach = math.hypot(wheel.radius, wheel.radius, wheel.length / 2.0)
     shoulders = max(wheel.radius - _CROWN * reach, wheel.radius / 2.0)
@@ -150,7 +150,7 @@ def _axle(tree: Tree) -> Vector | None:
     for link, joint in zip(tree.links[1:], tree.joints[1:], strict=True):
         wheels = (len(crowned(one, link, joint)) > 1 for one in link.collisions)
         if joint.parent == root.name and any(wheels):
-            axle = rotate(link.pose.orientation, rotate(joint.pose.orientation, joint.axis))
+            axle = rotate(link.pose.orientation, joint.axis_in_child)
             return rotate(conjugate(root.pose.orientation), axle)
     return None
 

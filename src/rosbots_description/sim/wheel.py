@@ -57,7 +57,7 @@ class Wheel:
         self.name = joint.name
         self.radius = _radius(self._link())
         self._grip = _grip(self._link())
-        self._axis = rotate(joint.spec.pose.orientation, joint.spec.axis)  # in the link's frame
+        self._axis = joint.spec.axis_in_child
         self._torque = torque
         self._clock = clock
         self._asked = 0.0  # hub speed [rad/s]
