@@ -7,7 +7,7 @@ import pytest
 from support import empty_world, urdf_spec
 from support.scenes import GRAVITY, SCENES, SPEED, box, castered, drive, forward_speed, link
 
-from rosbots_description.sim.pose import Pose, Twist, from_rpy, yaw_of
+from rosbots_description.sim.pose import Pose, Twist, add, dot, from_rpy, yaw_of
 
 # The largest error of each scene, in its unit; measured ones are in doc/physics.md.
 BOUNDS = {
@@ -103,6 +103,25 @@ def test_wheels_that_spin_as_they_set_off_do_not_turn_the_robot(speed, robot, he
         model = drive(world, castered(acceleration=0.0, **robot), 2, heading, speed)
         assert yaw_of(model.pose.orientation) == pytest.approx(heading, abs=0.02)
         assert forward_speed(model) == pytest.approx(speed, rel=0.1)
+
+
+@pytest.mark.parametrize('heading', [0.0, 0.4, math.pi / 4.0, 1.3, -2.0])
+@pytest.mark.parametrize('aside', [0.05, -0.3])
+def test_tyres_that_spin_bring_a_slip_to_its_end_without_turning_it(heading, aside):
+    with empty_world() as world:
+        model = drive(world, castered(acceleration=0.0, mu=0.0), 0, heading, 1.0)
+        world.run(20)
+        ahead = (math.cos(heading), math.sin(heading), 0.0)
+        left = (-ahead[1], ahead[0], 0.0)
+        before = model.twist.linear
+        moved = add(before, tuple(aside * part for part in left))
+        world.engine.set_root_twist(model.body, 'base', Twist(moved))
+        world.run(60)
+        after = model.twist.linear
+        shrunk = (1.0 - dot(after, ahead)) / (1.0 - dot(before, ahead))
+        assert 0.5 < shrunk < 0.7
+        assert dot(after, left) == pytest.approx(aside * shrunk, rel=0.1)
+        assert yaw_of(model.pose.orientation) == pytest.approx(heading, abs=0.01)
 
 
 @pytest.mark.parametrize('heading', [0.0, 0.4, 1.0])

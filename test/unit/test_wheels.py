@@ -45,8 +45,9 @@ def test_a_wheel_that_is_asked_to_stand_does_not_creep():
 
 def test_a_motor_that_falls_behind_is_brought_to_the_lag_of_its_force():
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='20')
-    for wheel, given in zip(plugin.model.wheels.values(), (0.97, 0.9), strict=True):
+    for wheel, given in zip(plugin.model.wheels.values(), (0.99, 0.97), strict=True):
         wheel.weight, wheel.gives = 10.0, lambda asked, share=given: (share * asked, 1.3)
+    plugin.model.ground = 0.49
     plugin.command(0.52, 0.0)
     run(plugin, 800 * PERIOD_STEPS)
     for wheel in plugin.wheels:  # both pull at half of their grip
@@ -66,6 +67,7 @@ def test_however_hard_it_pulls_a_motor_does_not_lag_by_what_a_drive_would_make_u
 def pulling(weights, efforts):
     """Return a plugin whose wheels carry these loads [N] and pull as hard as these efforts."""
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='20')
+    plugin.model.ground = 0.51
     for wheel, weight, effort in zip(plugin.model.wheels.values(), weights, efforts, strict=True):
         wheel.weight, wheel.gives = weight, lambda asked, effort=effort: (asked, effort)
     return plugin
@@ -214,15 +216,6 @@ def test_tyres_that_begin_to_slide_later_hold_nothing_sideways_either():
     assert tyres(plugin) == [0.0, 0.0]
     run(plugin, PERIOD_STEPS)
     assert tyres(plugin) == [1.0, 1.0]
-
-
-@pytest.mark.parametrize(('aside', 'share'), [(0.04, 0.0), (0.15, 0.25), (-0.15, 0.25), (2.0, 1.0)])
-def test_sliding_tyres_that_are_pushed_aside_hold_by_the_direction_of_the_slip(aside, share):
-    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
-    plugin.model.ground, plugin.model.aside = 0.12, aside
-    plugin.command(0.52, 0.0)
-    run(plugin, PERIOD_STEPS + 1)
-    assert tyres(plugin) == [share, share]
 
 
 def test_tyres_that_slide_as_the_robot_turns_on_the_spot_hold():

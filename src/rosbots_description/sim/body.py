@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .pose import Pose, Quaternion, Twist
+from .pose import Pose, Quaternion, Twist, Vector
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,16 @@ class Touching(NamedTuple):
     index: int
     axes: Quaternion
     rigid: bool
+
+
+class Contact(NamedTuple):
+    """Where something was pressed in the last step [m], and what it was held with there [N].
+
+    Both are given in the world; the friction may be that on either side.
+    """
+
+    place: Vector
+    friction: Vector
 
 
 class Hold(NamedTuple):

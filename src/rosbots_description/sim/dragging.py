@@ -34,7 +34,8 @@ class Dragged:
         self._model = model
         masses = (link.inertial.mass for link in model.spec.links if link.inertial)
         self._mass = sum(masses)  # [kg]
-        links = [model.spec.link(name) for name in _fixed_to(wheel.joint.spec.parent, model.spec)]
+        self.names = _fixed_to(wheel.joint.spec.parent, model.spec)
+        links = [model.spec.link(name) for name in self.names]
         # Each with the direction of the axle in its frame.
         self._links = [
             (link.name, rotate(conjugate(link.pose.orientation), wheel.axle)) for link in links

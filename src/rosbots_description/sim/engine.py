@@ -7,7 +7,9 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
-from .body import HOLDS_ALL, Body, Hold, Motion, Part
+from collections.abc import Iterator
+
+from .body import HOLDS_ALL, Body, Contact, Hold, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
@@ -52,7 +54,7 @@ class Engine:
         # What has been read since the last step, by PyBullet's body and index: one call of PyBullet
         # costs as much as reading all joints, or all contacts, of a body.
         self._joint_readings: dict[int, dict[int, tuple]] = {}
-        self._normal_forces: dict[int, dict[int, float]] = {}
+        self._points: dict[int, dict[int, list[tuple]]] = {}
         self.apply(physics)
 
     def close(self) -> None:
@@ -199,16 +201,20 @@ class Engine:
         linear = add(_at_most(twist.linear, ANY_SPEED), cross(angular, com))
         pybullet.resetBaseVelocity(part.body, linear, angular, physicsClientId=self._client)
 
-    def push(self, body: Body, link: str, force: Vector, torque: Vector) -> None:
-        """Push a link during the next step: force [N] at its centre of mass and torque [N m].
+    def push(
+        self, body: Body, link: str, force: Vector, torque: Vector, place: Vector | None = None
+    ) -> None:
+        """Push a link during the next step: force [N] and torque [N m], beside other pushes.
 
-        Both are given in world axes and add to other pushes.
+        Args:
+            place: where the force acts [m], None for the centre of mass; all in world axes.
         """
         part = body.parts[link]
-        com = compose(self.link_pose(body, link), part.com_in_origin).position
+        if place is None:
+            place = compose(self.link_pose(body, link), part.com_in_origin).position
         world, client = pybullet.WORLD_FRAME, self._client
         force, torque = _at_most(force, _ANY_FORCE), _at_most(torque, _ANY_FORCE)
-        pybullet.applyExternalForce(part.body, part.index, force, com, world, client)
+        pybullet.applyExternalForce(part.body, part.index, force, place, world, client)
         pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
 
     def push_joint(self, body: Body, joint: str, effort: float) -> None:
@@ -234,15 +240,17 @@ class Engine:
 
     def normal_force(self, body: Body, link: str) -> float:
         """Return the sum of the normal forces on a link in the last step [N]."""
-        part = body.parts[link]
-        forces = self._normal_forces.get(part.body)
-        if forces is None:
-            forces = self._normal_forces[part.body] = {}
-            for contact in pybullet.getContactPoints(part.body, physicsClientId=self._client):
-                forces[contact[3]] = forces.get(contact[3], 0.0) + contact[9]
-                if contact[2] == part.body:  # it touches itself
-                    forces[contact[4]] = forces.get(contact[4], 0.0) + contact[9]
-        return forces.get(part.index, 0.0)
+        return sum(point[9] for point in self._touched(body, link))
+
+    def contacts(self, body: Body, link: str) -> list[Contact]:
+        """Return where a link was pressed in the last step."""
+        found = []
+        for point in self._touched(body, link):
+            place, normal_force, first, one, second, other = *point[5:6], *point[9:14]
+            if normal_force > 0.0:
+                friction = (first * a + second * b for a, b in zip(one, other, strict=True))
+                found.append(Contact(place, tuple(friction)))
+        return found
 
     def set_hold(self, body: Body, link: str, axis: Vector, hold: Hold) -> None:
         """Let a link's surfaces hold only shares of their friction; `axis` of its frame is an axle.
@@ -308,7 +316,19 @@ class Engine:
 
     def _forget_readings(self) -> None:
         self._joint_readings.clear()
-        self._normal_forces.clear()
+        self._points.clear()
+
+    def _touched(self, body: Body, link: str) -> Iterator[tuple]:
+        """Yield PyBullet's contact points of a link in the last step."""
+        for part in body.surfaces[link]:
+            points = self._points.get(part.body)
+            if points is None:
+                points = self._points[part.body] = {}
+                for point in pybullet.getContactPoints(part.body, physicsClientId=self._client):
+                    points.setdefault(point[3], []).append(point)
+                    if point[2] == part.body:  # it touches itself
+                        points.setdefault(point[4], []).append(point)
+            yield from points.get(part.index, ())
 
     def _link_state(self, part: Part, velocity: bool) -> tuple:
         return pybullet.getLinkState(

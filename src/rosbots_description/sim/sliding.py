@@ -3,8 +3,8 @@
 Friction is limited along the world's axes each (tuning.py), so a tyre that slides across them is
 pushed aside as hard as it is pulled ahead. But friction points against the slip: what slides
 straight on is not held sideways at all, and ahead alike at any heading. So wheels that are asked to
-run alike hold nothing along their axle while they slide, unless something pushes them aside: then
-they hold by the direction of the slip. Wheels that are asked to stand hold all, sliding or not.
+run alike hold nothing along their axle while they slide; what moves them aside then, side_friction
+brings to rest. Wheels that are asked to stand hold all, sliding or not.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,6 @@ from .wheel import Wheel
 
 JUMP = 0.05  # [m/s] a rim that is asked for that much more or less at once may begin to slide
 SLIP = 0.02  # [m/s] a rim that passes the ground slower than that rolls
-ASIDE = 0.05  # [m/s] what slides aside faster is pushed
 # Times in a row that tyres must be seen to roll: one that comes down is as fast as the ground once.
 ROLLS = 5
 
@@ -51,18 +50,11 @@ class Sliding:
             for wheel, now, then in zip(self._wheels, asked, self._asked, strict=True)
         )
         self._asked = tuple(asked)
-        slips = [wheel.slip() for wheel in self._wheels]
-        if jumps or any(abs(ahead) > SLIP for ahead, _ in slips):
+        if jumps or any(abs(wheel.slip()) > SLIP for wheel in self._wheels):
             self._rolled = 0
         else:
             self._rolled += 1
-        if not self.slides:
-            self._hold(HOLDS_ALL)
-            return
-        pushed = max(
-            min(1.0, max(0.0, abs(aside) - ASIDE) / max(abs(ahead), SLIP)) for ahead, aside in slips
-        )
-        self._hold(hold._replace(sideways=max(hold.sideways, pushed)).rounded())
+        self._hold(hold if self.slides else HOLDS_ALL)
 
     def _hold(self, hold: Hold) -> None:
         for wheel in self._wheels:

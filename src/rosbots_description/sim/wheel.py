@@ -106,17 +106,17 @@ class Wheel:
             return 0.0, 0.0
         return self.joint.effort / self.radius, self.joint.normal_force() * self._grip
 
-    def slip(self) -> tuple[float, float]:
-        """Return how much faster the rim runs than the ground passes under it [m/s], and sideways.
+    def slip(self) -> float:
+        """Return how much faster the rim runs than the ground passes under it [m/s].
 
-        None is known of a wheel of unknown radius: 0, 0.
+        None is known of a wheel of unknown radius: 0.
         """
         if not self.radius:
-            return 0.0, 0.0
+            return 0.0
         pose, twist = self.joint.model.links[self.joint.spec.child].state()
         axle = rotate(pose.orientation, self._axis)
         ahead = dot(cross(axle, UP), twist.linear)
-        return self.joint.velocity * self.radius - ahead, dot(axle, twist.linear)
+        return self.joint.velocity * self.radius - ahead
 
     def crawls(self) -> bool:
         """Tell whether the wheel hardly turns; one of unknown radius never does."""

@@ -14,6 +14,7 @@ from .clock import SimClock
 from .dragging import Dragged
 from .drifting import Drift
 from .pose import yaw_of
+from .side_friction import SideFriction
 from .sliding import Sliding
 from .wheel import Wheel
 
@@ -38,6 +39,7 @@ class WheelPair:
         self._model = model
         self._dragged = Dragged(model, left)
         self._sliding = Sliding(self.wheels)
+        self._side = SideFriction(model, self.wheels, self._dragged.names, clock)
         self._drift = Drift(model, left, right, clock)
         self._clock = clock
         self._looked_ns = 0
@@ -60,6 +62,7 @@ class WheelPair:
         for wheel in self.wheels:
             wheel.rest()
         self._sliding.rest()
+        self._side.rest()
         self._drift.rest()
 
     def drive(self, left: float, right: float) -> None:
@@ -84,7 +87,12 @@ class WheelPair:
         stuck = dragged != HOLDS_ALL and all(wheel.crawls() for wheel in self.wheels)
         self._dragged.hold(HOLDS_ALL if stuck else dragged)
         self._sliding.watch((left, right), _hold(bend, alike))
-        self._settled = not stuck and not self._sliding.slides
+        slides = self._sliding.slides
+        if slides:
+            self._side.look(1.0 - bend)
+        else:
+            self._side.rest()
+        self._settled = not stuck and not slides
 
     def _give_way(self, bend: float) -> None:
         """Let wheels lag and creep, and what is dragged let go, as the grip in use tells."""
