@@ -270,6 +270,17 @@ def test_what_is_dragged_by_wheels_that_stand_holds():
     assert plugin.model.holds['base'] == HOLDS_ALL
 
 
+def test_what_tyres_that_slide_do_to_their_motors_is_forgotten():
+    plugin, shares = driving(), (0.99, 0.97)
+    for wheel, share in zip(plugin.model.wheels.values(), shares, strict=True):
+        wheel.gives = lambda asked, share=share: (share * asked, 1.3)
+    run(plugin, 600 * PERIOD_STEPS)  # they roll: their motors are asked for what they owe
+    assert rim_speeds(plugin) == pytest.approx((0.52, 0.52), abs=1e-3)
+    plugin.model.ground = 0.0
+    run(plugin, 600 * PERIOD_STEPS)
+    assert rim_speeds(plugin) == pytest.approx([0.52 * share for share in shares], abs=1e-3)
+
+
 def driving():
     """Return a plugin whose robot drives straight on and rolls."""
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')

@@ -127,13 +127,14 @@ class Wheel:
         model = self.joint.model
         model.engine.set_hold(model.body, self.joint.spec.child, self._axis, hold)
 
-    def give_way(self, use: float, ahead: float) -> None:
+    def give_way(self, use: float, ahead: float, slides: bool) -> None:
         """Bring creep and lag towards what belongs to a share of the grip in use, -1 to 1.
 
         A wheel that is asked to stand neither lags nor creeps: a parked robot stays where it is.
 
         Args:
             ahead: how much farther it has come than its tyre tells since it was looked at last [m].
+            slides: what a tyre that slides does to its motor tells nothing: the lag is forgotten.
         """
         if not self._asked:
             use = 0.0
@@ -141,10 +142,15 @@ class Wheel:
         radius = self.radius or math.inf
         steady = CREEP * use * abs(use) / radius
         self._creep += (steady - self._creep) * min(1.0, elapsed / RELAXATION)
-        if elapsed <= 0.0 or abs(self.joint.effort) >= ALL * self._torque:
+        if elapsed <= 0.0:
             return
-        lag = max(-MOST_LAG, min(MOST_LAG, LAG * use)) / radius
-        missing = (behind - ahead / radius) / elapsed - lag
+        if slides:
+            missing = -self._trim
+        elif abs(self.joint.effort) < ALL * self._torque:
+            missing = behind / elapsed - max(-MOST_LAG, min(MOST_LAG, LAG * use)) / radius
+        else:
+            return
+        missing -= ahead / radius / elapsed
         if abs(missing) < TRIM:
             trim = self._trim + missing * min(1.0, elapsed / TRIMMING)
             self._trim = max(-TRIM, min(TRIM, trim))

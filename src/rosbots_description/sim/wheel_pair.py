@@ -103,9 +103,10 @@ class WheelPair:
         target = min(1.0, max(0.0, (free - in_use) / (free - eases)))
         self._eased += (target - self._eased) * _EASING
         farther = (1.0 - bend) * self._drift.look()
+        slides = bend < 1.0 and self._sliding.slides
         ahead = (-farther, farther)
         for wheel, pull, grip, way in zip(self.wheels, pulls, grips, ahead, strict=True):
-            wheel.give_way(both + bend * (_share(pull, grip) - both), way)
+            wheel.give_way(both + bend * (_share(pull, grip) - both), way, slides)
 
 
 def bend_of(left: float, right: float) -> float:
