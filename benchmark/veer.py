@@ -9,6 +9,7 @@ wheel, so that many tip over. One that lands on its back is counted apart.
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 import sys
@@ -67,6 +68,7 @@ def turned(robot: Robot) -> float | None:
 
 def main() -> int:
     """Print who turns by more than the aim; return the exit code."""
+    logging.disable(logging.WARNING)
     robots = [Robot(*one) for one in product(SIZES, ACCELERATIONS, CASTERS, REARS, SPEEDS)]
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         found = dict(zip(robots, pool.map(turned, robots), strict=True))
