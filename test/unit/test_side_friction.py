@@ -12,6 +12,8 @@ LEFT, RIGHT = (0.0, 0.4, -0.06), (0.0, -0.4, -0.06)  # where tyres touch [m]
 def sliding(command=(0.52, 0.0), contacts=None):
     """Return a plugin whose tyres began to slide; by name of a link, places and friction [N]."""
     plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0')
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (asked, 0.0)
     plugin.model.contacts = {
         link: [Contact(place, force) for place, force in touches]
         for link, touches in (contacts or {}).items()
@@ -105,6 +107,24 @@ def test_nobody_is_pushed_whose_tyres_roll_nor_for_the_time_before_they_slid():
     first, = plugin.model.pushes
     change_of(plugin)
     assert plugin.model.pushes == [first]  # for as long a time
+
+
+def test_what_is_dragged_by_motors_that_give_all_they_have_is_held():
+    plugin = make(wheel_collisions=wheel_of(0.26), wheelAcceleration='0', wheelTorque='5')
+    plugin.model.ground, plugin.model.aside = 0.26, 0.1
+    plugin.model.contacts = {'base': [Contact((-0.3, 0.0, 0.0), (-2.0, 0.0, 0.0))]}
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (0.5 * asked, 5.0)
+    plugin.command(0.52, 0.0)
+    run(plugin, 20 * PERIOD_STEPS)
+    assert change_of(plugin)[0] < 0.0
+    for wheel in plugin.model.wheels.values():
+        wheel.gives = lambda asked: (asked, 2.0)
+    plugin.model.ground = 0.52
+    run(plugin, 20 * PERIOD_STEPS)
+    plugin.model.pushes.clear()
+    run(plugin, 20 * PERIOD_STEPS)
+    assert not plugin.model.pushes
 
 
 def test_nobody_is_pushed_who_lies_on_the_side():

@@ -34,7 +34,6 @@ CREEP = 0.092  # how much faster the tyre turns than the ground passes [m/s]
 RELAXATION = 0.1
 TRIMMING = 0.5  # time in which the motor comes to its lag [s]; a ramp passes before
 TRIM = 1.0  # [rad/s] a motor further from its lag than that is held up by something else
-CRAWL = 0.002  # [m/s] a rim slower than that hardly turns
 ALL = 0.999  # of its torque: a motor that gives as much cannot do more
 
 
@@ -118,9 +117,9 @@ class Wheel:
         ahead = dot(cross(axle, UP), twist.linear)
         return self.joint.velocity * self.radius - ahead
 
-    def crawls(self) -> bool:
-        """Tell whether the wheel hardly turns; one of unknown radius never does."""
-        return abs(self.joint.velocity) * (self.radius or math.inf) < CRAWL
+    def strains(self) -> bool:
+        """Tell whether the motor gives all it has."""
+        return abs(self.joint.effort) >= ALL * self._torque
 
     def hold(self, hold: Hold) -> None:
         """Let the tyre hold only these shares of its friction."""
@@ -146,7 +145,7 @@ class Wheel:
             return
         if slides:
             missing = -self._trim
-        elif abs(self.joint.effort) < ALL * self._torque:
+        elif not self.strains():
             missing = behind / elapsed - max(-MOST_LAG, min(MOST_LAG, LAG * use)) / radius
         else:
             return

@@ -83,16 +83,16 @@ class WheelPair:
             wheel.turn()
         yaw = yaw_of(self._model.pose.orientation)
         alike = 1.0 / self._model.engine.friction_towards(yaw)
-        dragged = _hold(bend * self._eased, alike)
-        stuck = dragged != HOLDS_ALL and all(wheel.crawls() for wheel in self.wheels)
-        self._dragged.hold(HOLDS_ALL if stuck else dragged)
+        eased = self._eased if left or right else 1.0  # who stands may be held on a slope
+        self._dragged.hold(_hold(bend * eased, alike))
         self._sliding.watch((left, right), _hold(bend, alike))
-        slides = self._sliding.slides
-        if slides:
+        # Motors that strain do not hold the heading, either.
+        free = self._sliding.slides or any(wheel.strains() for wheel in self.wheels)
+        if free:
             self._side.look(1.0 - bend)
         else:
             self._side.rest()
-        self._settled = not stuck and not slides
+        self._settled = not free
 
     def _give_way(self, bend: float) -> None:
         """Let wheels lag and creep, and what is dragged let go, as the grip in use tells."""
