@@ -1,10 +1,10 @@
-"""What holds a robot sideways while its tyres slide straight on.
+"""What holds a robot sideways whose tyres slide straight on, or whose motors do not hold it there.
 
 Friction points against the slip: sideways it is to what acts ahead as the slip sideways to the slip
 ahead. So what slides straight on is moved aside by very little, and soon comes to rest there.
-PyBullet limits friction along the world's axes each (tuning.py) and cannot do so: while they slide,
-tyres and what is dragged hold nothing along the axle there (sliding.py, dragging.py), and the robot
-is pushed with what they would hold.
+PyBullet limits friction along the world's axes each (tuning.py) and cannot do so: tyres that slide
+and what is dragged hold nothing along the axle there (sliding.py, dragging.py), and the robot is
+pushed with what they would hold.
 """
 
 import math
@@ -45,8 +45,8 @@ class SideFriction:
         self.rest()
 
     def rest(self) -> None:
-        """Take note that nothing slides."""
-        self._looked_ns: int | None = None  # at the last look while it slid
+        """Take note that nothing needs to be held."""
+        self._looked_ns: int | None = None  # at the last look, if there was one since
 
     def look(self, share: float) -> None:
         """Push with what was due since the last look; the first one only takes note.
