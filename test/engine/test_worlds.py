@@ -130,6 +130,25 @@ def test_doors_hinged_to_the_world_swing_and_do_not_fall(world):
     assert right.position == pytest.approx((0.0, -1.0, 1.0), abs=0.001)
 
 
+def test_wheels_on_a_stand_that_the_world_holds_turn(world):
+    wheels = ''.join(
+        f'''<link name="{side}"><pose>0 {y} 0 1.5708 0 0</pose><inertial><mass>1</mass></inertial>
+        <collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.05</length></cylinder>
+        </geometry></collision></link><joint name="{side}_joint" type="revolute">
+        <parent>world</parent><child>{side}</child><axis><xyz>0 0 1</xyz></axis></joint>'''
+        for side, y in (('left', 0.2), ('right', -0.2))
+    )
+    fill(world, f'''<model name="stand"><pose>0 0 1 0 0 0</pose>{wheels}
+      <plugin name="drive" filename="libgazebo_ros_diff_drive.so"><leftJoint>left_joint</leftJoint>
+      <rightJoint>right_joint</rightJoint><wheelSeparation>0.4</wheelSeparation>
+      <wheelDiameter>0.2</wheelDiameter><wheelTorque>100</wheelTorque></plugin></model>''')
+    stand = world.models['stand']
+    stand.plugins[0].command(0.5, 0.0)
+    world.run(1000)
+    for joint in stand.joints.values():
+        assert abs(joint.velocity) == pytest.approx(5.0, rel=0.1)
+
+
 def test_a_saved_state_puts_models_and_joints_where_they_were(world):
     y, x = 0.5 + 0.5 * math.cos(0.8), -0.5 * math.sin(0.8)
     fill(world, DOORS + f'''<state world_name="w"><sim_time>3 250000000</sim_time>

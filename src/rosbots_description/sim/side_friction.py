@@ -39,9 +39,8 @@ class SideFriction:
         self._model = model
         self._clock = clock
         self._names = [*(wheel.joint.spec.child for wheel in wheels), *dragged]
-        carrier = model.spec.link(wheels[0].joint.spec.parent)
-        self._carrier = carrier
-        self._axle = rotate(conjugate(carrier.pose.orientation), wheels[0].axle)  # in its frame
+        self._wheel = wheels[0]
+        self._carrier = model.spec.link(self._wheel.joint.spec.parent)  # None: the world
         self.rest()
 
     def rest(self) -> None:
@@ -56,6 +55,8 @@ class SideFriction:
         """
         now_ns, then_ns = self._clock.now_ns, self._looked_ns
         self._looked_ns = now_ns
+        if self._carrier is None:
+            return
         if then_ns is None:
             links = self._model.spec.links
             self._whole = merge([(link.pose, link.inertial) for link in links if link.inertial])
@@ -65,7 +66,8 @@ class SideFriction:
     def _push(self, seconds: float) -> None:
         """Give the robot within one step what it would be held with in so much time."""
         pose, (linear, angular) = self._model.links[self._carrier.name].state()
-        x, y, _ = rotate(pose.orientation, self._axle)
+        axle = rotate(conjugate(self._carrier.pose.orientation), self._wheel.axle)
+        x, y, _ = rotate(pose.orientation, axle)
         level = math.hypot(x, y)
         if level < _LEVEL:
             return  # it lies on its side
