@@ -246,7 +246,7 @@ class Engine:
         """Return where a link was pressed in the last step."""
         found = []
         for point in self._touched(body, link):
-            place, normal_force, first, one, second, other = *point[5:6], *point[9:14]
+            place, (normal_force, first, one, second, other) = point[5], point[9:14]
             if normal_force > 0.0:
                 friction = (first * a + second * b for a, b in zip(one, other, strict=True))
                 found.append(Contact(place, tuple(friction)))

@@ -92,11 +92,13 @@ class SideFriction:
     def _stopped(
         self, moves: float, turns: float, damping: Vector, seconds: float
     ) -> tuple[float, float]:
-        """Return of how much of its motion the robot is robbed in so much time.
+        """Return how much of its motion the robot loses in so much time [m/s], [rad/s].
 
         Args:
             moves: sideways [m/s].
             turns: about the vertical [rad/s].
+            damping: as `_damping` returns it, of all that holds.
+            seconds: the time [s].
         """
         # By the motion that is left at the end, not by that at the beginning: whatever holds,
         # nothing is pushed back. Two linear equations, by Cramer's rule.
@@ -110,10 +112,15 @@ class SideFriction:
         )
 
     def _damping(self, name: str, centre: Vector, aside: Vector) -> Vector:
-        """Return with what a link holds.
+        """Return with what a link holds the robot.
 
-        Force by speed sideways [N s/m], force by turning or torque by speed [N s], and torque by
-        turning [N m s].
+        That is the force per speed sideways [N s/m], the force per turning, which is the torque per
+        speed, too [N s], and the torque per turning [N m s].
+
+        Args:
+            name: of the link.
+            centre: the robot's centre of mass in the world [m].
+            aside: the level direction along the axle, a unit vector in the world.
         """
         engine, body = self._model.engine, self._model.body
         ahead = cross(aside, UP)
