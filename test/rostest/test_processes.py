@@ -97,7 +97,6 @@ class ProcessTest(unittest.TestCase):
     def test_ends_while_it_waits_for_a_master(self):
         server = self._start('gzserver', ROS_MASTER_URI=UNUSED_MASTER)
         self.assertIn(NO_MASTER, server.stdout.readline())
-        self.assertIn(NO_MASTER, server.stdout.readline())
         self._end(server)
 
     def test_ends_after_the_steps_asked_for(self):
@@ -112,12 +111,33 @@ class ProcessTest(unittest.TestCase):
             self.assertEqual('[DEBUG] [' in printed, shown, printed)
             self.assertIn('Finished loading', printed)
 
-    def test_a_second_server_takes_over(self):
+    def test_a_second_server_does_not_begin_while_one_lives(self):
+        first = self._server()
+        second = self._start('gzserver')
+        printed, _ = second.communicate(timeout=DEADLINE)
+        self.assertEqual(second.returncode, 1)
+        (line,) = printed.splitlines()
+        self.assertIn(f'the node /gazebo, process {first.pid} on ', line)
+        self.assertIn('--replace', line)
+        self._end(first)
+
+    def test_a_second_server_takes_over_when_told_to_and_both_say_so(self):
         first = self._server()
         proxy('spawn_urdf_model', SpawnModel)('box', BOX, '/', pose(), '')
-        second = self._start('gzserver')
-        first.communicate(timeout=DEADLINE)
+        second = self._start('gzserver', '--replace')
+        printed, _ = first.communicate(timeout=DEADLINE)
         self.assertEqual(first.returncode, 0)
+        self.assertRegex(
+            printed, rf'this simulator ends: process {second.pid} on .* taken over the name')
+        wait_until(self._has_only_the_ground, 'the second server answering')
+        self.assertIn(f'takes the place of the node /gazebo, process {first.pid} on ',
+                      self._end(second))
+
+    def test_a_server_begins_after_one_that_was_killed(self):
+        first = self._server()
+        first.kill()
+        first.wait()
+        second = self._start('gzserver')
         wait_until(self._has_only_the_ground, 'the second server answering')
         self._end(second)
 

@@ -48,6 +48,8 @@ def parser() -> argparse.ArgumentParser:
     add('-s', '--server-plugin', action='append', metavar='FILE', default=[],
         help='accepted; the plugins of gazebo_ros are built in')
     add('--minimal_comms', action='store_true', help='accepted; there is little to save')
+    add('--replace', action='store_true',
+        help='ours: take the place of a simulator that runs on the same ROS master, which ends')
     add('-v', '--version', action='version', version=_VERSION, help='say what this is, and end')
     return made
 
@@ -92,7 +94,7 @@ def _main(arguments: Sequence[str]) -> int:
     gc.freeze()
     gc.enable()
     options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
-                           given.verbose)
+                           given.verbose, given.replace)
     try:
         return node.run(options, remappings)
     except SimError as error:

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable
 
 import rospy
+from rospy.impl.rosout import RosOutHandler
 from rospy.rostime import _set_rostime
 
 from ..sim.errors import one_line
@@ -42,6 +43,18 @@ def set_level(name: str) -> None:
     level = _LEVELS.get(name.lower())
     if level is not None:
         logging.getLogger(_ROOT).setLevel(level)
+
+
+def leave_rosout() -> None:
+    """Log to the terminal and the file only, once another node has this one's name.
+
+    rospy looks a parameter up for each message to /rosout, by which it registers the node again:
+    the master would shut the other one down.
+    """
+    for logger in (logging.getLogger(_ROOT), logging.getLogger('rosout')):
+        for handler in tuple(logger.handlers):
+            if isinstance(handler, RosOutHandler):
+                logger.removeHandler(handler)
 
 
 def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:

@@ -91,6 +91,11 @@ class Loop:
         """Run `task()` every `period` [s, wall] from now on, also while paused."""
         self._tasks.append(_Task(period, task))
 
+    @property
+    def stopping(self) -> bool:
+        """Tell whether `run` was told to return, or has returned."""
+        return self._stopping
+
     def stop(self) -> None:
         """Let `run` return after the step in hand; safe in signal handlers."""
         self._stopping = True

@@ -26,10 +26,11 @@ from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .handshake import guard_handshakes
 from .incoming import guard_messages
-from .log_bridge import connect_logging, set_level
+from .log_bridge import connect_logging, leave_rosout, set_level
 from .loop import Loop
 from .master import NO_MASTER, require_address
 from .master_watch import watch_master
+from .name_conflict import holder, node_name, require_free, successor
 from .packages import find_model, find_package
 from .performance import advertise_performance
 from .process import init_node
@@ -47,6 +48,7 @@ logger = logging.getLogger(__name__)
 
 NAME = 'gazebo'
 MASTER_PERIOD = 0.5  # time between two looks for a master [s, wall]
+REMINDER = 10.0  # time between two warnings that there is none [s, wall]
 # A callback thread that computes may keep the loop waiting for this long [s]; Python's own 5 ms
 # would be five steps.
 SWITCH_INTERVAL = 0.0005
@@ -61,6 +63,7 @@ class Options:
     steps: int | None = None  # make so many, then end; None: until told to stop
     remarks: tuple[tuple[int, str], ...] = ()  # what to log at start: level and text
     verbose: bool = False  # log debug messages too
+    replace: bool = False  # end the simulator that has this one's name
 
 
 def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
@@ -71,8 +74,9 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         ros_arguments: name remappings and parameters as ROS writes them, e.g. `__name:=gazebo`.
 
     Raises:
-        SimError: the world cannot be read or there can be no master, and nothing has been done; or
-            a model of the world cannot be brought in, and the node has been shut down again.
+        SimError: the world cannot be read, there can be no master, or a simulator runs on it, and
+            nothing has been done; or a model of the world cannot be brought in, and the node has
+            been shut down again.
 
     """
     _on_signals(signal.default_int_handler)
@@ -80,6 +84,7 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         spec = read_world(options.world)
     try:
         _wait_for_master()
+        _take_name(node_name(NAME, ros_arguments), options.replace)
         guard_handshakes()
         guard_messages()
         outlets = Outlets()
@@ -105,7 +110,7 @@ def _simulate(
     try:
         loop = Loop(world, outlets.gathered)
         _on_signals(lambda _signal, _frame: loop.stop())
-        rospy.on_shutdown(loop.stop)  # another node took the name over
+        rospy.on_shutdown(lambda: _end(loop))
         connect_logging(lambda: world.clock.now_ns)
         if options.verbose:
             set_level('debug')
@@ -168,16 +173,44 @@ def _wait_for_master() -> None:
         SimError: there can be none at the address that is given.
     """
     require_address()
+    reminder = time.monotonic()
     while True:
         try:
             rosgraph.Master(f'/{NAME}').getPid()
         except (*NO_MASTER, rosgraph.MasterException):
-            sys.stderr.write(
-                f'[WARN] [{time.time():f}]: No ROS master - start roscore to continue...\n'
-            )
+            if time.monotonic() >= reminder:
+                _warn('No ROS master - start roscore to continue...')
+                reminder += REMINDER
             time.sleep(MASTER_PERIOD)
         else:
             return
+
+
+def _take_name(name: str, replace: bool) -> None:
+    """See to it that no simulator loses its name by accident.
+
+    Raises:
+        SimError: one has that name, and it is not to be replaced.
+    """
+    if not replace:
+        require_free(name)
+    elif other := holder(name):
+        _warn(f'this simulator takes the place of the node {name}, {other}')
+
+
+def _end(loop: Loop) -> None:
+    """Stop the loop since the node shuts down; say so if another simulator has its name."""
+    if not loop.stopping:  # told by the master or by rosnode kill
+        name = rospy.get_name()
+        if other := successor(name, rospy.get_node_uri()):
+            leave_rosout()
+            logger.warning('this simulator ends: %s has taken over the name %s', other, name)
+        loop.stop()
+
+
+def _warn(text: str) -> None:
+    """Warn before rospy's logging works."""
+    sys.stderr.write(f'[WARN] [{time.time():f}]: {text}\n')
 
 
 def _on_signals(react: signal.Handlers) -> None:

@@ -1,0 +1,130 @@
+"""Whose name a simulator would take: a living node's is found, a dead one's entry is not."""
+
+import http.server
+import os
+import socket
+import threading
+from contextlib import contextmanager
+from xmlrpc.server import SimpleXMLRPCServer
+
+import pytest
+import rosgraph
+
+from rosbots_description.ros_api import name_conflict, node
+from rosbots_description.ros_api.name_conflict import (
+    Holder,
+    NameTakenError,
+    holder,
+    node_name,
+    require_free,
+    successor,
+)
+
+NAME = '/gazebo'
+
+
+@contextmanager
+def serving(server):
+    """Serve on a thread of its own; give the server's URI."""
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+    thread.start()
+    try:
+        yield f'http://localhost:{server.server_address[1]}/'
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join()
+
+
+@pytest.fixture
+def registered(monkeypatch):
+    """Return the table of nodes that a ROS master knows: name -> URI."""
+    nodes = {}
+    master = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
+    master.register_function(
+        lambda _caller, name: (1, '', nodes[name]) if name in nodes else (-1, 'unknown node', ''),
+        'lookupNode')
+    with serving(master) as uri:
+        monkeypatch.setenv('ROS_MASTER_URI', uri)
+        yield nodes
+
+
+@pytest.fixture
+def living(registered):
+    """Register a node that answers; return its URI."""
+    server = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
+    server.register_function(lambda _caller: (1, '', os.getpid()), 'getPid')
+    with serving(server) as uri:
+        registered[NAME] = uri
+        yield uri
+
+
+def test_a_living_node_is_found_with_its_process_and_host(living):
+    assert holder(NAME) == Holder(living, os.getpid())
+    with pytest.raises(NameTakenError) as caught:
+        require_free(NAME)
+    said = str(caught.value)
+    assert f'the node {NAME}, process {os.getpid()} on localhost ({living})' in said
+    assert '--replace' in said
+
+
+@pytest.mark.usefixtures('registered')
+def test_a_name_that_nobody_has_is_free():
+    require_free(NAME)
+
+
+def test_the_entry_of_a_node_that_was_killed_stops_nobody(registered):
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        registered[NAME] = f'http://localhost:{probe.getsockname()[1]}/'
+    require_free(NAME)
+
+
+def test_a_port_that_another_program_has_by_now_stops_nobody(registered):
+    server = http.server.HTTPServer(
+        ('localhost', 0), type('Silent', (http.server.BaseHTTPRequestHandler,),
+                               {'log_message': lambda *_: None}))
+    with serving(server) as uri:
+        registered[NAME] = uri
+        require_free(NAME)
+
+
+def test_a_node_that_is_stopped_still_has_its_name(registered, monkeypatch):
+    monkeypatch.setattr(name_conflict, 'PATIENCE', 0.1)
+    with socket.create_server(('localhost', 0)) as stopped:
+        registered[NAME] = f'http://localhost:{stopped.getsockname()[1]}/'
+        with pytest.raises(NameTakenError, match='a process that does not answer on localhost'):
+            require_free(NAME)
+
+
+def test_who_has_taken_the_name_is_the_node_elsewhere(living):
+    assert successor(NAME, 'http://localhost:1/') == Holder(living, os.getpid())
+    assert successor(NAME, living) is None
+
+
+@pytest.mark.parametrize(('arguments', 'namespace', 'name'), [
+    ([], '', '/gazebo'),
+    (['__name:=two', 'odom:=odometry'], '', '/two'),
+    ([], '/lab', '/lab/gazebo'),
+    (['__ns:=/other', '__name:=/two'], '/lab', '/other/two'),
+])
+def test_the_name_is_the_one_that_rospy_will_take(monkeypatch, arguments, namespace, name):
+    monkeypatch.setenv('ROS_NAMESPACE', namespace)
+    assert node_name('gazebo', arguments) == name
+
+
+def test_without_a_master_there_is_a_warning_at_once_and_then_every_ten_seconds(
+        monkeypatch, capsys):
+    now, warned = [0.0], []
+
+    def sleep(seconds):
+        now[0] += seconds
+        warned.extend([now[0]] * capsys.readouterr().err.count('No ROS master'))
+        if now[0] > 25.0:
+            monkeypatch.setattr(rosgraph.Master, 'getPid', lambda _master: 1)
+
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:1')
+    monkeypatch.setattr(node.time, 'monotonic', lambda: now[0])
+    monkeypatch.setattr(node.time, 'sleep', sleep)
+    node._wait_for_master()
+    assert warned == [node.MASTER_PERIOD, 10.0 + node.MASTER_PERIOD, 20.0 + node.MASTER_PERIOD]
