@@ -5,6 +5,7 @@ import errno
 import math
 import mmap
 import os
+import resource
 import signal
 import socket
 import threading
@@ -313,7 +314,73 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(monkeypatch,
 
     monkeypatch.setattr(trial.os, 'fork', full)
     require(Trials(engine_that()))
-    assert "model 'crate' comes in untried: Resource temporarily unavailable" in caplog.text
+    assert "model 'crate' comes in without being tested, since the operating system failed " \
+        '(Resource temporarily unavailable)' in caplog.text
+
+
+@pytest.mark.parametrize('fault', [
+    OSError(number, os.strerror(number))
+    for number in (errno.EISDIR, errno.EMFILE, errno.ENOMEM, errno.ENOSPC)
+] + [MemoryError()])
+def test_a_failure_of_the_system_is_blamed_on_nobody_else(fault):
+    def fail():
+        raise fault
+
+    reason = getattr(fault, 'strerror', None) or 'Cannot allocate memory'
+    assert fault_of(fail) == (
+        "model 'crate' is not brought in: it could not be tested before, since the operating "
+        f'system failed ({reason}); mend that and spawn the model again')
+
+
+def test_a_trial_that_the_system_kills_for_want_of_memory_is_blamed_on_nobody_else():
+    sentence = fault_of(lambda: os.kill(os.getpid(), signal.SIGKILL))
+    assert 'the operating system failed (it killed the process (SIGKILL)' in sentence
+
+
+def test_a_process_out_of_memory_says_so():
+    def eat():
+        resource.setrlimit(resource.RLIMIT_AS, (0, resource.RLIM_INFINITY))
+        bytearray(1 << 28)
+
+    assert 'the operating system failed (Cannot allocate memory)' in fault_of(eat)
+
+
+@pytest.mark.parametrize('spare', [0, 1])  # to describe the model, and to read what describes it
+def test_a_process_without_file_handles_says_so(spare):
+    def use_up():
+        taken = [os.open(os.devnull, os.O_RDONLY) for _ in range(100)]  # gaps are filled, too
+        resource.setrlimit(resource.RLIMIT_NOFILE, (taken[-1] + 1, 1 << 12))
+        for descriptor in taken[:spare]:
+            os.close(descriptor)
+
+    assert 'the operating system failed (Too many open files)' in fault_of(use_up)
+
+
+def test_a_folder_where_the_file_of_a_mesh_was_is_named(tmp_path):
+    with pytest.raises(ModelError, match=f'system failed .Is a directory: {tmp_path}'):
+        require(Trials(engine_that()), files={('mesh', False): str(tmp_path)})
+
+
+def test_a_model_whose_trial_the_system_disturbed_is_tried_again(tmp_path):
+    disturbed = tmp_path / 'disturbed'
+    disturbed.touch()
+
+    def fail():
+        if disturbed.exists():
+            raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    trials = Trials(engine_that(fail))
+    with pytest.raises(ModelError):
+        require(trials)
+    disturbed.unlink()
+    require(trials)
+
+
+def test_a_long_complaint_comes_through_as_far_as_there_is_room():
+    def complain():
+        raise ModelError('x' * 2 * trial._ROOM)
+
+    assert 'xxx' in fault_of(complain)
 
 
 def test_an_engine_that_was_emptied_moves_things_as_a_new_one_does():

@@ -9,6 +9,7 @@ other things must not make a model look bad.
 """
 
 import contextlib
+import errno
 import faulthandler
 import gc
 import hashlib
@@ -45,10 +46,19 @@ PATIENCE = 5.0  # times that, by the wall clock, for what hangs asleep
 
 REMEMBERED = 1000  # contents that passed; the one that passed first is forgotten first
 
-_PASSED = 'passed'  # what a child says at its end
+# What a child says at its end: that, or what is wrong with the model, or with the system.
+_PASSED = 'passed'
+_SYSTEM = 'system: '
+_ROOM = 4096  # [bytes] for that, set aside before, so that a full machine cannot silence a child
+_HANDLES = 8  # more files than the engine has open at once
+_KILLED = 'it killed the process (SIGKILL), as it does where memory runs out'
 
 EmptyEngine = Callable[[MeshFile, MeshFile], Engine]  # as `Engine.emptied`
 EngineFiles = Mapping[tuple[Mesh, bool], str]  # as `mesh_needs` asks -> a file for the engine
+
+
+class SystemFailure(Exception):  # noqa: N818  no fault of ours or of the model
+    """The operating system failed in a trial; `str()` is how."""
 
 
 class Trials:
@@ -66,11 +76,20 @@ class Trials:
         Where no process can be made the model passes, with a warning.
 
         Raises:
-            ModelError: the engine crashed, hung or failed, or the model was lost at once.
+            ModelError: the engine crashed, hung or failed, or the model was lost at once; or the
+                operating system failed, which tells nothing about the model.
         """
-        content = _digest(spec, files)
-        if content in self._passed:
-            return  # without waiting for the trial of somebody else's
+        try:
+            content = _digest(spec, files)
+            if content not in self._passed:  # else without waiting for somebody else's trial
+                self._try(spec, files, content)
+        except SystemFailure as failure:
+            raise ModelError(
+                f"model '{spec.name}' is not brought in: it could not be tested before, since the "
+                f'operating system failed ({failure}); mend that and spawn the model again'
+            ) from None
+
+    def _try(self, spec: ModelSpec, files: EngineFiles, content: bytes) -> None:
         with self._lock:
             if content in self._passed:
                 return
@@ -80,7 +99,8 @@ class Trials:
             try:
                 fault = _outcome(lambda: self._live(spec, files), _allowance(spec, files))
             except OSError as error:
-                logger.warning("model '%s' comes in untried: %s", spec.name, error.strerror)
+                logger.warning("model '%s' comes in without being tested, since the operating "
+                               'system failed (%s)', spec.name, error.strerror)
                 return
             if fault:
                 raise ModelError(
@@ -111,12 +131,19 @@ class Trials:
 
 
 def _digest(spec: ModelSpec, files: EngineFiles) -> bytes:
-    """Return a hash of all that the engine sees of a model."""
+    """Return a hash of all that the engine sees of a model.
+
+    Raises:
+        SystemFailure: a file for the engine cannot be read, though it was written just now.
+    """
     links = [replace(link, visuals=(), sensors=()) for link in spec.links]
     seen = hashlib.sha256(repr((spec.static, links, spec.joints)).encode())
     for path in files.values():
-        with open(path, 'rb') as file:
-            seen.update(hashlib.file_digest(file, 'sha256').digest())
+        try:
+            with open(path, 'rb') as file:
+                seen.update(hashlib.file_digest(file, 'sha256').digest())
+        except OSError as error:
+            raise SystemFailure(f'{error.strerror}: {path}') from error
     return seen.digest()
 
 
@@ -145,8 +172,10 @@ def _outcome(trial: Callable[[], None], allowance: float) -> str:
 
     Raises:
         OSError: no process could be made.
+        SystemFailure: the operating system failed there, not the engine.
     """
     with open(os.memfd_create('trial'), 'w+b', buffering=0) as report:
+        os.posix_fallocate(report.fileno(), 0, _ROOM)
         # PyBullet holds Python's lock in each of its calls, so none is under way in the copy.
         child = os.fork()
         if child == 0:
@@ -158,12 +187,16 @@ def _outcome(trial: Callable[[], None], allowance: float) -> str:
         }.get(code)
         if spent:
             return f'the physics engine was not done with it after {spent}'
+        if code == -signal.SIGKILL:
+            raise SystemFailure(_KILLED)
         if code < 0:
             return f'it crashed the physics engine ({signal.Signals(-code).name})'
         report.seek(0)
-        clause = report.read().decode(errors='replace')
+        clause = report.read().rstrip(b'\0').decode(errors='replace')
     if not clause:
         return f'it ended the process (exit code {code})'
+    if clause.startswith(_SYSTEM):
+        raise SystemFailure(clause.removeprefix(_SYSTEM))
     return '' if clause == _PASSED else clause
 
 
@@ -183,11 +216,26 @@ def _be_the_child(trial: Callable[[], None], allowance: float, report: int) -> N
     except ModelError as error:
         clause = str(error)
     except BaseException as error:
-        clause = f'the physics engine failed: {error!r}'
+        shortage = _shortage(error)
+        clause = f'{_SYSTEM}{shortage}' if shortage else f'the physics engine failed: {error!r}'
     try:
-        os.write(report, clause.encode())
+        os.write(report, clause.encode()[:_ROOM])
     finally:
         os._exit(0)
+
+
+def _shortage(error: BaseException) -> str | None:
+    """Return what the operating system could not give, if that is why a trial failed."""
+    if isinstance(error, MemoryError):
+        return os.strerror(errno.ENOMEM)
+    try:
+        if isinstance(error, OSError):
+            raise error
+        for _ in range(_HANDLES):  # PyBullet does not tell why it could not open a file
+            os.open(os.devnull, os.O_RDONLY)
+    except OSError as fault:
+        return fault.strerror or str(fault)
+    return None
 
 
 def _end_after(allowance: float) -> None:
