@@ -8,7 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from rosbots_msgs.srv import StepRequest
 from support import SETTLED, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+from support.bench import Bench
 
 from rosbots_description.sim.errors import ModelError, NotFoundError
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
@@ -338,3 +340,37 @@ def test_nothing_of_the_engine_reaches_the_terminal(capfd):
     result = capfd.readouterr()
     assert 'b3' not in result.out + result.err
     assert 'pybullet' not in result.out + result.err
+
+
+def test_time_ends_where_stamps_do_and_begins_again_with_a_reset(caplog):
+    with empty_world() as world:
+        world.clock.steps = 1000 * 2**32 - 5
+        assert world.run(3) == 3
+        assert not world.paused
+        assert world.run(100) == 1
+        assert world.clock.now_ns == 2**32 * 10**9 - 10**6
+        assert world.paused
+        (complaint,) = caplog.messages
+        assert 'paused at 4294967296 s: stamps of 32 bits end there' in complaint
+        assert world.run(1) == 0
+        world.reset_simulation()
+        assert world.run(10) == 10
+        assert world.clock.now_ns == 10**7
+
+
+def test_single_steps_end_with_time_and_say_how_many_were_made():
+    with empty_world() as world:
+        world.paused = True
+        world.clock.steps = 1000 * 2**32 - 31
+        answer = Bench(world).call('step', StepRequest(50))
+        assert not answer.success
+        assert 'simulated time ended after 30 steps' in answer.status_message
+        assert answer.sim_time == pytest.approx(2**32 - 0.001, abs=1e-6)
+
+
+def test_a_step_that_is_longer_than_what_is_left_of_time_is_not_made():
+    with empty_world() as world:
+        world.clock.steps = 1000 * 2**32 - 5
+        world.set_physics(replace(world.physics, step_size=10.0))
+        assert world.run(1) == 0
+        assert world.clock.now_ns < 2**32 * 10**9

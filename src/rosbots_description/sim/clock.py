@@ -1,6 +1,7 @@
 """Simulated time: a whole number of steps, so that it never drifts and always repeats."""
 
 NANOSECONDS = 1_000_000_000  # per second
+END = 1 << 32  # [s] from which on a stamp's 32 bits hold no time any more: some 136 years
 
 
 class SimClock:
@@ -28,6 +29,10 @@ class SimClock:
     def ns_at(self, step: int) -> int:
         """Return the time [ns] of a step to come, or of one since the last change of step size."""
         return self._origin_ns + (step - self._origin_steps) * self.step_ns
+
+    def last_step(self) -> int:
+        """Return the count of the last step that can be stamped."""
+        return self.first_step_after(END * NANOSECONDS - 1) - 1
 
     def set_step_size(self, step_size: float) -> None:
         """Let every step from now on last `step_size` [s]."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Protocol
 
-from .clock import SimClock
+from .clock import END, SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
 from .guard import LARGEST, Guard, is_lost
@@ -80,10 +80,17 @@ class World:
         self.engine.close()
         self.meshes.close()
 
-    def run(self, steps: int) -> None:
-        """Advance by exactly `steps`: in each, time first, then hooks, then physics."""
+    def run(self, steps: int) -> int:
+        """Advance by exactly `steps`: in each, time first, then hooks, then physics.
+
+        Where time ends, the world is paused and an error is logged.
+
+        Returns:
+            how many steps were made: fewer where time ended.
+        """
         clock, schedule, engine = self.clock, self.schedule, self.engine
-        end = clock.steps + steps
+        begin, last = clock.steps, clock.last_step()
+        end = min(begin + steps, last)
         schedule.announce(end)
         while clock.steps < end:
             quiet = min(schedule.next_due() - 1, end) - clock.steps
@@ -94,6 +101,11 @@ class World:
                 clock.steps += 1
                 schedule.run(clock.steps)
                 engine.step(1)
+        if begin + steps > last:
+            self.paused = True
+            logger.error('the simulation is paused at %d s: stamps of 32 bits end there. '
+                         'reset_simulation begins again at 0 s', END)
+        return end - begin
 
     def set_physics(self, physics: PhysicsSettings) -> None:
         """Use these settings from the next step on."""

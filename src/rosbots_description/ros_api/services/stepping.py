@@ -10,6 +10,7 @@ from .registry import EXTENSIONS, refuse, service
 CHUNK = 20  # steps between which other services are served
 
 _BUSY = 'Step: steps for another caller are being made; wait for their end'
+_END = 'Step: simulated time ended after {} steps; call reset_simulation'
 
 
 @service('step', Step, on_loop=False, table=EXTENSIONS)
@@ -24,20 +25,21 @@ def step(server: Server, request: StepRequest) -> StepResponse:
         made = 0
         while True:
             portion = min(CHUNK, request.steps - made)
-            if not server.loop.call(partial(_make, server, portion)):
+            advanced = server.loop.call(partial(_make, server, portion))
+            if advanced is None:
                 return refuse(StepResponse(sim_time=_now(server)), _refusal(made))
-            made += portion
+            made += advanced
+            if advanced < portion:
+                return refuse(StepResponse(sim_time=_now(server)), _END.format(made))
             if made == request.steps:
                 return StepResponse(True, f'Step: made {made} steps', _now(server))
     finally:
         server.stepping.release()
 
 
-def _make(server: Server, steps: int) -> bool:
-    """Make steps, on the world's own thread; tell whether time stands for that."""
-    if server.world.paused:
-        server.world.run(steps)
-    return server.world.paused
+def _make(server: Server, steps: int) -> int | None:
+    """Make steps, on the world's own thread; return how many, or None while time runs."""
+    return server.world.run(steps) if server.world.paused else None
 
 
 def _refusal(made: int) -> str:
