@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The simulator with an engine that one kind of model really crashes, as if PyBullet had that bug.
+"""The simulator with an engine that one kind of model crashes and another hangs, as bugs might.
 
 Everything else is gzserver as it is. No description is known that gets past the checks and does it.
 """
@@ -7,16 +7,20 @@ Everything else is gzserver as it is. No description is known that gets past the
 import os
 import signal
 import sys
+import time
 
 from rosbots_description.cli.gzserver import main
 from rosbots_description.sim.engine import Engine
 
 DOOM = 'doom'  # a model with a link of this name crashes the engine
+SLUMBER = 'slumber'  # and one with a link of this name keeps it waiting
 
 
 def add(engine, spec, pose, _add=Engine.add):
     if spec.link(DOOM):
         os.kill(os.getpid(), signal.SIGSEGV)
+    if spec.link(SLUMBER):
+        time.sleep(100.0)
     return _add(engine, spec, pose)
 
 

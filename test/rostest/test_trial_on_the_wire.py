@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 """A model that crashes the engine is refused in a sentence, and nobody else notices."""
 
+import signal
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import rospy
 import rostest
-from crashing_server import DOOM
+from crashing_server import DOOM, SLUMBER
 from server_process import OwnServerTest
-from simulator import BOX, pose
+from simulator import BOX, DEADLINE, pose, wait_until
 
 TIMES = 10
+END_LIMIT = 2.0  # [s] promised
 SPARE = 5  # files and threads for what nodes and master ask one another
 SENTENCE = ("SpawnModel: Failure - model 'bad' is not brought in: tried in a process of its own, "
             'it crashed the physics engine (SIGSEGV)')
@@ -39,6 +43,22 @@ class TrialTest(OwnServerTest):
         self.assert_neighbour_drives()
         self.assertTrue(self.spawn('good', BOX, pose(x=5.0)).success)
         self.assertEqual(self.server.end()[0], 0)
+
+    def test_a_spawn_that_is_under_way_at_the_end_is_answered(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            with self.subTest(number), ThreadPoolExecutor() as pool:
+                answer = pool.submit(self.spawn, 'slow', BOX.replace('"body"', f'"{SLUMBER}"'))
+                wait_until(self.server.children, 'the trial')
+                begin = time.monotonic()
+                self.server.process.send_signal(number)
+                response = answer.result(DEADLINE)
+                self.assertFalse(response.success)
+                self.assertEqual(response.status_message,
+                                 'SpawnModel: Failure - the simulator is shutting down')
+                self.assertEqual(self.server.wait()[0], 0)
+                self.assertLess(time.monotonic() - begin, END_LIMIT)
+            self.doCleanups()
+            self.setUp()
 
     def test_a_model_the_engine_cannot_be_asked_about_is_refused(self):
         self.drive_neighbour()

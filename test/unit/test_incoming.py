@@ -2,6 +2,7 @@
 
 import socket
 import struct
+import threading
 from io import BytesIO
 
 import pytest
@@ -10,7 +11,14 @@ from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_service import ServiceImpl
 
-from rosbots_description.ros_api.incoming import LONGEST_MESSAGE, complain, receive, serve
+from rosbots_description.ros_api.incoming import (
+    LONGEST_MESSAGE,
+    answer,
+    complain,
+    receive,
+    serve,
+    wait_for_answers,
+)
 
 BUFFER = 4096  # [bytes]
 
@@ -93,3 +101,26 @@ def test_a_client_that_has_gone_is_no_fault(ends, service, caplog):
     serve_once(service, ours)
     assert 'Traceback' not in caplog.text
     assert 'Error processing' not in caplog.text
+
+
+def test_whoever_is_about_to_be_answered_is_waited_for(ends, monkeypatch):
+    begun, may_end = threading.Event(), threading.Event()
+
+    def handler(request):
+        begun.set()
+        may_end.wait(5.0)
+        return GetModelStateResponse(status_message=request.model_name)
+
+    monkeypatch.setattr(ServiceImpl, '_handle_request', answer)
+    ours, theirs = ends
+    theirs.sendall(request('box'))
+    thread = threading.Thread(target=serve_once, args=(
+        ServiceImpl('~get_model_state', GetModelState, handler), ours))
+    assert wait_for_answers(0.0)
+    thread.start()
+    assert begun.wait(5.0)
+    assert not wait_for_answers(0.01)
+    may_end.set()
+    assert wait_for_answers(5.0)
+    assert b'box' in theirs.recv(BUFFER)
+    thread.join(5.0)

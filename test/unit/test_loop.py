@@ -254,6 +254,43 @@ def test_stops_at_once_and_then_refuses(paused):
         loop.call(lambda: None)
 
 
+def test_work_beside_the_steps_gives_its_result_or_its_fault(start):
+    world = CountingWorld(rate=1000.0)
+    loop = start(world)
+    threads = loop.beside(threading.get_ident), loop.call(threading.get_ident)
+    assert len({*threads, threading.get_ident()}) == 3
+    with pytest.raises(NotFoundError, match='no such model'):
+        loop.beside(_fail)
+
+
+def _fail():
+    raise NotFoundError('no such model')
+
+
+def test_nobody_waits_for_work_beside_when_the_loop_has_ended():
+    loop, begun, end = Loop(CountingWorld(rate=1000.0)), threading.Event(), threading.Event()
+    thread = threading.Thread(target=loop.run)
+    thread.start()
+
+    def work():
+        begun.set()
+        end.wait(JOIN)
+
+    def stop():
+        begun.wait(JOIN)
+        loop.stop()
+
+    threading.Thread(target=stop).start()
+    begin = time.monotonic()
+    with pytest.raises(LoopError, match='the simulator is shutting down'):
+        loop.beside(work)
+    assert time.monotonic() - begin < JOIN
+    with pytest.raises(LoopError):  # nor does one that comes later
+        loop.beside(lambda: end.wait(JOIN))
+    end.set()
+    thread.join(JOIN)
+
+
 def _wait_for(condition):
     end = time.monotonic() + JOIN
     while not condition():

@@ -21,7 +21,8 @@ from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.plugins.registry import known_filenames, plugin_class
 from rosbots_description.sim.pose import Pose, Twist, from_rpy
 
-SERVER = SimpleNamespace(loop=SimpleNamespace(call=lambda command: command()))
+SERVER = SimpleNamespace(loop=SimpleNamespace(
+    **dict.fromkeys(('call', 'beside'), lambda command: command())))
 DONE = DeleteModelResponse(True, 'done')
 
 

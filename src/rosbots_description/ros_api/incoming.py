@@ -4,9 +4,10 @@ import contextlib
 import logging
 import socket
 import struct
+import threading
 from io import BytesIO
 
-from genpy import DeserializationError
+from genpy import DeserializationError, Message
 from rospy.exceptions import TransportException, TransportTerminated
 from rospy.impl import tcpros_base
 from rospy.impl.tcpros_base import TCPROSTransport, recv_buff
@@ -19,6 +20,9 @@ logger = logging.getLogger(__name__)
 LONGEST_MESSAGE = 1 << 28
 _LENGTH = struct.Struct('<I')  # what a message begins with: how many bytes follow
 _handle, _complain = ServiceImpl.handle, ServiceImpl.error_handler
+_answer = ServiceImpl._handle_request
+_answering: set[int] = set()  # threads that are about to answer a request
+_answered = threading.Condition()
 
 
 def guard_messages() -> None:
@@ -29,6 +33,7 @@ def guard_messages() -> None:
     tcpros_base.recv_buff = receive
     ServiceImpl.handle = serve
     ServiceImpl.error_handler = complain
+    ServiceImpl._handle_request = answer
 
 
 def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
@@ -62,6 +67,25 @@ def serve(service: ServiceImpl, transport: TCPROSTransport, header: dict[str, st
             service._write_service_error(transport, sentence)
     finally:
         transport.close()
+
+
+def answer(service: ServiceImpl, transport: TCPROSTransport, request: Message) -> None:
+    """Answer a request as rospy does; `wait_for_answers` knows of it meanwhile."""
+    me = threading.get_ident()
+    with _answered:
+        _answering.add(me)
+    try:
+        _answer(service, transport, request)
+    finally:
+        with _answered:
+            _answering.discard(me)
+            _answered.notify_all()
+
+
+def wait_for_answers(patience: float) -> bool:
+    """Wait until no request is without its answer; tell whether that was within `patience` [s]."""
+    with _answered:
+        return _answered.wait_for(lambda: not _answering, patience)
 
 
 def complain(service: ServiceImpl, error: Exception, *details: object) -> None:

@@ -5,7 +5,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import AbstractContextManager
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ logger = logging.getLogger(__name__)
 DEADLINE = 60.0  # how long a caller waits for its command [s, wall]
 BATCH = 0.005  # longest time without a look at the queue [s, wall]
 BACKLOG = 0.0005  # steps that interest nobody may be put off until they take this long [s, wall]
+_CLOSING = 'the simulator is shutting down'
 MAX_LAG = 0.2  # steps that are later than this are not made up for [s, wall]
 
 
@@ -51,6 +52,7 @@ class Loop:
         self._commands: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._tasks: list[_Task] = []
         self._stopping = False
+        self._ended: Future = Future()  # done when `run` has returned
         self._owner: int | None = None
         self._next_step = 0.0  # when the next step is due [s, monotonic]
         self._step_cost = 0.0  # smoothed wall time of one step [s]
@@ -75,13 +77,27 @@ class Loop:
         try:
             return future.result(deadline)
         except CancelledError:
-            raise LoopError('the simulator is shutting down') from None
+            raise LoopError(_CLOSING) from None
         except TimeoutError:
             state = 'was not begun' if future.cancel() else 'is still not finished'
             raise LoopError(
                 f'the simulator was busy for {deadline:g} s and the request {state}; '
                 'try again, or see whether a model is too heavy to simulate'
             ) from None
+
+    def beside(self, work: Callable[[], Any]) -> Any:
+        """Return `work()`, or raise its exception; it has a thread of its own, beside the steps.
+
+        Raises:
+            LoopError: the simulator is shutting down; nobody waits for the work any more.
+
+        """
+        future: Future = Future()
+        threading.Thread(target=_carry_out, args=(future, work), name='beside', daemon=True).start()
+        wait((future, self._ended), return_when=FIRST_COMPLETED)
+        if not future.done():
+            raise LoopError(_CLOSING)
+        return future.result()
 
     def post(self, command: Callable[[], None]) -> None:
         """Carry out `command()` between two steps, without waiting; any thread may post."""
@@ -114,6 +130,7 @@ class Loop:
             self._wait()
         self._stopping = True
         self._serve()
+        self._ended.set_result(None)
 
     def _serve(self) -> None:
         """Carry out everything in the queue."""

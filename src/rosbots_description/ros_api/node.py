@@ -25,7 +25,7 @@ from ..sim.world_spec import WorldSpec
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .handshake import guard_handshakes
-from .incoming import guard_messages
+from .incoming import guard_messages, wait_for_answers
 from .log_bridge import connect_logging, leave_rosout, set_level
 from .loop import Loop
 from .master import NO_MASTER, require_address
@@ -47,6 +47,7 @@ from .world_loading import fill_world, held_records, read_world, replay
 logger = logging.getLogger(__name__)
 
 NAME = 'gazebo'
+LAST_ANSWERS = 1.0  # how long requests are answered after the last step [s, wall]
 MASTER_PERIOD = 0.5  # time between two looks for a master [s, wall]
 REMINDER = 10.0  # time between two warnings that there is none [s, wall]
 # A callback thread that computes may keep the loop waiting for this long [s]; Python's own 5 ms
@@ -125,6 +126,7 @@ def _simulate(
         gc.freeze()  # else each full collection looks at all modules, for tens of steps
         gc.collect()  # else the next waits until a quarter of all those objects has come anew
         loop.run(options.steps)
+        wait_for_answers(LAST_ANSWERS)
     finally:
         world.close()
 

@@ -24,7 +24,7 @@ class CallError(SimError):
 
 @dataclass(frozen=True)
 class Service:
-    """How a service is answered: `prepare` on the caller's thread, then `answer`."""
+    """How a service is answered: `prepare` beside the loop, then `answer`."""
 
     name: str  # without the node's name
     type: type
@@ -98,7 +98,9 @@ def respond(server: Server, entry: Service, request: Any) -> Any:
     """
     response_class = entry.type._response_class
     try:
-        prepared = entry.prepare(server, request) if entry.prepare else request
+        prepared = request
+        if entry.prepare:
+            prepared = server.loop.beside(partial(entry.prepare, server, request))
         if isinstance(prepared, response_class):
             return prepared
         answer = partial(entry.answer, server, prepared)
