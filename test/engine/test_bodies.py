@@ -6,6 +6,9 @@ import pytest
 from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
 from rosbots_description.sim.bullet_description import mesh_needs
+from rosbots_description.sim.engine import Engine
+from rosbots_description.sim.meshes import MeshStore
+from rosbots_description.sim.physics import PhysicsSettings
 from rosbots_description.sim.pose import Pose, Twist, from_rpy, to_rpy
 from rosbots_description.sim.spec import Inertial, LinkSpec, ModelSpec
 
@@ -134,35 +137,28 @@ BOLT = '<link name="world"/><joint name="j" type="{}"><parent link="world"/><chi
 LIMIT = '<axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'
 
 
-def noting(used, convert, exactly):
-    """Return `convert`, which adds to `used` what it is asked for."""
-
-    def note(path, scale):
-        used.add((path, scale, exactly))
-        return convert(path, scale)
-
-    return note
-
-
 @pytest.mark.parametrize(('extra', 'exact'), [
     ('', False),
     ('<gazebo><static>true</static></gazebo>', True),
     (BOLT.format('fixed', '</joint>'), True),
     (BOLT.format('revolute', LIMIT), False),
 ])
-def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, monkeypatch, extra,
-                                                                  exact):
+def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, extra, exact):
     mesh = tmp_path / 'm.obj'
     mesh.write_text('v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n')
     spec = urdf_spec(MESH_LINK.format(name='a', file=mesh) + extra)
-    used = set()
-    with empty_world() as world:
-        for method, exactly in (('collision_hull', False), ('collision_surface', True)):
-            convert = getattr(world.meshes, method)
-            monkeypatch.setattr(world.meshes, method, noting(used, convert, exactly))
-        world.spawn(spec, 'thing', Pose((0.0, 0.0, 2.0)))
-    assert used == {(needed.path, needed.scale, surface) for needed, surface in mesh_needs(spec)}
-    assert [exactly for *_, exactly in used] == [exact]
+    used, meshes = set(), MeshStore()
+    files = {need: meshes.engine_file(*need) for need in mesh_needs(spec)}
+
+    def noted(exact):
+        return lambda mesh: used.add((mesh, exact)) or str(files[mesh, exact])
+
+    engine = Engine(PhysicsSettings(), noted(False), noted(True))
+    engine.add(spec, Pose((0.0, 0.0, 2.0)))
+    engine.close()
+    meshes.close()
+    assert used == set(files)
+    assert [exactly for _, exactly in used] == [exact]
 
 
 def test_a_link_without_gravity_floats():

@@ -11,7 +11,7 @@ from support import robot_spec
 from rosbots_description.sim.inner_shapes import inner_shapes
 from rosbots_description.sim.meshes import MeshStore
 from rosbots_description.sim.pose import Pose, from_rpy, rotate
-from rosbots_description.sim.spec import Box, Collision, Cylinder, Plane, Sphere
+from rosbots_description.sim.spec import Box, Collision, Cylinder, Mesh, Plane, Sphere
 
 PLATES = [
     Collision('lower', Box((0.4, 0.3, 0.01)), Pose((0.0, 0.0, 0.1))),
@@ -68,7 +68,9 @@ def test_absurd_sizes_are_no_fault(size):
 
 def test_of_the_robot_of_the_article_plates_and_caster_touch():
     collisions, meshes = robot_spec().links[0].collisions, MeshStore()
-    marks = inner_shapes(collisions, lambda mesh: str(meshes.collision_hull(mesh.path, mesh.scale)))
+    files = {one.geometry: meshes.engine_file(one.geometry, exact=False)
+             for one in collisions if isinstance(one.geometry, Mesh)}
+    marks = inner_shapes(collisions, files.__getitem__)
     meshes.close()
     touching = {one.name for one, mark in zip(collisions, marks, strict=True) if not mark}
     names = ('base_link', 'base_second_link', 'caster_back_link', 'mcu_link_1')

@@ -6,6 +6,7 @@ import shutil
 import struct
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -298,3 +299,28 @@ def test_scale_kind_and_content_have_files_of_their_own(write, store):
              store.collision_hull(path, (1.0, 1.0, math.pi)),
              store.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n'))}
     assert len(files) == 4
+
+
+def test_a_file_stays_as_long_as_somebody_holds_it(write, store):
+    path = write('m.obj', TRIANGLE)
+    first, second = store.collision_hull(path), store.collision_hull(path)
+    name = str(first)
+    del first
+    assert os.path.isfile(name)
+    del second
+    assert not os.path.exists(name)
+    assert os.listdir(os.path.dirname(name)) == []
+
+
+def test_threads_that_come_and_go_never_lose_a_file_that_they_hold(write, store):
+    paths = [write('m.obj', TRIANGLE), write('n.obj', TRIANGLE + 'f 3 2 1\n')]
+
+    def come_and_go(number):
+        for i in range(100):
+            file = store.collision_hull(paths[(i + number) % 2])
+            assert os.path.getsize(file) > 0
+
+    with ThreadPoolExecutor(4) as threads:
+        list(threads.map(come_and_go, range(4)))
+    file = store.collision_hull(paths[0])
+    assert os.listdir(os.path.dirname(file)) == [os.path.basename(file)]

@@ -1,20 +1,27 @@
 """Mesh files for the physics engine: clean, reduced, written once and used again.
 
 Collisions of moving bodies are convex hulls, those of standing ones exact surfaces. They are
-written as plain .stl and .obj files named by what they hold, so that respawning finds them ready.
+written as plain .stl and .obj files named by what they hold, so that all models share them, and
+removed when no model uses them any more.
 """
 
+import contextlib
 import hashlib
 import math
+import os
+import threading
+import weakref
+from collections import Counter
 from functools import lru_cache
 
 import numpy as np
 
 from .extremes import farthest
 from .inertia import settle
-from .mesh_reading import check_mesh, read_mesh, visual_parts
+from .mesh_reading import MeshData, check_mesh, read_mesh, visual_parts
 from .pose import Vector
 from .scratch import ScratchFolder
+from .spec import Mesh
 from .stl import write_stl
 
 __all__ = ['MeshStore', 'check_mesh', 'visual_parts']
@@ -24,13 +31,25 @@ __all__ = ['MeshStore', 'check_mesh', 'visual_parts']
 HULL_DIRECTIONS = 512
 
 
+class EngineFile(str):
+    """The path of a file for the engine, which stays as long as somebody holds this very object."""
+
+
 class MeshStore:
-    """Keeps the engine's mesh files while it is open. Any thread may ask for files."""
+    """Makes the engine's mesh files, each as long as it is held. Any thread may ask for files."""
 
     def __init__(self) -> None:
         self._scratch = ScratchFolder('rosbots_meshes_')
+        self._files: weakref.WeakValueDictionary[str, EngineFile] = weakref.WeakValueDictionary()
+        self._uses: Counter[str] = Counter()  # objects that hold the file of a name
+        self._lock = threading.RLock()  # what is dropped while it is held may drop a file
 
-    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> str:
+    def engine_file(self, mesh: Mesh, exact: bool) -> EngineFile:
+        """Return the file of a mesh: its exact surface, or its hull."""
+        make = self.collision_surface if exact else self.collision_hull
+        return make(mesh.path, mesh.scale)
+
+    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> EngineFile:
         """Return the .stl file of the convex hull of the whole mesh, for bodies that move.
 
         The file holds the points to be hulled, which the engine does itself; its faces only
@@ -41,7 +60,7 @@ class MeshStore:
         """
         return self._file('hull', path, scale)
 
-    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> str:
+    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> EngineFile:
         """Return the .obj file of the mesh's exact triangles, for bodies that stand.
 
         Raises:
@@ -53,24 +72,48 @@ class MeshStore:
         """Remove all files."""
         self._scratch.close()
 
-    def _file(self, kind: str, path: str, scale: Vector) -> str:
+    def _file(self, kind: str, path: str, scale: Vector) -> EngineFile:
         mesh = read_mesh(path)
         key = hashlib.sha256(repr((kind, mesh.digest, *map(float, scale))).encode())
         # Of an .obj PyBullet makes a compound with the hull in it, of a .stl the hull itself.
         name = f'{kind}_{key.hexdigest()[:32]}.{"stl" if kind == "hull" else "obj"}'
-        file = self._scratch.find(name)
-        if file is None:
-            vertices, faces = mesh.triangles()
-            vertices = vertices * np.asarray(scale)
-            if kind == 'hull':
-                vertices, faces = _hull(vertices[np.unique(faces)])
-                content = write_stl(vertices[faces])
-            else:
-                if np.prod(np.sign(scale)) < 0.0:
-                    faces = faces[:, ::-1]  # a mirror turns the triangles inside out
-                content = _obj(vertices, faces).encode()
-            file = self._scratch.write(name, content, path)
-        return str(file)
+        file = self._files.get(name)
+        if file is None or not os.path.isfile(file):  # somebody may have cleared the folder
+            file = self._write(name, _converted(kind, mesh, scale), path)
+        return file
+
+    def _write(self, name: str, content: bytes, source: str) -> EngineFile:
+        with self._lock:
+            self._uses[name] += 1
+            try:
+                file = EngineFile(self._scratch.write(name, content, source))
+            except BaseException:
+                self._uses[name] -= 1
+                raise
+            self._files[name] = file
+            weakref.finalize(file, self._drop, name, str(file)).atexit = False
+            return file
+
+    def _drop(self, name: str, path: str) -> None:
+        """Remove a file when the last object is gone that held it."""
+        with self._lock:
+            self._uses[name] -= 1
+            if not self._uses[name]:
+                del self._uses[name]
+                with contextlib.suppress(OSError):
+                    os.unlink(path)
+
+
+def _converted(kind: str, mesh: MeshData, scale: Vector) -> bytes:
+    """Return the content of an engine file."""
+    vertices, faces = mesh.triangles()
+    vertices = vertices * np.asarray(scale)
+    if kind == 'hull':
+        vertices, faces = _hull(vertices[np.unique(faces)])
+        return write_stl(vertices[faces])
+    if np.prod(np.sign(scale)) < 0.0:
+        faces = faces[:, ::-1]  # a mirror turns the triangles inside out
+    return _obj(vertices, faces).encode()
 
 
 def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -25,11 +25,6 @@ class ScratchFolder:
         self._folders: list[tempfile.TemporaryDirectory] = []  # several once a disk has filled up
         self._lock = threading.Lock()
 
-    def find(self, name: str) -> Path | None:
-        """Return the file of that name if it was written and is still there."""
-        paths = [Path(folder.name, name) for folder in self._folders]
-        return next((path for path in paths if path.is_file()), None)
-
     def write(self, name: str, content: bytes, source: str) -> Path:
         """Write a file so that nobody ever sees a part of it; return its path.
 

@@ -2,24 +2,26 @@
 
 import contextlib
 import logging
+import os
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import Protocol
 
+from .bullet_description import mesh_needs
 from .clock import END, SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
 from .guard import LARGEST, Guard, is_lost
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
-from .meshes import MeshStore
+from .meshes import EngineFile, MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
 from .plugins.base import ModelPlugin
 from .plugins.registry import known_filenames, plugin_class
 from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
-from .spec import ModelSpec, PluginSpec
+from .spec import Mesh, ModelSpec, PluginSpec
 from .tuning import Tuning
 from .world_spec import LightSpec
 
@@ -66,12 +68,13 @@ class World:
         self.listeners: list[Listener] = []
         self.paused = False
         self.meshes = MeshStore()
+        self._files: dict[str, dict[tuple[Mesh, bool], EngineFile]] = {}  # model -> what it needs
         self._guard = Guard(self)
         self.schedule.add(self._guard)
         self.engine = Engine(
             self.physics,
-            lambda mesh: str(self.meshes.collision_hull(mesh.path, mesh.scale)),
-            lambda mesh: str(self.meshes.collision_surface(mesh.path, mesh.scale)),
+            lambda mesh: self._engine_file(mesh, exact=False),
+            lambda mesh: self._engine_file(mesh, exact=True),
             tuning,
         )
 
@@ -134,8 +137,12 @@ class World:
             )
         if name in self.models:
             raise ModelError(f"a model named '{name}' is in the world already")
-        model = Model(name, spec, self.engine, pose)
-        self.models[name] = model
+        self._files[name] = {need: self.meshes.engine_file(*need) for need in mesh_needs(spec)}
+        try:
+            model = self.models[name] = Model(name, spec, self.engine, pose)
+        except BaseException:
+            del self._files[name]
+            raise
         try:
             for plugin in spec.plugins:
                 self._load_plugin(model, plugin)
@@ -169,7 +176,14 @@ class World:
             self.schedule.remove(plugin)
             plugin.unload()
         self.engine.remove(model.body)
-        del self.models[model.name]
+        del self.models[model.name], self._files[model.name]
+
+    def _engine_file(self, mesh: Mesh, exact: bool) -> str:
+        """Return the file that the models that have this mesh hold for the engine."""
+        files = next(files for files in reversed(self._files.values()) if (mesh, exact) in files)
+        if not os.path.isfile(files[mesh, exact]):  # somebody has cleared the folder
+            files[mesh, exact] = self.meshes.engine_file(mesh, exact)
+        return str(files[mesh, exact])
 
     def reset_world(self) -> None:
         """Bring every model back to its spawn pose, at rest; joints stay, time goes on."""

@@ -9,10 +9,10 @@ from gazebo_msgs.srv import SpawnModel, SpawnModelRequest, SpawnModelResponse
 from ...sim.bullet_description import mesh_needs
 from ...sim.errors import ModelError, NotFoundError
 from ...sim.markup import root_tag
+from ...sim.meshes import EngineFile
 from ...sim.pose import Pose, compose
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.spec import ModelSpec
-from ...sim.trial import EngineFiles
 from ...sim.urdf import load_urdf
 from ...sim.uris import UnknownPackage
 from ...sim.world_spec import LightSpec
@@ -43,6 +43,7 @@ class _Arrival:
     spec: ModelSpec
     pose: Pose
     frame: str
+    files: tuple[EngineFile, ...]  # held until the world holds them
 
 
 def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnModelResponse:
@@ -103,8 +104,10 @@ def _arrival(
     if refusal is not None:
         return refusal
     spec, origin = load()
-    server.trials.require(spec, _mesh_files(server, spec))
-    return _Arrival(name, spec, compose(pose, origin), frame)
+    # Meshes are converted here, so that the world finds them ready.
+    files = {need: server.meshes.engine_file(*need) for need in mesh_needs(spec)}
+    server.trials.require(spec, {need: str(file) for need, file in files.items()})
+    return _Arrival(name, spec, compose(pose, origin), frame, tuple(files.values()))
 
 
 @service('spawn_urdf_model', SpawnModel, prepare=_read_urdf, registers=True)
@@ -156,11 +159,3 @@ def _frame_refusal(server: Server, frame: str) -> SpawnModelResponse | None:
     except NotFoundError:
         return SpawnModelResponse(False, _NO_FRAME)
     return None
-
-
-def _mesh_files(server: Server, spec: ModelSpec) -> EngineFiles:
-    """Convert the meshes that will touch, so that the world finds them ready."""
-    convert = {True: server.meshes.collision_surface, False: server.meshes.collision_hull}
-    return {
-        (mesh, exact): convert[exact](mesh.path, mesh.scale) for mesh, exact in mesh_needs(spec)
-    }
