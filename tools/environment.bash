@@ -2,12 +2,13 @@
 
 # Foreign workspaces that the caller has sourced stay visible behind ours.
 enter_environment() {
-  local devel=$WORKSPACE/devel foreign=${ROS_PACKAGE_PATH:-}
+  local devel=$WORKSPACE/devel foreign=${ROS_PACKAGE_PATH:-} room
+  room=$(find_room) || exit 1
   # The generated setup file reads variables that may be unset, and its own _CATKIN_SETUP_DIR.
   set +u
   unset _CATKIN_SETUP_DIR
   # shellcheck disable=SC1091
-  source "$devel/setup.bash" --extend
+  TMPDIR=$room source "$devel/setup.bash" --extend
   set -u
   # what the caller had set by hand has been replaced just now
   if [[ -n $foreign && :$ROS_PACKAGE_PATH: != *:$foreign:* ]]; then
@@ -23,6 +24,28 @@ enter_environment() {
   export ROSBOTS_ROOT=$ROOT
   find_ros_home
   find_address
+}
+
+# catkin's set-up file passes all it finds out through a file in TMPDIR, which may be full.
+find_room() {
+  local place
+  for place in "${TMPDIR:-/tmp}" /dev/shm "$WORKSPACE"; do
+    if takes_files "$place"; then
+      echo "$place"
+      return
+    fi
+  done
+  echo "rosbots: nothing can be written in ${TMPDIR:-/tmp}, /dev/shm and $WORKSPACE;" \
+    'make room in one of them, or set TMPDIR to a folder that has some' >&2
+  return 1
+}
+
+takes_files() {
+  local probe code=0
+  probe=$(mktemp "$1/rosbots.XXXXXXXXXX" 2> /dev/null) || return 1
+  head -c 65536 /dev/zero > "$probe" 2> /dev/null || code=1
+  rm -f "$probe"
+  return "$code"
 }
 
 # ROS writes its logs there, and roslaunch starts nothing where it cannot.

@@ -70,3 +70,48 @@ def test_a_machine_whose_name_leads_nowhere_is_called_localhost(name, address):
     renamed = (*unshare('uts'), 'sh', '-c', rename, 'sh')
     result = rosbots('exec', 'printenv', 'ROS_HOSTNAME', prefix=renamed, ROS_HOSTNAME='', ROS_IP='')
     assert result.stdout.strip() == address, result.stderr
+
+
+# Mounts a full disk on each of the folders given before --, in a private view of the file system.
+FILL = """
+while [ "$1" != -- ]; do
+  mount -t tmpfs -o size=4k full "$1" && head -c 4k /dev/zero > "$1/x" || exit 77
+  shift
+done
+shift
+exec "$@"
+"""
+
+
+def on_full_disks(places, *command, **environment):
+    done = subprocess.run(
+        [*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, '--', *command],
+        env=os.environ | environment, capture_output=True, text=True, timeout=60, check=False)
+    if done.returncode == 77:
+        pytest.skip(f'this machine lets nobody mount a disk: {done.stderr.strip()}')
+    return done
+
+
+@pytest.mark.parametrize('others', [(), ('/dev/shm',)])
+def test_a_full_folder_for_temporary_files_costs_nothing(tmp_path, others):
+    result = on_full_disks([tmp_path, *others], ROOT / 'rosbots', 'exec', 'sh', '-c',
+                           'rospack find gazebo_ros && echo "$TMPDIR"', TMPDIR=str(tmp_path))
+    assert result.returncode == 0, result.stderr
+    found, temporary = result.stdout.splitlines()
+    assert found.endswith('gazebo_ros')
+    assert temporary == str(tmp_path)  # programs go where their user wants them to
+    assert result.stderr == ''
+
+
+def test_where_nothing_can_be_written_a_sentence_names_the_places(tmp_path):
+    temporary, workspace = tmp_path / 'tmp', tmp_path / 'workspace'
+    for place in (temporary, workspace):
+        place.mkdir()
+    result = on_full_disks(
+        [temporary, '/dev/shm', workspace], 'bash', '-euc',
+        'source "$ROOT/tools/environment.bash"; enter_environment',
+        ROOT=str(ROOT), WORKSPACE=str(workspace), TMPDIR=str(temporary))
+    assert result.returncode == 1
+    assert result.stderr == (
+        f'rosbots: nothing can be written in {temporary}, /dev/shm and {workspace}; '
+        'make room in one of them, or set TMPDIR to a folder that has some\n')
