@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from rosbots_description.cli.launched import Launched, _descendants
+from rosbots_description.cli.launched import Launched, descendants
 
 
 @pytest.mark.parametrize(('output', 'sentence'), [
@@ -23,14 +23,14 @@ def test_complaint_is_the_last_error_without_colours(tmp_path, output, sentence)
     assert launched.complaint() == sentence.format(log=log)
 
 
-def test_descendants_are_found_across_sessions():
+def testdescendants_are_found_across_sessions():
     parent = subprocess.Popen(
         [sys.executable, '-c',
          'import subprocess; p = subprocess.Popen(["sleep", "60"], start_new_session=True); '
          'print(p.pid, flush=True); p.wait()'], stdout=subprocess.PIPE, text=True)
     try:
         child = int(parent.stdout.readline())
-        assert _descendants(parent.pid) == [child]
+        assert descendants(parent.pid) == [child]
     finally:
         subprocess.run(['kill', str(child), str(parent.pid)], check=True)
         parent.wait()

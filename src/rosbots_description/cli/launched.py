@@ -7,7 +7,7 @@ import os
 import re
 import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 _PATIENCE = 1.5  # [s] wall time to end well in; Ctrl-C has to end everything within 2 s
@@ -53,17 +53,17 @@ class Launched:
         everyone is told at once.
         """
         family = self._family()
-        _signal(family, signal.SIGINT)
+        send_signal(family, signal.SIGINT)
         self.wait(_PATIENCE)
         # those that came meanwhile, too
-        _signal({*family, *self._family()}, signal.SIGKILL)
+        send_signal({*family, *self._family()}, signal.SIGKILL)
         self._process.wait()
 
     def _family(self) -> set[int]:
         """Return the ids of roslaunch and everything below it; none once it has ended."""
         if not self.running:
             return set()
-        return {self._process.pid, *_descendants(self._process.pid)}
+        return {self._process.pid, *descendants(self._process.pid)}
 
     def complaint(self) -> str:
         """Return the last line of the output that tells of an error, and where to read more."""
@@ -73,17 +73,17 @@ class Launched:
         return f'{errors[-1]} (see {self.log})' if errors else f'see {self.log}'
 
 
-def _descendants(pid: int) -> list[int]:
+def descendants(pid: int) -> list[int]:
     """Return the ids of all processes below `pid`; roslaunch gives each node its own session."""
     found = []
     for task in Path(f'/proc/{pid}/task').glob('*/children'):
         with contextlib.suppress(OSError):
             for child in map(int, task.read_text().split()):
-                found += [child, *_descendants(child)]
+                found += [child, *descendants(child)]
     return found
 
 
-def _signal(pids: set[int], number: signal.Signals) -> None:
+def send_signal(pids: Iterable[int], number: signal.Signals) -> None:
     """Send a signal to those of the processes that still run."""
     for pid in pids:
         with contextlib.suppress(ProcessLookupError):

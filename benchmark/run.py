@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""Run the parts of the benchmark that are named, or all but the long one.
+
+Each part is a program of this folder in a process of its own. It is said before how long it takes,
+and shown meanwhile how long it has run; whatever it has started ends with it, also at Ctrl-C and
+SIGTERM. One part alone can be followed by its own arguments.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import selectors
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+from rosbots_description.cli.launched import descendants, send_signal
+
+FOLDER = Path(__file__).resolve().parent
+# What each takes [s, wall] where two processors have nothing else to do.
+PARTS = {'fidelity': 20.0, 'physics': 150.0, 'veer': 240.0, 'speed': 220.0, 'real_time': 140.0}
+LONG = {'soak': 630.0}  # only by name
+REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
+GRACE = 2.0  # [s, wall] for processes to end after being asked
+_BECOME_SUBREAPER = 36  # of prctl: who loses its parent below us becomes our child
+
+
+class InterruptedPart(Exception):  # noqa: N818  no error: somebody wants the end
+    """A signal to end."""
+
+
+class Progress:
+    """Shows in a terminal's last line, or now and then in a line of its own, how far a part is."""
+
+    def __init__(self, name: str, about: float, stream: TextIO) -> None:
+        self._name, self._about, self._stream = name, about, stream
+        self._begin = self._told = time.monotonic()
+        self._terminal = stream.isatty()
+
+    def show(self) -> None:
+        """Tell of the time that has passed."""
+        now = time.monotonic()
+        text = f'{self._name}: {now - self._begin:.0f} s of {in_words(self._about)}'
+        if self._terminal:
+            self._stream.write(f'\r\x1b[K{text}')
+            self._stream.flush()
+        elif now - self._told >= REMINDER:
+            self._told = now
+            self._stream.write(f'{text}\n')
+            self._stream.flush()
+
+    def hide(self) -> None:
+        """Make room for what the part prints."""
+        if self._terminal:
+            self._stream.write('\r\x1b[K')
+            self._stream.flush()
+
+
+def in_words(seconds: float) -> str:
+    """Return about how long something takes."""
+    return f'about {seconds:.0f} s' if seconds < 100.0 else f'about {seconds / 60.0:.0f} min'
+
+
+def chosen(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the parts to run, and the arguments of a single one.
+
+    Raises:
+        ValueError: there is no such part.
+    """
+    known = {**PARTS, **LONG}
+    parts = list(arguments) or list(PARTS)
+    if len(parts) > 1 and parts[0] in known and parts[1] not in known:
+        return parts[:1], parts[1:]
+    for part in parts:
+        if part not in known:
+            raise ValueError(f"there is no benchmark '{part}'; there are: {' '.join(known)}")
+    return parts, []
+
+
+def duration(part: str, arguments: Sequence[str]) -> float:
+    """Return about how long a part takes [s, wall]."""
+    if part == 'soak' and arguments[:1] == ['--seconds'] and len(arguments) > 1:
+        with contextlib.suppress(ValueError):
+            return float(arguments[1]) + 30.0
+    return {**PARTS, **LONG}[part]
+
+
+def run(command: Sequence[str | Path], name: str, about: float) -> int:
+    """Run a program with its progress shown; end all that it has started; return its exit code.
+
+    Raises:
+        InterruptedPart: a signal came to end it.
+    """
+    with tempfile.TemporaryDirectory(prefix='rosbots_bench_', ignore_cleanup_errors=True) as folder:
+        try:
+            part = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                env=os.environ | {'TMPDIR': folder, 'PYTHONUNBUFFERED': '1'},
+                start_new_session=True)  # the terminal's Ctrl-C is for us to hand on
+            with part.stdout:
+                _pass_on(part, Progress(name, about, sys.stderr))
+            return part.wait()
+        finally:
+            end_all()
+
+
+def _pass_on(part: subprocess.Popen, progress: Progress) -> None:
+    """Print what the part prints until it closes its output, and the progress in between."""
+    with selectors.DefaultSelector() as selector:
+        selector.register(part.stdout, selectors.EVENT_READ)
+        begun = False  # a line that has no end yet
+        try:
+            while True:
+                if not selector.select(1.0):
+                    if part.poll() is not None:  # what it has left behind keeps the output open
+                        return
+                    if not begun:
+                        progress.show()
+                    continue
+                text = os.read(part.stdout.fileno(), 1 << 16)
+                if not text:
+                    return
+                if not begun:
+                    progress.hide()
+                begun = not text.endswith(b'\n')
+                sys.stdout.buffer.write(text)
+                sys.stdout.flush()
+        finally:
+            progress.hide()
+
+
+def end_all() -> None:
+    """End every process below this one, also those whose parents have gone; by force at last."""
+    for number in (signal.SIGINT, signal.SIGKILL):
+        end = time.monotonic() + GRACE
+        send_signal(descendants(os.getpid()), number)
+        while descendants(os.getpid()) and time.monotonic() < end:
+            with contextlib.suppress(ChildProcessError):
+                os.waitpid(-1, os.WNOHANG)
+            if number == signal.SIGKILL:
+                send_signal(descendants(os.getpid()), number)  # what was started just before
+            time.sleep(0.02)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run what the command line asks for; return the exit code."""
+    try:
+        parts, own = chosen(arguments)
+    except ValueError as error:
+        sys.stderr.write(f'rosbots: {error}\n')
+        return 2
+    ctypes.CDLL(None).prctl(_BECOME_SUBREAPER, 1, 0, 0, 0)
+
+    def interrupt(number: int, _frame: object) -> None:
+        for other in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(other, signal.SIG_IGN)  # what is begun now takes GRACE at most
+        raise InterruptedPart(number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, interrupt)
+    try:
+        if len(parts) > 1:
+            total = sum(duration(part, own) for part in parts)
+            print(f'{len(parts)} parts, {in_words(total)} in all')
+        for part in parts:
+            about = duration(part, own)
+            print(f'== {part}, {in_words(about)}', flush=True)
+            code = run([sys.executable, FOLDER / f'{part}.py', *own], part, about)
+            if code:
+                return code
+    except InterruptedPart as interruption:
+        end_all()  # the signal may have come in the midst of that
+        return 128 + interruption.args[0]
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,129 @@
+"""What runs the benchmark's parts: names, times and progress; nothing is left behind."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support import ROOT
+
+BENCHMARK = ROOT / 'benchmark'
+DEADLINE = 20.0  # [s, wall] for what takes a second
+RUNNER = """
+import pathlib, sys
+sys.path.insert(0, {benchmark!r})
+import run
+run.FOLDER, run.PARTS, run.REMINDER = pathlib.Path({folder!r}), {{'part': 7.0}}, 0.0
+sys.exit(run.main(sys.argv[1:]))
+"""
+# Leaves a file, and a process that has lost its parent, has its own session and hears nothing.
+STUBBORN = """
+import os, signal, sys, tempfile, time
+handle, name = tempfile.mkstemp()
+if os.fork() == 0:
+    os.setsid()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    if os.fork() == 0:
+        print(os.getpid(), name)
+        time.sleep(100.0)
+    os._exit(0)
+os.wait()
+{end}
+"""
+
+
+@pytest.fixture
+def run(monkeypatch):
+    """Return the module."""
+    monkeypatch.syspath_prepend(str(BENCHMARK))
+    import run
+    return run
+
+
+def runner(folder, *arguments):
+    """Start the runner on a part of the test's own."""
+    program = RUNNER.format(benchmark=str(BENCHMARK), folder=str(folder))
+    return subprocess.Popen(
+        [sys.executable, '-c', program, *arguments], stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True, env=os.environ | {'PYTHONPATH': str(ROOT / 'src')})
+
+
+def lives(pid):
+    return Path(f'/proc/{pid}').exists()
+
+
+@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_leaves_no_process_and_no_file(tmp_path, number):
+    (tmp_path / 'part.py').write_text(STUBBORN.format(end='time.sleep(100.0)'))
+    process = runner(tmp_path)
+    assert process.stdout.readline() == '== part, about 7 s\n'
+    pid, name = process.stdout.readline().split()
+    assert lives(pid)
+    process.send_signal(number)
+    _, complaints = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 128 + number
+    assert 'Traceback' not in complaints
+    assert not lives(pid)
+    assert not os.path.exists(name)
+    assert not os.path.exists(os.path.dirname(name))
+
+
+def test_what_a_part_left_behind_ends_with_it(tmp_path):
+    (tmp_path / 'part.py').write_text(STUBBORN.format(end='sys.exit(3)'))
+    process = runner(tmp_path)
+    printed, _ = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 3
+    assert not lives(printed.splitlines()[-1].split()[0])
+
+
+def test_progress_is_shown_while_a_part_is_silent(tmp_path):
+    (tmp_path / 'part.py').write_text('import time\ntime.sleep(2.5)\nprint("result")\n')
+    printed, progress = runner(tmp_path).communicate(timeout=DEADLINE)
+    assert printed.splitlines() == ['== part, about 7 s', 'result']
+    assert progress.splitlines()[0] == 'part: 1 s of about 7 s'
+
+
+def test_arguments_go_to_a_single_part(tmp_path):
+    (tmp_path / 'part.py').write_text('import sys\nprint(sys.argv[1:])\n')
+    process = runner(tmp_path, 'part', '--seconds', '3')
+    printed, _ = process.communicate(timeout=DEADLINE)
+    assert printed.splitlines()[-1] == "['--seconds', '3']"
+
+
+@pytest.mark.parametrize(('arguments', 'parts', 'own'), [
+    ([], ['fidelity', 'physics'], []),
+    (['speed', 'veer'], ['speed', 'veer'], []),
+    (['fidelity', 'a.csv', 'b.csv'], ['fidelity'], ['a.csv', 'b.csv']),
+    (['soak', '--seconds', '20'], ['soak'], ['--seconds', '20']),
+])
+def test_all_but_the_long_one_run_where_none_is_named(run, arguments, parts, own):
+    chosen, given = run.chosen(arguments)
+    assert chosen[:2] == parts
+    assert given == own
+    assert 'soak' not in run.chosen([])[0]
+
+
+def test_what_is_no_part_is_named_with_those_that_are(run, capsys):
+    assert run.main(['sped', 'speed']) == 2
+    said = capsys.readouterr().err
+    assert "there is no benchmark 'sped'; there are: fidelity " in said
+
+
+def test_the_soak_takes_as_long_as_it_is_told(run):
+    assert run.duration('soak', ['--seconds', '20']) == pytest.approx(50.0)
+    assert run.duration('soak', []) > 600.0
+
+
+def test_help_readme_and_contributing_name_every_part(run):
+    usage = subprocess.run([ROOT / 'rosbots', 'help'], capture_output=True, text=True, check=True)
+    texts = [usage.stdout, *((ROOT / name).read_text(encoding='utf-8')
+                             for name in ('README.md', 'CONTRIBUTING.md'))]
+    for text in texts:
+        lines = ' '.join(line for line in text.splitlines() if 'bench' in line)
+        for part in (*run.PARTS, *run.LONG):
+            assert part in lines
+    for part in (*run.PARTS, *run.LONG):
+        assert (BENCHMARK / f'{part}.py').is_file()
