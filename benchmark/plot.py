@@ -11,17 +11,21 @@ matplotlib.use('Agg')  # before pyplot: there may be no display
 from matplotlib import pyplot
 
 
-def plot_speed(path: Path, curves: Mapping[str, Sequence[tuple[int, float]]]) -> None:
+def plot_speed(
+    path: Path, curves: Mapping[str, Sequence[tuple[int, float]]], estimated: str
+) -> None:
     """Write steps per second against the number of driving robots as PNG.
 
     Args:
         curves: by their name in the legend, points (robots, steps per wall second).
+        estimated: the curve that was not measured; it is dashed.
     Raises:
         OSError: the file cannot be written.
     """
     figure, axes = pyplot.subplots(figsize=(8, 5), layout='constrained')
     for name, points in curves.items():
-        axes.plot(*zip(*points, strict=True), marker='o', label=name)
+        style = {'linestyle': '--', 'markerfacecolor': 'none'} if name == estimated else {}
+        axes.plot(*zip(*points, strict=True), marker='o', label=name, **style)
     axes.axhline(1000.0, color='0.6', linestyle=':', label='real time')
     axes.set(title='Steps of 1 ms per second of wall time', xlabel='robots driving',
              ylabel='steps/s', xscale='log', yscale='log')

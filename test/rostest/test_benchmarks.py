@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""A part of the benchmark that is told to end takes its master, server and clients along."""
+
+import os
+import signal
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rostest
+from simulator import DEADLINE, wait_until
+
+from rosbots_description.cli.launched import descendants
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def name_of(pid):
+    try:
+        return Path(f'/proc/{pid}/comm').read_text().strip()
+    except OSError:
+        return ''
+
+
+class BenchmarksTest(unittest.TestCase):
+
+    def test_the_soak_leaves_nothing_behind_at_sigterm(self):
+        path = os.pathsep.join([str(ROOT / 'test'), os.environ['PYTHONPATH']])
+        process = subprocess.Popen(
+            [sys.executable, ROOT / 'benchmark' / 'run.py', 'soak', '--seconds', '600'],
+            env=os.environ | {'PYTHONPATH': path}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            text=True)
+        self.addCleanup(process.kill)
+        self.assertEqual(process.stdout.readline(), '== soak, about 10 min\n')
+        wait_until(lambda: 'gzserver' in map(name_of, descendants(process.pid)), 'a simulator',
+                   2 * DEADLINE)
+        family = descendants(process.pid)
+        process.send_signal(signal.SIGTERM)
+        printed, _ = process.communicate(timeout=DEADLINE)
+        self.assertEqual(process.returncode, 128 + signal.SIGTERM, printed)
+        self.assertEqual([name_of(pid) for pid in family if name_of(pid)], [])
+
+
+if __name__ == '__main__':
+    rostest.rosrun('rosbots_description', 'benchmarks', BenchmarksTest, sys.argv)

@@ -1,0 +1,53 @@
+"""The speeds as table and picture: what is an estimate is called one."""
+
+import sys
+from types import ModuleType
+
+import pytest
+from support import ROOT
+
+
+@pytest.fixture
+def speed(monkeypatch):
+    """Return the module, without what starts servers."""
+    monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
+    for name, members in (('server', ('Server', 'in_a_process_of_its_own')),
+                          ('reader', ('PER_SECOND', 'Reader')), ('loops', ('Loop',))):
+        module = ModuleType(name)
+        vars(module).update(dict.fromkeys(members))
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.delitem(sys.modules, 'speed', raising=False)
+    import speed
+    return speed
+
+
+@pytest.fixture
+def measured(speed):
+    """Return cases in which every loop makes 1000 steps per second."""
+    cases = speed.cases()
+    for case in cases:
+        for column in speed.COLUMNS:
+            case.saw(column, 1000.0)
+    return cases
+
+
+def test_the_picture_calls_gazebos_curve_an_estimate_of_standing_robots(
+        speed, measured, monkeypatch, tmp_path):
+    drawn = {}
+    monkeypatch.setattr(speed, 'plot_speed', lambda path, curves, estimated: drawn.update(
+        curves=curves, estimated=estimated))
+    speed.draw(measured, tmp_path / 'speed.png')
+    label = drawn['estimated']
+    assert label in drawn['curves']
+    assert label.startswith('Gazebo, nobody subscribed: estimated')
+    assert 'from 5 robots on of standing ones' in label
+    assert [robots for robots, _ in drawn['curves'][label]] == [1, 5, 10, 20]
+
+
+def test_the_picture_can_be_drawn(speed, measured, tmp_path):
+    speed.draw(measured, tmp_path / 'speed.png')
+    assert (tmp_path / 'speed.png').read_bytes().startswith(b'\x89PNG')
+
+
+def test_the_table_says_so_too(speed, measured):
+    assert 'not measured here but estimated' in speed.table(measured)
