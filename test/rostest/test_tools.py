@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""ROS's own tools, as the README lists them, are found by rosrun and work with the simulator."""
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import rospy
+import rostest
+from simulator import DEADLINE, SimulatorTest, wait_until
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / 'README.md').read_text(encoding='utf-8')
+# What the README itself says is not there, or only with further packages.
+NOT_THERE = {'rqt_graph'}
+OPTIONAL = {'image_view': ('ros-image-view', 'libimage-view-dev')}
+
+
+def rosrun(*arguments, **options):
+    return subprocess.run(['rosrun', *arguments], capture_output=True, text=True,
+                          timeout=3 * DEADLINE, check=True, **options).stdout
+
+
+def succeeds(*command):
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+class ToolsTest(SimulatorTest):
+
+    def test_rosrun_finds_every_program_that_the_readme_names(self):
+        named = set(re.findall(r'rosrun (\w+) ([\w.]+)', README))
+        self.assertLessEqual({('tf', 'tf_echo'), ('dynamic_reconfigure', 'dynparam')}, named)
+        for package, program in sorted(named):
+            if package in OPTIONAL and not succeeds('dpkg', '-s', *OPTIONAL[package]):
+                continue
+            with self.subTest(package, program=program):
+                found = succeeds('rosrun', '--prefix', 'true', package, program)
+                self.assertEqual(found, package not in NOT_THERE)
+
+    def test_tf_echo_tells_where_the_robot_is(self):
+        self.spawn()
+        echo = subprocess.Popen(['rosrun', 'tf', 'tf_echo', 'odom', 'base_link'],
+                                stdout=subprocess.PIPE, text=True)
+        self.addCleanup(echo.stdout.close)
+        self.addCleanup(echo.wait)
+        self.addCleanup(echo.terminate)
+        wait_until(lambda: 'Translation: [' in echo.stdout.readline(), 'a transform')
+
+    def test_view_frames_draws_the_tree(self):
+        self.spawn()
+        with tempfile.TemporaryDirectory() as folder:
+            rosrun('tf2_tools', 'view_frames.py', cwd=folder)
+            tree = Path(folder, 'frames.gv').read_text()
+            self.assertIn('"odom" -> "base_link"', tree)
+            self.assertTrue(Path(folder, 'frames.pdf').read_bytes().startswith(b'%PDF'))
+
+    def test_dynparam_shows_and_changes_the_physics(self):
+        rospy.wait_for_service('/gazebo/set_parameters', DEADLINE)
+        self.assertIn('/gazebo', rosrun('dynamic_reconfigure', 'dynparam', 'list').split())
+        for gravity in ('-3.7', '-9.8'):
+            rosrun('dynamic_reconfigure', 'dynparam', 'set', '/gazebo', 'gravity_z', '--', gravity)
+            told = rosrun('dynamic_reconfigure', 'dynparam', 'get', '/gazebo')
+            self.assertIn(f"'gravity_z': {gravity}", told)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_tools', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'tools', ToolsTest, sys.argv)
