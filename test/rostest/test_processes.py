@@ -13,8 +13,9 @@ import rosgraph
 import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
+from network import services_of
 from rosgraph_msgs.msg import Clock
-from simulator import BOX, DEADLINE, pose, proxy, wait_until
+from simulator import BOX, DEADLINE, pose, proxy, topics_of, wait_until
 from std_srvs.srv import Empty
 
 CTRL_C_LIMIT = 2.0  # [s] promised
@@ -157,7 +158,8 @@ class ProcessTest(unittest.TestCase):
             subscriber = rospy.Subscriber('/clock', Clock, ticks.append)
             wait_until(lambda: len(ticks) > 10, 'ticks')
             subscriber.unregister()
-            self.assertFalse(self._registered())
+            self.assertEqual(topics_of(), {'/clock', '/rosout'})
+            self.assertEqual(services_of(), {'get_loggers', 'set_logger_level'})
             self._end(server)
         finally:
             rospy.delete_param('/gazebo/enable_ros_network')

@@ -1,14 +1,29 @@
 #!/usr/bin/env python3
-"""Topics, services and parameters are exactly Gazebo's."""
+"""Topics, services and parameters are exactly Gazebo's, as upstream's strict network test wants."""
 
 import sys
 
 import rospy
 import rostest
-from network import OF_ROBOT, OF_ROSOUT, PARAMETERS, PUBLISHED, SERVICES, SUBSCRIBED, services_of
+from network import (
+    OF_ROBOT,
+    OF_ROSOUT,
+    PARAMETERS,
+    PUBLISHED,
+    SERVICES,
+    SUBSCRIBED,
+    services_of,
+    type_and_sum,
+)
 from simulator import SimulatorTest, topics_of, wait_until
 
 OF_GAZEBO = set(PUBLISHED) | set(SUBSCRIBED) | OF_ROSOUT
+
+
+def nodes():
+    """Return the names of all nodes that publish, subscribe or serve something."""
+    return {node for entries in rospy.get_master().getSystemState()[2]
+            for _, nodes in entries for node in nodes}
 
 
 class WithoutExtensionsTest(SimulatorTest):
@@ -18,6 +33,11 @@ class WithoutExtensionsTest(SimulatorTest):
         self.assertEqual(topics_of(), OF_GAZEBO)
         self.assertEqual(services_of(), set(SERVICES))
         self.assertEqual(len(SERVICES), 30)
+        self.assertEqual({name: type_and_sum(name) for name in services_of()}, SERVICES)
+        types = dict(rospy.get_master().getTopicTypes()[2])
+        for name, message_class in {**PUBLISHED, **SUBSCRIBED}.items():
+            self.assertEqual(types[name], message_class._type)
+        self.assertEqual(nodes() - {rospy.get_name(), '/rosout'}, {'/gazebo'})
         parameters = set(rospy.get_param('/gazebo')) - {'extensions'}
         self.assertEqual(parameters, PARAMETERS | {'enable_ros_network'})
         self.assertIs(rospy.get_param('/use_sim_time'), True)
