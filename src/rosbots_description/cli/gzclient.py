@@ -11,6 +11,9 @@ from pathlib import Path
 
 from .gzserver import split_remappings
 
+# The window shows the world as the simulator has it, whatever TF says of the robots in it.
+OWN_FRAMES = ('/tf:=/gazebo/view/tf', '/tf_static:=/gazebo/view/frames')
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of gzclient's options."""
@@ -64,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if config is None:
         _say('no window: the package rosbots_description is not on ROS_PACKAGE_PATH')
         return 1
-    return os.execv(rviz, [rviz, '-d', str(config), *remappings])  # never returns
+    return os.execv(rviz, [rviz, '-d', str(config), *OWN_FRAMES, *remappings])  # never returns
 
 
 def _say(sentence: str) -> None:

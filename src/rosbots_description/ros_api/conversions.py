@@ -7,7 +7,7 @@ there already, which is what makes publishing at 1000 Hz cheap.
 import math
 
 from genpy import Time
-from geometry_msgs.msg import Point, Vector3
+from geometry_msgs.msg import Point, Transform, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Twist as TwistMessage
 
@@ -45,6 +45,12 @@ def read_pose(message: PoseMessage) -> Pose:
     if not all(math.isfinite(number) for part in pose for number in part):
         raise ValueError('the pose holds a number that is not finite')
     return Pose(pose.position, normalise(pose.orientation))
+
+
+def read_transform(message: Transform) -> Pose:
+    """Return a message's transform as `read_pose` returns a pose, and with its errors."""
+    t = message.translation
+    return read_pose(PoseMessage(Point(t.x, t.y, t.z), message.rotation))
 
 
 def read_vector(message: Point | Vector3) -> Vector:

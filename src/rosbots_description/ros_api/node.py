@@ -143,6 +143,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
         if extensions:
             advertise_visuals(server)
             advertise_view(server)
+            server.static_frames.watch(server.loop)
     server.world.listeners.append(Adapters(server))
     fill_world(server.world, spec)
     server.parameters.append(_use_simulated_time)

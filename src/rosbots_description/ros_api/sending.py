@@ -139,6 +139,12 @@ def has_readers(*publishers: rospy.Publisher | None) -> bool:
     return False
 
 
+def reader_names(publisher: rospy.Publisher) -> set[str]:
+    """Return the names of the nodes that read a topic."""
+    topic = publisher.impl
+    return {connection.endpoint_id for connection in topic.connections} if topic else set()
+
+
 def next_number(publisher: rospy.Publisher) -> int:
     """Return what the header of the publisher's next message has as `seq`, as rospy counts."""
     topic = publisher.impl

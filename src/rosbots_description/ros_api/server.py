@@ -12,6 +12,7 @@ from ..sim.uris import FindPackage
 from ..sim.world import World
 from .loop import Loop
 from .registrar import Registrar
+from .static_frames import StaticFrames
 
 
 @dataclass
@@ -24,6 +25,7 @@ class Server:
     find_package: FindPackage
     find_model: FindModel
     trials: Trials = field(init=False)  # of models that ask to come in
+    static_frames: StaticFrames = field(default_factory=StaticFrames)  # of other nodes
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)
     parameters: list[Callable[[], None]] = field(default_factory=list)  # write those that are ours

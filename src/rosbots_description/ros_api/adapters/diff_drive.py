@@ -4,7 +4,8 @@ Subscribes:
     <ns>/<commandTopic> (geometry_msgs/Twist): linear.x [m/s], angular.z [rad/s]; the last counts.
 Publishes:
     <ns>/<odometryTopic> (nav_msgs/Odometry), unless publishTf is false.
-    /tf (tf2_msgs/TFMessage): odometry frame to base frame, and the wheels if wanted.
+    /tf (tf2_msgs/TFMessage): odometry frame to base frame, and the wheels if wanted. Beside a
+        robot_state_publisher: odometry frame to the root of what that holds together.
     <ns>/joint_states (sensor_msgs/JointState): right, left, if publishWheelJointState.
 Parameters:
     tf_prefix, searched from the plugin's namespace upward.
@@ -25,8 +26,9 @@ from ...sim.readings import FrameTransform, JointStates, Odometry
 from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
 from ..log_bridge import set_level
 from ..names import find_tf_prefix, frame_name, topic_name
-from ..sending import has_readers, next_number, publish_serialized
+from ..sending import has_readers, next_number, publish_serialized, reader_names
 from ..server import Server
+from ..static_frames import from_root
 from .registry import Adapter, adapter
 
 logger = logging.getLogger(__name__)
@@ -49,6 +51,7 @@ class DiffDriveAdapter(Adapter):
         self._joints: dict[tuple[str, ...], JointStatesLayout] = {}  # by names
         self._odometry = self._tf = self._joint_states = None
         self._complained = -math.inf
+        self._told_root = ''  # said once, not with every message
         namespace, config = plugin.namespace, plugin.config
         # Also where it is not published: as in Gazebo the namespace alone must be good.
         self._joint_states_topic = topic_name(namespace, 'joint_states')
@@ -85,7 +88,7 @@ class DiffDriveAdapter(Adapter):
             shown = (self._odometry, self._tf) if config.publish_odom_tf else (self._odometry,)
             plugin.odometry.connect(self._send_odometry, partial(has_readers, *shown))
         if self._tf is not None:
-            plugin.wheel_transform.connect(self._send_transform, partial(has_readers, self._tf))
+            plugin.wheel_transform.connect(self._send_wheel, self._wheels_wanted)
         if self._joint_states is not None:
             plugin.joint_states.connect(
                 self._send_joint_states, partial(has_readers, self._joint_states)
@@ -99,19 +102,50 @@ class DiffDriveAdapter(Adapter):
     def _send_odometry(self, reading: Odometry) -> None:
         config = self.plugin.config
         if config.publish_odom_tf and has_readers(self._tf):
-            edge = FrameTransform(config.odometry_frame, config.robot_base_frame, reading.pose)
-            self._send_transform(edge)
+            edge = self._on_the_wire(
+                FrameTransform(config.odometry_frame, config.robot_base_frame, reading.pose))
+            moved = from_root(edge, self.server.static_frames.parents)
+            if moved.child != edge.child:
+                self._tell_root(edge, moved)
+            self._publish_transform(moved)
         if has_readers(self._odometry):
             number = next_number(self._odometry)
             message = self._odometry_layout.pack(number, self._now_ns(), reading)
             publish_serialized(self._odometry, message)
 
-    def _send_transform(self, reading: FrameTransform) -> None:
-        parent, child, pose = reading
+    def _send_wheel(self, reading: FrameTransform) -> None:
+        self._publish_transform(self._on_the_wire(reading))
+
+    def _wheels_wanted(self) -> bool:
+        """Tell whether to publish the wheels' frames: not beside a robot_state_publisher.
+
+        That is a node which reads our joint states and holds frames still.
+        """
+        return has_readers(self._tf) and not (
+            self._joint_states is not None
+            and self.server.static_frames.nodes.intersection(reader_names(self._joint_states))
+        )
+
+    def _tell_root(self, edge: FrameTransform, moved: FrameTransform) -> None:
+        if self._told_root != moved.child:
+            self._told_root = moved.child
+            logger.info(
+                '%sanother node holds %s still in %s, so %s -> %s is published in place of %s -> '
+                '%s: TF keeps one parent for each frame', self.plugin.log_prefix, edge.child,
+                moved.child, moved.parent, moved.child, edge.parent, edge.child,
+            )
+
+    def _on_the_wire(self, edge: FrameTransform) -> FrameTransform:
+        """Return the edge with its frames named as messages name them."""
+        parent, child, pose = edge
+        return FrameTransform(
+            frame_name(self._prefix, parent), frame_name(self._prefix, child), pose)
+
+    def _publish_transform(self, edge: FrameTransform) -> None:
+        parent, child, pose = edge
         layout = self._edges.get((parent, child))
         if layout is None:
-            frames = frame_name(self._prefix, parent), frame_name(self._prefix, child)
-            layout = self._edges[parent, child] = TransformLayout(*frames)
+            layout = self._edges[parent, child] = TransformLayout(parent, child)
         publish_serialized(self._tf, layout.pack(self._now_ns(), pose))
 
     def _send_joint_states(self, reading: JointStates) -> None:

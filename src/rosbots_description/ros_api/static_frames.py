@@ -1,0 +1,96 @@
+"""The frames that other nodes hold still, so that the simulator gives no frame a second parent.
+
+By the article's numbers the simulator publishes odom -> base_link and base_footprint -> wheels. A
+robot_state_publisher beside it holds base_footprint -> base_link still and turns the wheels. TF keeps
+one parent for each frame, so the robot falls apart, and every listener complains about each wheel
+(TF_REPEATED_DATA; TF_OLD_DATA if that node follows the wall clock). So we move what the other node
+holds together as a whole, and leave the wheels to it.
+
+Subscribes:
+    /tf_static (tf2_msgs/TFMessage).
+"""
+
+from collections.abc import Mapping
+
+import rospy
+from tf2_msgs.msg import TFMessage
+
+from ..sim.pose import Pose, compose, inverse
+from ..sim.readings import FrameTransform
+from .conversions import read_transform
+from .loop import Loop
+
+PERIOD = 0.5  # time between two looks whether who published is still there [s, wall]
+
+Parents = Mapping[str, tuple[str, Pose]]  # by frame: its parent, and where it stands in that
+
+
+class StaticFrames:
+    """What other nodes publish on /tf_static; any thread may read it.
+
+    `parents` and `nodes` are replaced and never changed: what was read stays true to itself.
+    """
+
+    def __init__(self) -> None:
+        self._by_node: dict[str, dict[str, tuple[str, Pose]]] = {}
+        self.parents: Parents = {}
+        self.nodes: frozenset[str] = frozenset()  # names of those that publish here
+
+    def watch(self, loop: Loop) -> None:
+        """Listen from now on."""
+        subscriber = rospy.Subscriber(
+            '/tf_static', TFMessage, lambda message: loop.post(lambda: self._take(message))
+        )
+
+        def look() -> None:
+            topic = subscriber.impl
+            if topic is not None:  # else the node is shutting down
+                self.keep({connection.callerid_pub for connection in topic.connections})
+
+        loop.every(PERIOD, look)
+
+    def _take(self, message: TFMessage) -> None:
+        self.add(message._connection_header['callerid'], message)
+
+    def add(self, node: str, message: TFMessage) -> None:
+        """Note what a node holds still; what is no pose is left out, as TF leaves it out."""
+        held = dict(self._by_node.get(node, ()))
+        for transform in message.transforms:
+            try:
+                pose = read_transform(transform.transform)
+            except ValueError:
+                continue
+            parent, child = transform.header.frame_id, transform.child_frame_id
+            held[child.lstrip('/')] = parent.lstrip('/'), pose
+        self._by_node[node] = held
+        self._merge()
+
+    def keep(self, nodes: set[str]) -> None:
+        """Forget what was published by any other node than these: it has gone."""
+        gone = self._by_node.keys() - nodes
+        if gone:
+            for node in gone:
+                del self._by_node[node]
+            self._merge()
+
+    def _merge(self) -> None:
+        self.parents = {child: edge for held in self._by_node.values() for child, edge in held.items()}
+        self.nodes = frozenset(self._by_node)
+
+
+def from_root(edge: FrameTransform, parents: Parents) -> FrameTransform:
+    """Return the edge that moves the whole tree in which others hold the child of `edge` still.
+
+    It is `edge` itself where nobody does, or where they hold it in its parent already.
+    """
+    parent, root, pose = edge
+    if root not in parents:
+        return edge
+    seen = {root}
+    while root in parents:
+        root, held = parents[root]
+        if root == parent or root in seen:
+            return edge
+        seen.add(root)
+        pose = compose(pose, inverse(held))
+    return FrameTransform(parent, root, pose)
