@@ -5,14 +5,18 @@ import ctypes
 import ctypes.util
 import os
 import shutil
+import signal
+import subprocess
 import sys
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from .gzserver import split_remappings
 
 # The window shows the world as the simulator has it, whatever TF says of the robots in it.
-OWN_FRAMES = ('/tf:=/gazebo/view/tf', '/tf_static:=/gazebo/view/frames')
+PERIOD = 1.0  # time between two looks after the simulator [s]
+OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 
 
 def parser() -> argparse.ArgumentParser:
@@ -50,7 +54,7 @@ def config_file() -> Path | None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Become RViz; return an exit code only where that cannot be."""
+    """Open the window and look after the simulator; return RViz's exit code, or what kept it."""
     own, remappings = split_remappings(sys.argv[1:] if arguments is None else arguments)
     _, unknown = parser().parse_known_args(own)
     if unknown:
@@ -67,7 +71,51 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if config is None:
         _say('no window: the package rosbots_description is not on ROS_PACKAGE_PATH')
         return 1
-    return os.execv(rviz, [rviz, '-d', str(config), *OWN_FRAMES, *remappings])  # never returns
+    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings]
+    return _attend(command, surroundings(os.environ, config.with_name('gzclient_log.config')))
+
+
+def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
+    """Return the environment in which RViz and Qt say only what somebody should read."""
+    made = {'ROSCONSOLE_CONFIG_FILE': str(log_levels), **given}
+    if not made.get('XDG_RUNTIME_DIR'):
+        folder = Path(tempfile.gettempdir(), f'rosbots-runtime-{os.getuid()}')
+        folder.mkdir(mode=0o700, exist_ok=True)
+        made['XDG_RUNTIME_DIR'] = str(folder)
+    return made
+
+
+def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
+    """Run the window until it is closed, and say there and here when the simulator has gone."""
+    from ..ros_api.server_watch import NOTICE, Notice, ServerWatch  # noqa: PLC0415  as above
+
+    notice = Notice()
+
+    def tell(there: bool) -> None:
+        if there:
+            _say('there is a simulator again')
+            notice.withdraw()
+        else:
+            _say(f'{NOTICE}; this window shows what it showed last')
+            notice.show()
+
+    told: list[int] = []
+    window = subprocess.Popen(command, env=environment)
+
+    def end(number: int, _frame: object) -> None:
+        told.append(number)
+        window.terminate()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, end)
+    watch = ServerWatch(tell)
+    while True:
+        try:
+            code = window.wait(PERIOD)
+        except subprocess.TimeoutExpired:
+            watch.look()
+        else:
+            return 0 if told else code
 
 
 def _say(sentence: str) -> None:

@@ -26,6 +26,13 @@ def fill_pose(message: PoseMessage, pose: Pose) -> None:
     orientation.x, orientation.y, orientation.z, orientation.w = pose.orientation
 
 
+def fill_transform(message: Transform, pose: Pose) -> None:
+    """Write `pose` into `message`."""
+    position, orientation = message.translation, message.rotation
+    position.x, position.y, position.z = pose.position
+    orientation.x, orientation.y, orientation.z, orientation.w = pose.orientation
+
+
 def fill_twist(message: TwistMessage, twist: Twist) -> None:
     """Write `twist` into `message`."""
     linear, angular = message.linear, message.angular

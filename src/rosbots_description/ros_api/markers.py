@@ -13,6 +13,7 @@ from .conversions import fill_pose
 FRAME = 'world'
 # Two triangles, counter-clockwise seen from above.
 _UNIT_SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+NOTICE_HEIGHT, NOTICE_SIZE = 1.5, 0.4  # [m] of a notice: its middle, and a capital letter
 PLANE_DEPTH = 0.001  # [m] how deep a plane is drawn, so that a grid at its height stays visible
 
 
@@ -48,6 +49,15 @@ def clearance() -> Marker:
     """Return the marker that takes all markers away."""
     marker = Marker(action=Marker.DELETEALL)
     marker.header.frame_id = FRAME
+    return marker
+
+
+def notice(text: str) -> Marker:
+    """Return a text that faces who looks, above the origin."""
+    marker = Marker(ns='notice', type=Marker.TEXT_VIEW_FACING, action=Marker.ADD, text=text)
+    marker.header.frame_id = FRAME
+    marker.pose.position.z, marker.pose.orientation.w = NOTICE_HEIGHT, 1.0
+    marker.scale.z, marker.color = NOTICE_SIZE, ColorRGBA(0.8, 0.1, 0.1, 1.0)
     return marker
 
 

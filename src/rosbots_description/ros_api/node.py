@@ -41,6 +41,7 @@ from .services.registry import EXTENSIONS, SERVICES, advertise
 from .state_commands import subscribe_states
 from .topics import advertise_clock, advertise_states
 from .view import advertise_view
+from .view_frames import advertise_frames
 from .visuals import advertise_visuals
 from .world_loading import fill_world, held_records, read_world, replay
 
@@ -143,6 +144,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
         if extensions:
             advertise_visuals(server)
             advertise_view(server)
+            advertise_frames(server)
             server.static_frames.watch(server.loop)
     server.world.listeners.append(Adapters(server))
     fill_world(server.world, spec)

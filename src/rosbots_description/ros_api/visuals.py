@@ -5,6 +5,8 @@ Publishes:
         then those that moved, came or went.
 """
 
+from typing import Protocol
+
 import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -79,10 +81,17 @@ class ShownMarkers:
         return markers
 
 
-class _Viewers(rospy.SubscribeListener):
+class Shown(Protocol):
+    """What remembers what it has shown."""
+
+    def begin(self) -> None:
+        """Show everything at the next look."""
+
+
+class Viewers(rospy.SubscribeListener):
     """Lets everything be shown again when someone begins to look."""
 
-    def __init__(self, server: Server, view: ShownMarkers) -> None:
+    def __init__(self, server: Server, view: Shown) -> None:
         self._server = server
         self._view = view
 
@@ -95,7 +104,7 @@ def advertise_visuals(server: Server) -> None:
     """Offer the markers and keep them up to date by wall time, so also while paused."""
     view = ShownMarkers(server.world)
     publisher = rospy.Publisher(
-        '~visual_markers', MarkerArray, _Viewers(server, view), latch=True, queue_size=10
+        '~visual_markers', MarkerArray, Viewers(server, view), latch=True, queue_size=10
     )
 
     def show() -> None:

@@ -1,0 +1,60 @@
+"""Where the models stand, for a camera that follows one of them.
+
+Publishes:
+    ~view/frames (tf2_msgs/TFMessage, as on /tf_static): world to each model, named as the model;
+        all to who begins to look, then those that moved. The window knows no other frames: on /tf
+        a robot may have two parents, or none, and stamps that run backward.
+"""
+
+import rospy
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.msg import TFMessage
+
+from ..sim.pose import Pose
+from ..sim.world import World
+from .conversions import fill_transform
+from .markers import FRAME
+from .server import Server
+from .visuals import PERIOD, Viewers
+
+
+class ShownFrames:
+    """Where the models were shown last; each look tells which have moved."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._shown: dict[str, Pose] = {}
+
+    def begin(self) -> None:
+        """Show all at the next look."""
+        self._shown.clear()
+
+    def look(self) -> list[TransformStamped]:
+        """Return the frames of the models that moved since the last look."""
+        poses = {name: model.pose for name, model in self._world.models.items()}
+        moved = [_transform(name, pose) for name, pose in poses.items()
+                 if self._shown.get(name) != pose]
+        self._shown = poses
+        return moved
+
+
+def _transform(name: str, pose: Pose) -> TransformStamped:
+    made = TransformStamped(child_frame_id=name)
+    made.header.frame_id = FRAME
+    fill_transform(made.transform, pose)
+    return made
+
+
+def advertise_frames(server: Server) -> None:
+    """Offer the frames and keep them up to date by wall time, so also while paused."""
+    shown = ShownFrames(server.world)
+    publisher = rospy.Publisher('~view/frames', TFMessage, Viewers(server, shown), queue_size=10)
+
+    def show() -> None:
+        if publisher.get_num_connections() == 0:
+            return
+        moved = shown.look()
+        if moved:
+            publisher.publish(TFMessage(moved))
+
+    server.loop.every(PERIOD, show)
