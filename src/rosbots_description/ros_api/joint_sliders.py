@@ -1,0 +1,45 @@
+"""A window with a slider for each joint: Debian's, with sliders that take any number.
+
+Debian 12's joint_state_publisher_gui hands its sliders fractions, which a QSlider refuses under
+Python 3.10 and later, so that its own program ends at once.
+
+Publishes:
+    joint_states (sensor_msgs/JointState) and parameters: as joint_state_publisher has them.
+"""
+
+import signal
+import sys
+import threading
+
+import joint_state_publisher_gui as window
+import rospy
+from joint_state_publisher import JointStatePublisher, get_param
+from python_qt_binding.QtWidgets import QApplication, QSlider
+
+NAME = 'joint_state_publisher_gui'
+
+
+class RoundingSlider(QSlider):
+    """A slider that goes to the nearest of its values."""
+
+    def setValue(self, value: float) -> None:  # noqa: N802  Qt's name
+        """Go to the nearest value."""
+        super().setValue(round(value))
+
+
+def main() -> int:
+    """Show the window until it is closed; return an exit code."""
+    rospy.init_node(NAME)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while Qt waits, Python hears of none
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    app = QApplication(sys.argv)
+    window.QSlider = RoundingSlider
+    try:
+        joints = JointStatePublisher()
+    except RuntimeError as error:  # there is no robot_description
+        sys.stderr.write(f'{NAME}: {error}\n')
+        return 1
+    shown = window.JointStatePublisherGui(f'Node: {rospy.get_name()}', joints, get_param('num_rows', 0))
+    shown.show()
+    threading.Thread(target=joints.loop, daemon=True).start()
+    return app.exec_()

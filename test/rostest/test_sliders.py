@@ -1,0 +1,47 @@
+#!/usr/bin/env python3
+"""rviz.launch with sliders: what they are set to is what the joints are published at."""
+
+import math
+import os
+import signal
+import sys
+import unittest
+
+import rospy
+import rostest
+from sensor_msgs.msg import JointState
+from simulator import wait_until
+from terminal import Terminal
+
+START = 30.0  # [s, wall] for launch file, display and window
+SLIDER = 2.0 * math.pi / 10000  # [rad] from one value of a slider to the next
+AT_FIRST = {'wheel_left_joint': 1.0, 'wheel_right_joint': 0.0}  # [rad]
+
+
+class SlidersTest(unittest.TestCase):
+
+    def test_the_window_opens_and_publishes_what_its_sliders_show(self):
+        rospy.set_param('/zeros/wheel_left_joint', AT_FIRST['wheel_left_joint'])
+        messages = []
+        rospy.Subscriber('/joint_states', JointState, messages.append)
+        terminal = Terminal('xvfb-run', '-a', 'roslaunch', 'rosbots_description', 'rviz.launch',
+                            'gui:=true', 'rviz:=false')
+        self.addCleanup(terminal.close)
+        try:
+            wait_until(lambda: messages or 'has died' in terminal.shown(), 'joint states', START)
+        finally:
+            os.killpg(terminal.process.pid, signal.SIGINT)
+        self.assertTrue(messages, terminal.shown())
+        self.assertEqual(messages[-1]._connection_header['callerid'], '/joint_state_publisher_gui')
+        shown = dict(zip(messages[-1].name, messages[-1].position, strict=True))
+        self.assertEqual(set(shown), set(AT_FIRST))
+        for joint, position in AT_FIRST.items():
+            self.assertAlmostEqual(shown[joint], position, delta=SLIDER)
+        wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
+                   'the end', START)
+        self.assertNotIn('Traceback', terminal.shown())
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_sliders', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'sliders', SlidersTest, sys.argv)
