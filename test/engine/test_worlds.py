@@ -1,5 +1,6 @@
 """The worlds that come with the simulator stand; worlds from files move as they should."""
 
+import itertools
 import math
 import time
 
@@ -7,7 +8,8 @@ import pytest
 from support import ROOT, SETTLED, SPAWN_POSE, robot_spec
 
 from rosbots_description.sim.model_search import ModelSearch, find_world
-from rosbots_description.sim.pose import to_rpy
+from rosbots_description.sim.pose import compose, to_rpy
+from rosbots_description.sim.spec import Box
 from rosbots_description.sim.world import World
 from rosbots_description.sim.world_file import load_world, open_world, populate
 
@@ -60,13 +62,35 @@ def test_nothing_moves_or_falls_in_our_own_worlds(world, name, caplog):
     assert caplog.text == ''
 
 
-@pytest.mark.parametrize('name', ['room', 'maze'])
+@pytest.mark.parametrize('name', OWN_WORLDS)
 def test_the_robot_finds_room_where_it_is_spawned(world, name):
     populate(world, own(name))
     robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
     world.run(SETTLED)
     assert math.hypot(*robot.pose.position[:2]) < 0.05
     assert abs(to_rpy(robot.pose.orientation)[2]) < 0.05
+
+
+@pytest.mark.parametrize('name', OWN_WORLDS)
+def test_no_two_visible_faces_share_a_plane(name):
+    boxes = []
+    for spec, model_pose in own(name).models:
+        for link in spec.links:
+            for visual in link.visuals:
+                pose = compose(compose(model_pose, link.pose), visual.pose)
+                if isinstance(visual.geometry, Box) and abs(pose.orientation[3]) == 1.0:
+                    boxes.append([(middle - size / 2.0, middle + size / 2.0) for middle, size in zip(
+                        pose.position, visual.geometry.size, strict=True)])
+    assert boxes or name == 'empty'
+    for one, other in itertools.combinations(boxes, 2):
+        overlaps = [min(a[1], b[1]) - max(a[0], b[0]) > 1e-9
+                    for a, b in zip(one, other, strict=True)]
+        for axis in range(3):
+            if not all(overlaps[:axis] + overlaps[axis + 1:]):
+                continue
+            for end in (0, 1):
+                on_the_floor = axis == 2 and one[2][end] == 0.0
+                assert on_the_floor or abs(one[axis][end] - other[axis][end]) > 1e-6, (one, other)
 
 
 def test_the_robot_does_not_drive_through_the_walls_of_the_maze(world):

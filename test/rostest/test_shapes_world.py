@@ -11,7 +11,7 @@ from gazebo_msgs.srv import GetLightProperties, GetModelProperties, GetWorldProp
 from simulator import DEADLINE, proxy
 
 MODELS = ['ground_plane', 'box', 'sphere', 'cylinder']
-PLACES = {'box': (0.0, 0.0, 0.5), 'sphere': (0.0, 1.5, 0.5), 'cylinder': (0.0, -1.5, 0.5)}
+PLACES = {'box': (2.5, 0.0, 0.5), 'sphere': (0.0, 1.5, 0.5), 'cylinder': (0.0, -1.5, 0.5)}
 STILL = 0.01  # [m]; they stand on the ground, into which contacts let them sink a little
 
 
