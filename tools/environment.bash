@@ -24,6 +24,15 @@ enter_environment() {
   export ROSBOTS_ROOT=$ROOT
   find_ros_home
   find_address
+  find_runtime_folder
+}
+
+# Qt complains on every start of RViz where there is none, as in containers.
+find_runtime_folder() {
+  local folder=${TMPDIR:-/tmp}/rosbots-runtime-$UID
+  if [[ -z ${XDG_RUNTIME_DIR:-} ]] && mkdir -p -m 700 "$folder" 2> /dev/null && [[ -O $folder ]]; then
+    export XDG_RUNTIME_DIR=$folder
+  fi
 }
 
 # catkin's set-up file passes all it finds out through a file in TMPDIR, which may be full.

@@ -8,7 +8,7 @@ import pytest
 from support import ROOT, SETTLED, SPAWN_POSE, robot_spec
 
 from rosbots_description.sim.model_search import ModelSearch, find_world
-from rosbots_description.sim.pose import compose, to_rpy
+from rosbots_description.sim.pose import Pose, compose, to_rpy
 from rosbots_description.sim.spec import Box
 from rosbots_description.sim.world import World
 from rosbots_description.sim.world_file import load_world, open_world, populate
@@ -79,8 +79,8 @@ def test_no_two_visible_faces_share_a_plane(name):
             for visual in link.visuals:
                 pose = compose(compose(model_pose, link.pose), visual.pose)
                 if isinstance(visual.geometry, Box) and abs(pose.orientation[3]) == 1.0:
-                    boxes.append([(middle - size / 2.0, middle + size / 2.0) for middle, size in zip(
-                        pose.position, visual.geometry.size, strict=True)])
+                    sides = zip(pose.position, visual.geometry.size, strict=True)
+                    boxes.append([(middle - side / 2, middle + side / 2) for middle, side in sides])
     assert boxes or name == 'empty'
     for one, other in itertools.combinations(boxes, 2):
         overlaps = [min(a[1], b[1]) - max(a[0], b[0]) > 1e-9
@@ -205,3 +205,32 @@ def test_fixed_joints_hold_links_of_an_sdf_together(world):
     a, b = (link.pose.position for link in pair.links.values())
     assert a[2] < 9.0
     assert (b[0] - a[0], b[1] - a[1], b[2] - a[2]) == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
+
+
+@pytest.mark.parametrize(('world_name', 'place', 'overlaps'), [
+    ('empty', (0.0, 0.0, 0.5), {}),
+    ('empty', (0.0, 0.0, -0.12), {}),  # at rest
+    ('empty', (0.0, 0.0, -0.2), {'ground_plane': 0.08}),
+    ('shapes', (0.0, 0.0, 0.5), {}),
+    ('shapes', (2.5, 0.0, 0.5), {'box': 0.29}),
+    ('maze', (0.0, 0.0, 0.0), {}),
+])
+def test_what_a_model_is_spawned_into_is_known(world, world_name, place, overlaps):
+    populate(world, own(world_name))
+    robot = world.spawn(robot_spec(), 'rosbots', Pose(place))
+    found = world.overlaps(robot)
+    assert found == pytest.approx(overlaps, abs=0.001)
+
+
+def test_looking_for_overlaps_changes_no_motion():
+    ends = []
+    for looks in (False, True):
+        world = World()
+        populate(world, own('shapes'))
+        robot = world.spawn(robot_spec(), 'rosbots', Pose((2.0, 0.0, 0.6)))
+        if looks:
+            assert world.overlaps(robot)
+        world.run(500)
+        ends.append([model.pose for model in world.models.values()])
+        world.close()
+    assert ends[0] == ends[1]

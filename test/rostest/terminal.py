@@ -10,12 +10,12 @@ import termios
 class Terminal:
     """A pseudo-terminal with a program in it; collects what the program shows."""
 
-    def __init__(self, *command):
+    def __init__(self, *command, **options):
         self._keyboard, self._screen = pty.openpty()
         self.saved_mode = termios.tcgetattr(self._screen)
         self.process = subprocess.Popen(
             command, stdin=self._screen, stdout=self._screen, stderr=self._screen,
-            start_new_session=True)
+            start_new_session=True, **options)
         self._shown = b''
 
     def type(self, key):

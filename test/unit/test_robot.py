@@ -10,6 +10,9 @@ from xml.etree import ElementTree
 import pytest
 import xacro
 
+from rosbots_description.sim.spec import Mesh
+from rosbots_description.sim.urdf import load_urdf
+
 ROOT = Path(__file__).resolve().parents[2]
 XACRO = ROOT / 'urdf' / 'rosbots.xacro'
 ARTICLE = json.loads((ROOT / 'test' / 'data' / 'article_robot.json').read_text(encoding='utf-8'))
@@ -97,7 +100,8 @@ def test_robot_has_the_articles_parts_and_nothing_else():
     assert {child.tag for child in tree} == {'link', 'joint', 'gazebo'}
     assert len(tree.findall('link')) == 17
     assert len(tree.findall('joint')) == 16
-    assert len(tree.findall('gazebo')) == 1
+    (plugin,) = (block for block in tree.findall('gazebo') if block.get('reference') is None)
+    assert [child.tag for child in plugin] == ['plugin']
     assert {link.get('name') for link in tree.findall('link')} == set(ARTICLE['links'])
     assert {joint.get('name') for joint in tree.findall('joint')} == set(ARTICLE['joints'])
 
@@ -185,3 +189,19 @@ def test_every_mesh_of_the_robot_is_in_the_package():
         prefix, path = name[:30], name[30:]
         assert prefix == 'package://rosbots_description/'
         assert (ROOT / path).is_file(), name
+
+
+def test_what_rviz_shows_red_for_want_of_a_colour_is_red_in_the_simulator():
+    urdf = robot()
+    red = {block.get('reference') for block in urdf.findall('gazebo')
+           if block.findtext('material') == 'Gazebo/Red'}
+    colourless = {
+        link.get('name') for link in urdf.findall('link') for visual in link.findall('visual')
+        if visual.find('material') is None and visual.find('geometry/mesh') is None
+    }
+    assert red == colourless
+    spec, _ = load_urdf(
+        expanded(), 'rosbots', robot_namespace='/', find_package=lambda _: str(ROOT))
+    shown = {visual.material and visual.material.rgba for link in spec.links
+             for visual in link.visuals if not isinstance(visual.geometry, Mesh)}
+    assert shown == {(1.0, 0.0, 0.0, 1.0)}

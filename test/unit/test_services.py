@@ -16,6 +16,7 @@ from rosbots_description.ros_api.services.registry import (
     respond,
     service,
 )
+from rosbots_description.ros_api.services.spawning import DEEP, warn_overlap
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.plugins.registry import known_filenames, plugin_class
@@ -97,3 +98,17 @@ def test_relative_velocity_is_turned_but_has_no_share_of_the_frames_rotation():
     assert pose.position == pytest.approx((2.0, 0.0, 0.0))
     assert twist.linear == pytest.approx((0.75, 0.0, 0.0))
     assert twist.angular == pytest.approx((0.0, 0.0, 1.5))
+
+
+@pytest.mark.parametrize(('depths', 'named'), [
+    ({}, None),
+    ({'ground_plane': DEEP}, None),  # heights are rounded
+    ({'ground_plane': 0.2, 'box': 0.034, 'wall': 0.001},
+     "inside 'ground_plane' (0.2 m deep) and 'box' (0.034 m deep), which"),
+])
+def test_a_spawn_into_something_is_one_line(caplog, depths, named):
+    warn_overlap(SimpleNamespace(overlaps=lambda _: depths), SimpleNamespace(name='robot'))
+    assert len(caplog.records) == (named is not None)
+    if named:
+        assert named in caplog.text
+        assert "model 'robot' was spawned" in caplog.text

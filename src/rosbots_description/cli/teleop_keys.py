@@ -30,7 +30,7 @@ SPEED_STEPS: dict[str, tuple[float, float]] = {
 BANNER = """
 Drive a robot with the keys of this terminal
 ---------------------------
-To move:
+To move, hold a key down; the robot stops when you let go:
    u    i    o
    j    k    l
    m    ,    .

@@ -39,7 +39,8 @@ def main() -> int:
     except RuntimeError as error:  # there is no robot_description
         sys.stderr.write(f'{NAME}: {error}\n')
         return 1
-    shown = window.JointStatePublisherGui(f'Node: {rospy.get_name()}', joints, get_param('num_rows', 0))
+    title, rows = f'Node: {rospy.get_name()}', get_param('num_rows', 0)
+    shown = window.JointStatePublisherGui(title, joints, rows)
     shown.show()
     threading.Thread(target=joints.loop, daemon=True).start()
     return app.exec_()

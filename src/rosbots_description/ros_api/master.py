@@ -50,6 +50,12 @@ def once_there(ask: Callable[[], Answer]) -> Answer:
     raise rospy.ROSInterruptException('the node is shutting down')
 
 
+def subscribers(topic: str) -> set[str]:
+    """Return the names of the nodes that read a topic, by the master; wait while it is away."""
+    _, readers, _ = once_there(lambda: rosgraph.Master(rospy.get_name()).getSystemState())
+    return {node for name, nodes in readers if name == topic for node in nodes}
+
+
 def write_parameters(values: Mapping[str, object]) -> None:
     """Write private parameters of this node by one call: each takes as long as all together.
 

@@ -1,10 +1,10 @@
 """The frames that other nodes hold still, so that the simulator gives no frame a second parent.
 
 By the article's numbers the simulator publishes odom -> base_link and base_footprint -> wheels. A
-robot_state_publisher beside it holds base_footprint -> base_link still and turns the wheels. TF keeps
-one parent for each frame, so the robot falls apart, and every listener complains about each wheel
-(TF_REPEATED_DATA; TF_OLD_DATA if that node follows the wall clock). So we move what the other node
-holds together as a whole, and leave the wheels to it.
+robot_state_publisher beside it holds base_footprint -> base_link still and turns the wheels. TF
+keeps one parent for each frame, so the robot falls apart, and every listener complains about each
+wheel (TF_REPEATED_DATA; TF_OLD_DATA if that node follows the wall clock). So we move what the other
+node holds together as a whole, and leave the wheels to it.
 
 Subscribes:
     /tf_static (tf2_msgs/TFMessage).
@@ -74,7 +74,9 @@ class StaticFrames:
             self._merge()
 
     def _merge(self) -> None:
-        self.parents = {child: edge for held in self._by_node.values() for child, edge in held.items()}
+        self.parents = {
+            child: edge for held in self._by_node.values() for child, edge in held.items()
+        }
         self.nodes = frozenset(self._by_node)
 
 

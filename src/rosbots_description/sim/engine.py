@@ -126,6 +126,13 @@ class Engine:
         self.waste += body.size
         self._maker.remove(body)
 
+    def overlap(self, one: Body, other: Body) -> float:
+        """Return how deep two models reach into each other [m]; 0 if they do not."""
+        return max((
+            -point[8] for first in one.bodies for second in other.bodies
+            for point in pybullet.getClosestPoints(first, second, 0.0, physicsClientId=self._client)
+        ), default=0.0)
+
     def motion(self, body: Body) -> Motion:
         """Return where a model is and how it moves, all of it."""
         return Motion(

@@ -153,6 +153,12 @@ class World:
             listener.model_spawned(model)
         return model
 
+    def overlaps(self, model: Model) -> dict[str, float]:
+        """Return the names of the models that a model reaches into, and how deep [m]."""
+        depths = {name: self.engine.overlap(model.body, other.body)
+                  for name, other in self.models.items() if other is not model}
+        return {name: depth for name, depth in depths.items() if depth > 0.0}
+
     def delete(self, name: str) -> None:
         """Take a model and its plugins out of the world.
 

@@ -16,6 +16,7 @@ import math
 import time
 from functools import partial
 
+import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
@@ -25,6 +26,7 @@ from ...sim.plugins.diff_drive import DiffDrive
 from ...sim.readings import FrameTransform, JointStates, Odometry
 from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
 from ..log_bridge import set_level
+from ..master import subscribers
 from ..names import find_tf_prefix, frame_name, topic_name
 from ..sending import has_readers, next_number, publish_serialized, reader_names
 from ..server import Server
@@ -50,6 +52,7 @@ class DiffDriveAdapter(Adapter):
         self._edges: dict[tuple[str, str], TransformLayout] = {}  # by parent and child
         self._joints: dict[tuple[str, ...], JointStatesLayout] = {}  # by names
         self._odometry = self._tf = self._joint_states = None
+        self._followers: set[str] = set()  # who reads the joint states, once it can
         self._complained = -math.inf
         self._told_root = ''  # said once, not with every message
         namespace, config = plugin.namespace, plugin.config
@@ -66,6 +69,7 @@ class DiffDriveAdapter(Adapter):
         self._prefix = find_tf_prefix(self.plugin.namespace)
         logger.info('%s<tf_prefix> = %s', prefix, self._prefix)
         if config.publish_wheel_joint_state:
+            self._followers = subscribers(rospy.resolve_name(self._joint_states_topic))
             self._joint_states = self.advertise(self._joint_states_topic, JointState, 1000)
             logger.info('%sAdvertise joint_states', prefix)
         self._tf = self.advertise('/tf', TFMessage, 100)
@@ -123,7 +127,8 @@ class DiffDriveAdapter(Adapter):
         """
         return has_readers(self._tf) and not (
             self._joint_states is not None
-            and self.server.static_frames.nodes.intersection(reader_names(self._joint_states))
+            and self.server.static_frames.nodes.intersection(
+                self._followers | reader_names(self._joint_states))
         )
 
     def _tell_root(self, edge: FrameTransform, moved: FrameTransform) -> None:

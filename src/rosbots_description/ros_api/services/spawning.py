@@ -10,17 +10,23 @@ from ...sim.bullet_description import mesh_needs
 from ...sim.errors import ModelError, NotFoundError
 from ...sim.markup import root_tag
 from ...sim.meshes import EngineFile
+from ...sim.model import Model
 from ...sim.pose import Pose, compose
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.spec import ModelSpec
 from ...sim.urdf import load_urdf
 from ...sim.uris import UnknownPackage
+from ...sim.world import World
 from ...sim.world_spec import LightSpec
 from ..conversions import read_pose
 from ..server import Server
 from .registry import CallError, refuse, service
 
 logger = logging.getLogger(__name__)
+
+# [m] How deep a model may stand in another unnoticed: the spawn heights of published robots are
+# rounded to centimetres.
+DEEP = 0.01
 
 _NO_FRAME = (
     'SpawnModel: reference reference_frame not found, '
@@ -120,8 +126,21 @@ def spawn_model(server: Server, arrival: _Arrival | LightSpec) -> SpawnModelResp
     if refusal is not None:  # someone else was quicker
         return refusal
     frame_pose, _ = server.world.frame(arrival.frame)
-    server.world.spawn(arrival.spec, arrival.name, compose(frame_pose, arrival.pose))
+    model = server.world.spawn(arrival.spec, arrival.name, compose(frame_pose, arrival.pose))
+    if not model.static:
+        warn_overlap(server.world, model)
     return SpawnModelResponse(True, _DONE)
+
+
+def warn_overlap(world: World, model: Model) -> None:
+    """Say so when a model is about to be thrown out of something that it stands in."""
+    deep = {name: depth for name, depth in world.overlaps(model).items() if depth > DEEP}
+    if deep:
+        logger.warning(
+            "model '%s' was spawned inside %s, which will push it out; give it room by x, y or z",
+            model.name,
+            ' and '.join(f"'{name}' ({depth:.2g} m deep)" for name, depth in deep.items()),
+        )
 
 
 def _spawn_light(server: Server, light: LightSpec) -> SpawnModelResponse:

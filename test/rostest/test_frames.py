@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""rviz.launch beside the simulator, in both orders: one tree of frames, and quiet terminals."""
+
+import os
+import re
+import shutil
+import signal
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from geometry_msgs.msg import Twist
+from simulator import wait_until
+from terminal import Terminal
+from tf2_msgs.msg import TFMessage
+
+STEP = 40.0  # [s, wall] for a launch file to show what it is to show
+LINES = 40  # at most in a terminal, as a reader sees them
+DRIVEN = 0.5  # [m]: some two seconds, in which the flood was of 400 lines
+ARTICLE = """<launch>
+  <param name="robot_description" command="xacro '$(find rosbots_description)/urdf/rosbots.xacro'"/>
+  <node name="joint_state_publisher" pkg="joint_state_publisher" type="joint_state_publisher"/>
+  <node name="robot_state_publisher" pkg="robot_state_publisher" type="robot_state_publisher"/>
+  <node name="rviz" pkg="rviz" type="rviz"/>
+</launch>
+"""
+WHEELS = {'wheel_left_link', 'wheel_right_link'}
+TREE = {'base_footprint': {'odom'}, 'base_link': {'base_footprint'},
+        'wheel_left_link': {'base_link'}, 'wheel_right_link': {'base_link'}}
+BY_THE_TAGS = {'base_link': {'odom'}, 'wheel_left_link': {'base_footprint'},
+               'wheel_right_link': {'base_footprint'}}
+# How a terminal's title is set, and colours.
+CONTROL = re.compile(r'\x1b\][^\x07]*\x07|\x1b\[[0-9;]*m')
+
+
+class FramesTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        if 'DISPLAY' not in os.environ:
+            read, write = os.pipe()
+            display = Terminal('Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24',
+                               pass_fds=(write,))
+            cls.addClassCleanup(display.close)
+            os.environ['DISPLAY'] = ':' + os.read(read, 16).decode().strip()
+
+    def setUp(self):
+        self._folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self._folder)
+        self._edges = {}
+        for topic in ('/tf', '/tf_static'):
+            subscriber = rospy.Subscriber(topic, TFMessage, self._note)
+            self.addCleanup(subscriber.unregister)
+        self._travelled = 0.0
+
+    def _note(self, message):
+        for transform in message.transforms:
+            self._edges.setdefault(transform.child_frame_id, set()).add(transform.header.frame_id)
+            if transform.header.frame_id == 'odom':
+                self._travelled = transform.transform.translation.x
+
+    def open(self, *command):
+        terminal = Terminal(*command)
+        self.addCleanup(terminal.close)
+        self.addCleanup(self.end, terminal)
+        return terminal
+
+    def end(self, terminal):
+        if terminal.process.poll() is None:
+            os.killpg(terminal.process.pid, signal.SIGINT)
+            wait_until(lambda: terminal.shown() is not None
+                       and terminal.process.poll() is not None, 'the end', STEP)
+
+    def rviz(self, own=False):
+        """Open a reader's rviz.launch, or ours, and wait until RViz looks."""
+        words = ['rosbots_description', 'rviz.launch']
+        if own:
+            words = [os.path.join(self._folder, 'rviz.launch')]
+            Path(words[0]).write_text(ARTICLE)
+        terminal = self.open('roslaunch', *words)
+        wait_until(lambda: self._looks('/rviz'), 'RViz reading TF', STEP)
+        return terminal
+
+    @staticmethod
+    def _looks(node):
+        _, readers, _ = rospy.get_master().getSystemState()[2]
+        return any(topic == '/tf' and node in nodes for topic, nodes in readers)
+
+    def simulator(self):
+        terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch')
+        rospy.wait_for_service('/gazebo/spawn_urdf_model', STEP)
+        spawn = self.open('roslaunch', 'rosbots_description', 'spawn.launch')
+        wait_until(lambda: 'Successfully spawned entity' in spawn.shown(), 'the spawn', STEP)
+        return terminal
+
+    def drive(self):
+        """Drive on by `DRIVEN` and return the edges of TF seen meanwhile."""
+        publisher = rospy.Publisher('/part2_cmr/cmd_vel', Twist, queue_size=1)
+        self.addCleanup(publisher.unregister)
+        wait_until(publisher.get_num_connections, 'the plugin', STEP)
+        self._edges.clear()
+        end = self._travelled + DRIVEN
+        command = Twist()
+        command.linear.x = 0.3
+        publisher.publish(command)
+        wait_until(lambda: self._travelled > end, 'the drive', STEP)
+        publisher.publish(Twist())
+        return {child: self._edges[child] for child in (*WHEELS, 'base_link', 'base_footprint')
+                if child in self._edges}
+
+    def look(self, terminals):
+        """Drive, and look that the robot is whole and every terminal quiet."""
+        # what was said while the last came up, and by the latched static frames, is not of it
+        moved = self.drive()
+        self.assertEqual(moved, {child: TREE[child] for child in moved})
+        self.assertTrue(WHEELS | {'base_footprint'} <= set(moved), moved)
+        for terminal in terminals:
+            shown = CONTROL.sub('', terminal.shown())
+            lines = [line for line in shown.splitlines() if line.strip()]
+            self.assertLessEqual(len(lines), LINES, shown)
+            self.assertNotRegex(shown, 'TF_|Traceback|has died|no such package|QStandard')
+
+    def test_rviz_before_the_simulator(self):
+        view = self.rviz()
+        self.look([view, self.simulator()])
+
+    def test_rviz_after_the_simulator_and_gone_again(self):
+        simulator = self.simulator()
+        self.assertEqual(self.drive(), BY_THE_TAGS)
+        view = self.rviz()
+        self.look([view, simulator])
+        self.end(view)
+        wait_until(lambda: self.drive() == BY_THE_TAGS, 'the frames by the tags', STEP)
+
+    def test_a_readers_own_rviz_before_the_simulator(self):
+        view = self.rviz(own=True)
+        self.look([view, self.simulator()])
+
+    def test_a_readers_own_rviz_after_the_simulator(self):
+        simulator = self.simulator()
+        self.look([self.rviz(own=True), simulator])
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_frames', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'frames', FramesTest, sys.argv)

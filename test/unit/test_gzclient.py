@@ -1,0 +1,60 @@
+"""The window as a process: it listens to no robot's TF, says little, and ends when told."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import yaml
+
+from rosbots_description.cli.gzclient import config_file, surroundings
+
+WINDOW = """#!/bin/sh
+echo "$@" > {folder}/arguments
+exec sleep 60
+"""
+MAIN = ('import sys; from rosbots_description.cli import gzclient; '
+        'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))')
+
+
+def test_the_window_has_frames_of_its_own_and_ends_with_its_parent(tmp_path):
+    program = tmp_path / 'rviz'
+    program.write_text(WINDOW.format(folder=tmp_path))
+    program.chmod(0o755)
+    process = subprocess.Popen(
+        [sys.executable, '-c', MAIN, '--verbose', '__name:=gazebo_gui'],
+        env={**os.environ, 'PATH': f'{tmp_path}:{os.environ["PATH"]}',
+             'ROS_MASTER_URI': 'http://127.0.0.1:1'})
+    try:
+        deadline = time.monotonic() + 20.0
+        while not (tmp_path / 'arguments').exists() or not (tmp_path / 'arguments').read_text():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        words = (tmp_path / 'arguments').read_text().split()
+        assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} \
+            <= set(words)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10.0) == 0
+    finally:
+        process.kill()
+        process.wait()
+
+
+def test_rviz_gets_a_folder_and_log_levels_unless_the_user_has_given_them(tmp_path, monkeypatch):
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
+    made = surroundings({}, Path('/levels'))
+    assert made['ROSCONSOLE_CONFIG_FILE'] == '/levels'
+    assert Path(made['XDG_RUNTIME_DIR']).stat().st_mode & 0o777 == 0o700
+    given = {'XDG_RUNTIME_DIR': '/run/user/1', 'ROSCONSOLE_CONFIG_FILE': '/mine'}
+    assert surroundings(given, Path('/levels')) == given
+
+
+def test_the_layouts_have_time_displays_and_views_and_the_window_can_follow_a_model():
+    for name in ('gzclient', 'rosbots', 'simulation'):
+        layout = yaml.safe_load(config_file().with_name(f'{name}.rviz').read_text())
+        assert {panel['Name'] for panel in layout['Panels']} == {'Displays', 'Views', 'Time'}
+        assert layout['Window Geometry']['Time'] == {'collapsed': False}
+    views = yaml.safe_load(config_file().read_text())['Visualization Manager']['Views']
+    assert views['Saved'][0]['Target Frame'] == 'rosbots'

@@ -1,0 +1,91 @@
+"""Frames that others hold still: which edge then moves the whole tree, and who is forgotten."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+from geometry_msgs.msg import TransformStamped
+from support.fake_drive import make
+from tf2_msgs.msg import TFMessage
+
+from rosbots_description.ros_api.adapters import diff_drive
+from rosbots_description.ros_api.adapters.diff_drive import DiffDriveAdapter
+from rosbots_description.ros_api.conversions import fill_transform
+from rosbots_description.ros_api.static_frames import StaticFrames, from_root
+from rosbots_description.sim.pose import Pose, compose, from_rpy
+from rosbots_description.sim.readings import FrameTransform
+
+HELD = Pose((0.0, 0.1, 0.05), from_rpy(0.0, 0.0, 0.3))
+MOVED = Pose((1.0, 2.0, 0.0), from_rpy(0.1, 0.0, 1.2))
+
+
+def message(*edges):
+    transforms = []
+    for parent, child, pose in edges:
+        made = TransformStamped(child_frame_id=child)
+        made.header.frame_id = parent
+        fill_transform(made.transform, pose)
+        transforms.append(made)
+    return TFMessage(transforms)
+
+
+@pytest.fixture
+def frames():
+    return StaticFrames()
+
+
+def test_an_edge_stays_where_nobody_holds_its_child(frames):
+    frames.add('/rsp', message(('base_link', 'laser', HELD)))
+    edge = FrameTransform('odom', 'base_link', MOVED)
+    assert from_root(edge, frames.parents) is edge
+
+
+def test_what_is_held_together_is_moved_by_its_root(frames):
+    frames.add('/rsp', message(('base_footprint', 'base_link', HELD), ('base_link', 'laser', HELD)))
+    for child, chain in (('base_link', HELD), ('laser', compose(HELD, HELD))):
+        edge = from_root(FrameTransform('odom', child, MOVED), frames.parents)
+        assert (edge.parent, edge.child) == ('odom', 'base_footprint')
+        again = compose(edge.pose, chain)
+        assert again.position == pytest.approx(MOVED.position, abs=1e-12)
+        assert math.fabs(sum(a * b for a, b in zip(
+            again.orientation, MOVED.orientation, strict=True))) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize('edges', [
+    [('odom', 'base_link', HELD)],
+    [('odom', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
+    [('base_link', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
+])
+def test_an_edge_stays_where_others_hold_its_child_in_its_parent_or_in_a_circle(frames, edges):
+    frames.add('/other', message(*edges))
+    edge = FrameTransform('odom', 'base_link', MOVED)
+    assert from_root(edge, frames.parents) is edge
+
+
+def test_who_has_gone_holds_nothing(frames):
+    frames.add('/rsp', message(('base_footprint', 'base_link', HELD)))
+    frames.add('/camera', message(('base_link', 'camera', HELD)))
+    frames.keep({'/camera'})
+    assert frames.nodes == {'/camera'}
+    assert set(frames.parents) == {'camera'}
+
+
+def test_what_is_no_pose_is_left_out(frames):
+    frames.add('/rsp', message(('a', 'b', Pose((math.nan, 0.0, 0.0)))))
+    assert not frames.parents
+
+
+@pytest.mark.parametrize(('readers', 'holder', 'wanted'), [
+    (set(), '/rsp', True),
+    ({'/rsp'}, '/rsp', False),
+    ({'/plotter'}, '/camera', True),  # one reads joint states, another holds a camera
+])
+def test_wheels_are_left_to_who_reads_joint_states_and_holds_frames(
+    frames, monkeypatch, readers, holder, wanted
+):
+    monkeypatch.setattr(diff_drive, 'has_readers', lambda *_: True)
+    monkeypatch.setattr(diff_drive, 'reader_names', lambda _: readers)
+    adapter = DiffDriveAdapter(SimpleNamespace(static_frames=frames), make())
+    adapter._joint_states = object()
+    frames.add(holder, message(('base_footprint', 'base_link', HELD)))
+    assert adapter._wheels_wanted() is wanted
