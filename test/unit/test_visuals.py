@@ -1,13 +1,23 @@
 """The markers of a world: what is sent, and that it is sent only once."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
 from visualization_msgs.msg import Marker
 
 from rosbots_description.ros_api.markers import PLANE_DEPTH, visual_marker
+from rosbots_description.ros_api.shading import brightness
 from rosbots_description.ros_api.visuals import REFRESH, ShownMarkers
-from rosbots_description.sim.pose import IDENTITY, Pose
+from rosbots_description.sim.pose import (
+    IDENTITY,
+    Pose,
+    cross,
+    dot,
+    from_rpy,
+    rotate,
+    subtract,
+)
 from rosbots_description.sim.spec import (
     Box,
     Cylinder,
@@ -22,10 +32,10 @@ from rosbots_description.sim.spec import (
 RED = Material((1.0, 0.0, 0.0, 0.5))
 
 
-def _model(name, visual, pose=IDENTITY):
+def _model(name, visual, pose=IDENTITY, static=False):
     spec = LinkSpec('link', visuals=(visual,))
     link = SimpleNamespace(scoped_name=f'{name}::link', spec=spec, pose=pose)
-    return SimpleNamespace(name=name, links={'link': link})
+    return SimpleNamespace(name=name, links={'link': link}, static=static)
 
 
 @pytest.fixture
@@ -99,3 +109,24 @@ def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
     assert shown == [2] + [0] * (REFRESH - 1) + [1]
     view.begin()
     assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
+
+
+@pytest.mark.parametrize('geometry', [Box((1.0, 2.0, 3.0)), Cylinder(0.5, 2.0)])
+def test_what_stands_still_is_lit_by_the_sun_and_what_moves_by_rviz(geometry):
+    turned = Pose((1.0, 0.0, 0.0), from_rpy(0.0, 0.0, 0.5))
+    models = {name: _model(name, Visual('v', geometry, material=RED), turned, name == 'wall')
+              for name in ('wall', 'crate')}
+    _, wall, crate = ShownMarkers(SimpleNamespace(models=models)).look()
+    assert crate.type in (Marker.CUBE, Marker.CYLINDER)
+    assert crate.colors == []
+    assert wall.type == Marker.TRIANGLE_LIST
+    assert len(wall.colors) == len(wall.points)
+    for number in range(0, len(wall.points), 3):
+        a, b, c = ((p.x, p.y, p.z) for p in wall.points[number:number + 3])
+        normal = cross(subtract(b, a), subtract(c, a))
+        assert dot(normal, a) > 0.0  # outward, or RViz does not draw it
+        length = math.sqrt(dot(normal, normal))
+        lit = brightness(rotate(turned.orientation, tuple(x / length for x in normal)))
+        assert wall.colors[number].r == pytest.approx(lit)
+        assert wall.colors[number].a == RED.rgba[3]
+    assert brightness((0.0, 0.0, 1.0)) > brightness((1.0, 0.0, 0.0)) > brightness((-1.0, 0.0, 0.0))

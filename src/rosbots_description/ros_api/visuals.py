@@ -11,10 +11,11 @@ import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ..sim.model import Link, Model
-from ..sim.pose import Pose
+from ..sim.pose import Pose, compose
 from ..sim.world import World
 from .markers import clearance, place, removal, visual_marker
 from .server import Server
+from .shading import shade
 
 PERIOD = 0.04  # time between two looks at the world [s, wall]
 # Every so many looks all is shown again: RViz forgets its markers when time jumps back.
@@ -24,13 +25,17 @@ REFRESH = 25
 class LinkView:
     """The markers of one link, and where they were last shown."""
 
-    def __init__(self, link: Link) -> None:
+    def __init__(self, link: Link, still: bool) -> None:
         self._link = link
         self._shown: Pose | None = None
         self.markers = [
             visual_marker(link.scoped_name, number, visual)
             for number, visual in enumerate(link.spec.visuals)
         ]
+        if still:
+            pose = link.pose
+            for marker, visual in zip(self.markers, link.spec.visuals, strict=True):
+                shade(marker, visual.geometry, compose(pose, visual.pose).orientation)
 
     def forget(self) -> None:
         """Count as moved at the next look."""
@@ -72,7 +77,8 @@ class ShownMarkers:
                 del self._models[name]
         for name, model in models.items():
             if name not in self._models:
-                views = [LinkView(link) for link in model.links.values() if link.spec.visuals]
+                views = [LinkView(link, model.static)
+                         for link in model.links.values() if link.spec.visuals]
                 self._models[name] = model, views
             for link in self._models[name][1]:
                 if refresh:
