@@ -37,3 +37,21 @@ class Terminal:
             self.process.wait()
         os.close(self._keyboard)
         os.close(self._screen)
+
+
+def open_display():
+    """See to a display, one that nobody sees if need be; return the function that closes it."""
+    if 'DISPLAY' in os.environ:
+        return lambda: None
+    read, write = os.pipe()
+    display = Terminal('Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24',
+                       pass_fds=(write,))
+    os.close(write)
+    with os.fdopen(read) as numbers:
+        os.environ['DISPLAY'] = f':{numbers.readline().strip()}'
+
+    def close():
+        del os.environ['DISPLAY']
+        display.close()
+
+    return close

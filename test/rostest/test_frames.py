@@ -14,7 +14,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Twist
 from simulator import wait_until
-from terminal import Terminal
+from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 
 STEP = 40.0  # [s, wall] for a launch file to show what it is to show
@@ -40,12 +40,7 @@ class FramesTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        if 'DISPLAY' not in os.environ:
-            read, write = os.pipe()
-            display = Terminal('Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24',
-                               pass_fds=(write,))
-            cls.addClassCleanup(display.close)
-            os.environ['DISPLAY'] = ':' + os.read(read, 16).decode().strip()
+        cls.addClassCleanup(open_display())
 
     def setUp(self):
         self._folder = tempfile.mkdtemp()

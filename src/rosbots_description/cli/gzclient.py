@@ -104,11 +104,12 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
 
     def end(number: int, _frame: object) -> None:
         told.append(number)
-        window.terminate()
+        window.send_signal(signal.SIGINT)  # at which RViz takes leave of the master
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
     watch = ServerWatch(tell)
+    watch.look()
     while True:
         try:
             code = window.wait(PERIOD)

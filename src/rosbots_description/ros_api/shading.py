@@ -1,4 +1,4 @@
-"""Sunlight on what stands still: RViz has one light, at the eye, which leaves what is seen flat dark.
+"""Sunlight on what stands still: RViz has one light, at the eye, and leaves flat views dark.
 
 A list of triangles with colours of their own is drawn as it is, so the light can be put into them.
 """

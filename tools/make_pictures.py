@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Make the README's pictures anew: `./rosbots exec tools/make_pictures.py [folder]`.
+
+The windows are opened on a display that nobody sees (Xvfb), which keeps its pixels in a file; the
+demo draws its own two. The default folder is doc/images. `speed.png` is drawn by `./rosbots bench`.
+"""
+
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from rosbots_description.cli import demo
+from rosbots_description.cli.launched import Launched
+
+ROOT = Path(__file__).resolve().parents[1]
+SCREEN = (1400, 960)  # [pixels] more than any window has
+WIDTH = 900  # of the pictures [pixels]
+COLOURS = 256  # of a picture; so few make small files
+START = 60.0  # [s, wall] for a window to show all of it
+LOOK = 0.5  # [s, wall] between two looks at the screen
+STILL = 0.5  # mean difference of two looks when nothing more comes; a clock ticks on [0-255]
+LEAST = 1000  # wide is a window [pixels]; what RViz shows while it starts is less
+FEWEST = 300  # colours with a robot in sight
+# Launch files to open one after the other, each with the text after which the next may come.
+WINDOWS = {
+    'rviz.png': [(['rosbots_description', 'rviz.launch'], None)],
+    'gzclient.png': [
+        (['gazebo_ros', 'empty_world.launch', 'world_name:=worlds/room.world'],
+         'Physics dynamic reconfigure ready'),
+        (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
+         'Successfully spawned entity'),
+    ],
+}
+DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
+
+
+class PictureError(RuntimeError):
+    """A picture could not be made; the text is one sentence."""
+
+
+@contextmanager
+def display(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Open a display; give its name and the file with its pixels."""
+    read, write = os.pipe()
+    server = subprocess.Popen(
+        ['Xvfb', '-displayfd', str(write), '-nocursor', '-fbdir', folder,
+         '-screen', '0', '{}x{}x24'.format(*SCREEN)],
+        pass_fds=(write,), stderr=subprocess.DEVNULL)
+    os.close(write)
+    try:
+        with os.fdopen(read) as numbers:
+            yield f':{numbers.readline().strip()}', folder / 'Xvfb_screen0'
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def screen(file: Path) -> np.ndarray:
+    """Return the pixels of an XWD file, rows by columns by (red, green, blue)."""
+    content = file.read_bytes()
+    header = struct.unpack_from('>25I', content)
+    size, width, height, line, colours = header[0], header[4], header[5], header[12], header[19]
+    begin = size + 12 * colours  # behind the table of colours
+    rows = np.frombuffer(content, np.uint8, line * height, begin).reshape(height, line)
+    return rows[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1]
+
+
+def window(pixels: np.ndarray) -> np.ndarray:
+    """Return what is not the black ground of the screen."""
+    rows, columns = (np.flatnonzero(pixels.any(axis=axes)) for axes in ((1, 2), (0, 2)))
+    if not len(rows):
+        return pixels[:0, :0]
+    return pixels[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+
+
+def steady(file: Path) -> np.ndarray:
+    """Return the window once all of it is there and nothing moves any more."""
+    deadline, before = time.monotonic() + START, None
+    while time.monotonic() < deadline:
+        now = window(screen(file))
+        if (before is not None and now.shape == before.shape and now.shape[1] > LEAST
+                and len(np.unique(now.reshape(-1, 3), axis=0)) >= FEWEST
+                and np.abs(now.astype(float) - before).mean() < STILL):
+            return now
+        before = now
+        time.sleep(LOOK)
+    raise PictureError(f'no window stood still within {START:g} s')
+
+
+def picture_of(steps: Sequence[tuple[list[str], str | None]], folder: Path) -> np.ndarray:
+    """Open windows by launch files and return what they show."""
+    opened = []
+    with display(folder) as (name, pixels):
+        environment = surroundings(folder, DISPLAY=name)
+        try:
+            for number, (arguments, text) in enumerate(steps):
+                log = folder / f'{number}.log'
+                opened.append(Launched(arguments, log, environment))
+                if text:
+                    wait_for(text, log)
+            return steady(pixels)
+        finally:
+            for launched in reversed(opened):
+                launched.stop()
+
+
+def wait_for(text: str, log: Path) -> None:
+    """Wait until a launch file has printed a text."""
+    deadline = time.monotonic() + START
+    while text not in log.read_text(errors='replace'):
+        if time.monotonic() > deadline:
+            raise PictureError(f"'{text}' was not printed within {START:g} s (see {log})")
+        time.sleep(LOOK)
+
+
+def surroundings(folder: Path, **more: str) -> Mapping[str, str]:
+    """Return an environment with a ROS master of its own."""
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        port = probe.getsockname()[1]
+    return {**os.environ, 'ROS_MASTER_URI': f'http://localhost:{port}', 'ROS_HOSTNAME': 'localhost',
+            'ROS_LOG_DIR': str(folder), 'XDG_CONFIG_HOME': str(folder), **more}
+
+
+def save(image: Image.Image, path: Path) -> None:
+    """Write a picture that is small as a file."""
+    width = min(WIDTH, image.width)
+    image = image.convert('RGB').resize(
+        (width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
+    image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE).save(path, optimize=True)
+    print(f'{path}: {path.stat().st_size / 1000:.0f} kB', flush=True)
+
+
+def main() -> int:
+    """Make all pictures; return an exit code."""
+    images = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / 'doc' / 'images'
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        for name, steps in WINDOWS.items():
+            with tempfile.TemporaryDirectory() as folder:
+                save(Image.fromarray(picture_of(steps, Path(folder))), images / name)
+        with tempfile.TemporaryDirectory() as folder:
+            if demo.main(['--output', folder]):
+                raise PictureError('the demo failed')
+            for name, drawn in DEMO.items():
+                save(Image.open(Path(folder, drawn)), images / name)
+    except (PictureError, OSError) as error:
+        sys.stderr.write(f'make_pictures: {error}\n')
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
