@@ -7,19 +7,22 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
 import yaml
 
 from rosbots_description.cli.gzclient import config_file, surroundings
 
 WINDOW = """#!/bin/sh
-echo "$@" > {folder}/arguments
+echo $$ "$@" > {folder}/arguments
 exec sleep 60
 """
 MAIN = ('import sys; from rosbots_description.cli import gzclient; '
         'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))')
 
 
-def test_the_window_has_frames_of_its_own_and_ends_with_its_parent(tmp_path):
+@pytest.fixture
+def window(tmp_path):
+    """A gzclient with a program in the place of RViz; and that one's number and arguments."""
     program = tmp_path / 'rviz'
     program.write_text(WINDOW.format(folder=tmp_path))
     program.chmod(0o755)
@@ -28,18 +31,34 @@ def test_the_window_has_frames_of_its_own_and_ends_with_its_parent(tmp_path):
         env={**os.environ, 'PATH': f'{tmp_path}:{os.environ["PATH"]}',
              'ROS_MASTER_URI': 'http://127.0.0.1:1'})
     try:
-        deadline = time.monotonic() + 20.0
-        while not (tmp_path / 'arguments').exists() or not (tmp_path / 'arguments').read_text():
+        deadline, arguments = time.monotonic() + 20.0, tmp_path / 'arguments'
+        while not arguments.exists() or not arguments.read_text():
             assert time.monotonic() < deadline
             time.sleep(0.01)
-        words = (tmp_path / 'arguments').read_text().split()
-        assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} \
-            <= set(words)
-        process.send_signal(signal.SIGTERM)
-        assert process.wait(10.0) == 0
+        yield process, arguments.read_text().split()
     finally:
         process.kill()
         process.wait()
+
+
+def test_the_window_has_frames_of_its_own_and_ends_when_told(window):
+    process, words = window
+    assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} \
+        <= set(words)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(10.0) == 0
+
+
+def test_the_window_ends_when_its_parent_is_killed(window):
+    process, words = window
+    process.kill()
+    process.wait()
+    deadline = time.monotonic() + 10.0
+    while Path('/proc', words[0]).exists():  # a zombie until somebody takes it
+        if ' Z ' in Path('/proc', words[0], 'stat').read_text():
+            break
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
 
 
 def test_rviz_gets_a_folder_and_log_levels_unless_the_user_has_given_them(tmp_path, monkeypatch):

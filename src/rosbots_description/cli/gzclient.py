@@ -1,6 +1,7 @@
 """The window onto the world: RViz, with a config that shows what the simulator shows."""
 
 import argparse
+import contextlib
 import ctypes
 import ctypes.util
 import os
@@ -15,6 +16,7 @@ from pathlib import Path
 from .gzserver import split_remappings
 
 # The window shows the world as the simulator has it, whatever TF says of the robots in it.
+_PR_SET_PDEATHSIG = 1  # of prctl(2)
 PERIOD = 1.0  # time between two looks after the simulator [s]
 OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 
@@ -79,10 +81,16 @@ def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
     """Return the environment in which RViz and Qt say only what somebody should read."""
     made = {'ROSCONSOLE_CONFIG_FILE': str(log_levels), **given}
     if not made.get('XDG_RUNTIME_DIR'):
-        folder = Path(tempfile.gettempdir(), f'rosbots-runtime-{os.getuid()}')
-        folder.mkdir(mode=0o700, exist_ok=True)
-        made['XDG_RUNTIME_DIR'] = str(folder)
+        with contextlib.suppress(OSError):  # then Qt says what it makes of it
+            folder = Path(tempfile.gettempdir(), f'rosbots-runtime-{os.getuid()}')
+            folder.mkdir(mode=0o700, exist_ok=True)
+            made['XDG_RUNTIME_DIR'] = str(folder)
     return made
+
+
+def _end_with_parent() -> None:
+    """Let the kernel end this process when its parent is killed and cannot."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
 
 
 def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
@@ -100,14 +108,19 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
             notice.show()
 
     told: list[int] = []
-    window = subprocess.Popen(command, env=environment)
+    window: subprocess.Popen | None = None
 
-    def end(number: int, _frame: object) -> None:
+    def end(number: int | None = None, _frame: object = None) -> None:
         told.append(number)
-        window.send_signal(signal.SIGINT)  # at which RViz takes leave of the master
+        if window is not None:
+            window.send_signal(signal.SIGINT)  # at which RViz takes leave of the master
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
+    window = subprocess.Popen(
+        command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  no threads yet
+    if told:  # meanwhile
+        end()
     watch = ServerWatch(tell)
     watch.look()
     while True:
