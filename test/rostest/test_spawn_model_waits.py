@@ -74,7 +74,7 @@ class SpawnModelTest(unittest.TestCase):
         self.assertEqual((request.model_name, request.robot_namespace), ('box', '/'))
         position = request.initial_pose.position
         self.assertEqual((position.x, position.z), (-0.1, 0.5))
-        self.assertEqual(request.model_xml, '<robot name="box"><link name="body" /></robot>')
+        self.assertEqual(request.model_xml, "<robot name='box'><link name='body'/></robot>")
 
     def test_ctrl_c_ends_the_waiting(self):
         self._start('-param', 'robot')

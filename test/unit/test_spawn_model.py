@@ -97,7 +97,7 @@ def test_package_to_model_touches_only_meshes():
 @pytest.mark.parametrize('text, complaint', [
     (b'<robot name="x"><link name="a">', 'Invalid XML: no element found: line 1, column 31'),
     (b'hello world', 'Invalid XML: syntax error: line 1, column 0'),
-    (b'<?xml version="1.0" encoding="klingon"?><robot/>', 'Invalid XML: unknown encoding'),
+    (b'<?xml version="1.0" encoding="klingon"?><a b="\xe9"/>', 'Invalid XML: unknown encoding'),
 ])
 def test_what_is_no_xml_is_refused_with_the_place(text, complaint):
     with pytest.raises(SourceError, match=complaint):

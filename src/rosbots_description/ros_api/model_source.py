@@ -1,9 +1,15 @@
-"""The XML of a model: read it, check that it is XML, write it out in the form that is sent."""
+"""The XML of a model: read it, check that it is XML, bring it into the form that is sent."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree
+from xml.parsers import expat
+
+from rosbots_description.sim.xml_text import plain_text
+
+_MESH_IN_PACKAGE = re.compile(r'(<mesh\b[^<>]*\bfilename\s*=\s*["\'])package://')
 
 
 class SourceError(Exception):
@@ -36,7 +42,9 @@ def read_file(name: str) -> bytes:
 
 
 def canonical_xml(text: bytes | str, package_to_model: bool = False) -> str:
-    """Return the XML as ASCII without declaration and comments.
+    """Return the XML as ASCII without declaration and comments, every element in its own line.
+
+    What is said about a line of it is so true of the file, and tags keep the prefix they have.
 
     Args:
         package_to_model: turn ``package://`` of mesh file names into ``model://``.
@@ -44,13 +52,19 @@ def canonical_xml(text: bytes | str, package_to_model: bool = False) -> str:
         SourceError: the text is not well-formed XML.
     """
     try:
-        root = ElementTree.fromstring(text)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        document = plain_text(text, 'the XML')
+        _check(document)
+        if '<!DOCTYPE' in document or not (document.isascii() or '<![CDATA[' not in document):
+            # Entities stay behind with the document type, and references mean nothing in CDATA.
+            document = ElementTree.tostring(ElementTree.fromstring(document)).decode('ascii')
+    except (ElementTree.ParseError, expat.ExpatError, ValueError, LookupError) as error:
         # LookupError and ValueError: an encoding that Python does not know.
         raise SourceError(f'Invalid XML: {error}') from error
     if package_to_model:
-        for mesh in root.iter('mesh'):
-            name = mesh.get('filename', '')
-            if name.startswith('package://'):
-                mesh.set('filename', 'model://' + name.removeprefix('package://'))
-    return ElementTree.tostring(root).decode('ascii')
+        document = _MESH_IN_PACKAGE.sub(r'\1model://', document)
+    return document.encode('ascii', 'xmlcharrefreplace').decode('ascii')
+
+
+def _check(document: str) -> None:
+    """Raise ExpatError where a text is not well-formed; prefixes need no declaration."""
+    expat.ParserCreate('utf-8').Parse(document.encode(), True)

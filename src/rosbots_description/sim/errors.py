@@ -19,7 +19,18 @@ class ModelError(SimError):
 
 
 class AbsentError(ModelError):
-    """A file that a description names is not there; who only shows it can live without."""
+    """A file that a description names is not where it says; a shape can be left out for it."""
+
+
+class ShapeError(ModelError):
+    """A shape that cannot be made; as in Gazebo the model stands without it.
+
+    `uri` is what names the mesh that is no good, '' where it is no mesh.
+    """
+
+    def __init__(self, sentence: str, uri: str = '') -> None:
+        super().__init__(sentence)
+        self.uri = uri
 
 
 class NotFoundError(SimError):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from lxml import etree
 
+from .markup import line_of
 from .markup_values import fault, suggestion
 from .pose import IDENTITY, Pose
 from .spec import FIXED, JointSpec, LinkSpec
@@ -90,7 +91,7 @@ def build_tree(
             raise fault(
                 joint.element,
                 f"child link '{joint.spec.child}' is already the child of joint "
-                f"'{first.spec.name}' (line {first.element.sourceline}); a link hangs on one joint",
+                f"'{first.spec.name}' ({line_of(first.element)}); a link hangs on one joint",
             )
         below.setdefault(joint.spec.parent, []).append(joint)
     root = _find_root(robot, by_name, joint_to)
@@ -110,8 +111,8 @@ def _unique(items: Sequence, kind: str) -> dict:
         if first is not item:
             raise fault(
                 item.element,
-                f"there is a {kind} '{item.spec.name}' already in line "
-                f'{first.element.sourceline}; {kind} names must differ',
+                f"there is a {kind} '{item.spec.name}' already in "
+                f'{line_of(first.element)}; {kind} names must differ',
             )
     return by_name
 
@@ -125,7 +126,7 @@ def _find_root(
     if not roots:
         first = next(iter(joint_to.values()))
         raise fault(first.element, 'the joints form a ring; one link must be child of no joint')
-    shown = ', '.join(f"'{name}' (line {links[name].element.sourceline})" for name in roots[:6])
+    shown = ', '.join(f"'{name}' ({line_of(links[name].element)})" for name in roots[:6])
     more = f' and {len(roots) - 6} more' if len(roots) > 6 else ''
     raise fault(
         robot,

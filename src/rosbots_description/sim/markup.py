@@ -12,6 +12,7 @@ from xml.parsers import expat
 from lxml import etree
 
 from .errors import ModelError
+from .xml_text import is_expanded_xacro, plain_text
 
 MAX_BYTES = 10_000_000
 MAX_DEPTH = 200
@@ -19,35 +20,53 @@ MAX_ELEMENTS = 100_000
 MAX_ATTRIBUTES = 200  # of one element; libxml2 compares each with each
 
 _ANY_BYTES = 'surrogateescape'  # in the name of a file that is not UTF-8
-_DECLARATION = re.compile(r'\s*<\?xml\b[^>]*\?>')
 _UNDEFINED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
-_XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
+XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
+_EXPANDED = '#xacro'  # behind the source in a tree's URL; a # of the source itself is quoted there
+_FARTHEST = 65535  # a line that libxml2 cannot store; it then tells where the tag ends
 
 
 def parse(text: str | bytes, source: str) -> etree._Element:
     """Return the root element of a document.
 
-    Every element knows its line (`sourceline`) and its `source` (see `source_of`), a file or
-    parameter name that begins every message.
+    Every element knows the line where its tag begins (`sourceline`) and its `source` (see
+    `source_of`), a file or parameter name that begins every message.
 
     Raises:
-        ModelError: the text is empty, too big, too deep, not UTF-8, no well-formed XML, has a
-            DTD (and so perhaps entities that multiply), or is xacro nobody expanded.
+        ModelError: the text is empty, too big, too deep, in no known encoding, no well-formed
+            XML, or has a DTD (and so perhaps entities that multiply).
     """
     document = _decode(text, source)
-    fault = check_bounds(document, source)
+    lines: list[int] = []
+    fault = check_bounds(document, source, lines=lines)
     if fault is not None:
         raise ModelError(_syntax_sentence(document, source, fault))
     root = _parse_document(document, source)
+    for element, line in zip(root.iter(etree.Element), lines, strict=False):
+        if line < _FARTHEST:
+            element.sourceline = line
     if b'xmlns=' in document:
         _drop_default_namespace(root)
-    _refuse_xacro(root, source)
     return root
 
 
 def source_of(element: etree._Element) -> str:
     """Return the source that was given to `parse`, as it was written."""
-    return unquote(str(element.getroottree().docinfo.URL), errors=_ANY_BYTES)
+    return _url(element)[0]
+
+
+def line_of(element: etree._Element) -> str:
+    """Return where an element stands in its source: 'line 12', or 'line 12 of the expanded xacro'.
+
+    What xacro wrote has other lines than the file that its user did.
+    """
+    return f'line {element.sourceline}' + (' of the expanded xacro' if _url(element)[1] else '')
+
+
+def _url(element: etree._Element) -> tuple[str, str]:
+    """Return the source and, where xacro wrote the document, a mark."""
+    source, mark, _ = str(element.getroottree().docinfo.URL).partition(_EXPANDED)
+    return unquote(source, errors=_ANY_BYTES), mark
 
 
 def root_tag(text: str | bytes) -> str | None:
@@ -64,10 +83,9 @@ def root_tag(text: str | bytes) -> str | None:
     parser = expat.ParserCreate('utf-8')
     parser.StartElementHandler = found
     parser.StartDoctypeDeclHandler = found  # it names the first element; no entity is looked at
-    if isinstance(text, str):
-        text = text.encode(errors='replace')
-    with contextlib.suppress(_Found, expat.ExpatError):
-        parser.Parse(text.lstrip(), True)
+    with contextlib.suppress(_Found, expat.ExpatError, LookupError, UnicodeDecodeError):
+        text = plain_text(text[:MAX_BYTES], 'the text')
+        parser.Parse(text.lstrip().encode(errors='replace'), True)
     return tags[0] if tags else None
 
 
@@ -76,7 +94,10 @@ class _Found(Exception):  # noqa: N818 (it ends a search)
 
 
 def check_bounds(
-    document: bytes, source: str, max_elements: int | None = None
+    document: bytes,
+    source: str,
+    max_elements: int | None = None,
+    lines: list[int] | None = None,
 ) -> expat.ExpatError | None:
     """Walk once through a document that may be meant to hurt, before a tree is made of it.
 
@@ -86,6 +107,7 @@ def check_bounds(
     Args:
         document: UTF-8; an XML declaration does not count.
         max_elements: instead of MAX_ELEMENTS.
+        lines: takes the line where each element's tag begins, in document order.
     Returns:
         The fault where the document is not well-formed; what comes behind it is not looked at.
     Raises:
@@ -100,6 +122,8 @@ def check_bounds(
     def start(tag: str, attributes: list[str]) -> None:
         nonlocal depth, count
         depth, count = depth + 1, count + 1
+        if lines is not None:
+            lines.append(parser.CurrentLineNumber)
         if depth > MAX_DEPTH:
             raise ModelError(_depth_sentence(source, parser.CurrentLineNumber))
         if count > most:
@@ -132,25 +156,21 @@ def _run(parser: expat.XMLParserType, document: bytes) -> expat.ExpatError | Non
 
 
 def _decode(text: str | bytes, source: str) -> bytes:
-    """Return the document as UTF-8 without its declaration, lines kept."""
+    """Return the document as UTF-8 without declaration and comments, lines kept."""
     if len(text) > MAX_BYTES:
         raise _too_big(len(text), source)
-    if isinstance(text, bytes):
-        try:
-            text = text.decode('utf-8-sig')
-        except UnicodeDecodeError as error:
-            line = text.count(b'\n', 0, error.start) + 1
-            raise ModelError(
-                f'{source}, line {line}: byte 0x{text[error.start]:02x} is not UTF-8; '
-                'save the file in UTF-8'
-            ) from error
-    text = text.removeprefix('\ufeff')
+    try:
+        text = plain_text(text, source)
+    except LookupError as error:
+        raise ModelError(f'{source}, line 1: {error}; save the file in UTF-8') from error
+    except UnicodeDecodeError as error:
+        line = error.object.count(b'\n', 0, error.start) + 1
+        raise ModelError(
+            f'{source}, line {line}: byte 0x{error.object[error.start]:02x} is not UTF-8; '
+            'save the file in UTF-8'
+        ) from error
     if not text.strip():
         raise ModelError(f'{source}: the text is empty; a <robot> or <sdf> element was expected')
-    # The text is decoded already: whatever encoding the declaration names would only confuse.
-    declaration = _DECLARATION.match(text)
-    if declaration:
-        text = '\n' * declaration[0].count('\n') + text[declaration.end():]
     try:
         document = text.encode()
     except UnicodeEncodeError as error:
@@ -177,6 +197,8 @@ def _parser(recover: bool = False) -> etree.XMLParser:
 
 def _parse_document(document: bytes, source: str) -> etree._Element:
     parser, url = _parser(), quote(source, errors=_ANY_BYTES)
+    if is_expanded_xacro(document):
+        url += _EXPANDED
     try:
         return etree.fromstring(document, parser, base_url=url)
     except etree.XMLSyntaxError as error:
@@ -233,27 +255,8 @@ def _depth_sentence(source: str, line: int) -> str:
     )
 
 
-def _refuse_xacro(root: etree._Element, source: str) -> None:
-    for element in root.iter(etree.Element):
-        name = f'{element.prefix}:{etree.QName(element).localname}' \
-            if element.prefix else element.tag
-        if name.startswith('xacro:'):
-            raise ModelError(
-                f'{source}, line {element.sourceline}: <{shortened(name)}> is unexpanded xacro; '
-                f'{_XACRO_CURE}'
-            )
-        places = [(f'{key}="{value}"', value) for key, value in element.attrib.items()]
-        places.append((f'<{name}>{(element.text or "").strip()}', element.text or ''))
-        for shown, value in places:
-            if _is_expression(value):
-                raise ModelError(
-                    f'{source}, line {element.sourceline}: {shortened(shown)} in '
-                    f'<{shortened(name)}> is unexpanded xacro; {_XACRO_CURE}'
-                )
-
-
-def _is_expression(value: str) -> bool:
-    """Tell whether a text has ${...} or $(...) in it; in one go, however many open."""
+def is_expression(value: str) -> bool:
+    """Tell whether a text has xacro's ${...} or $(...) in it; in one go, however many open."""
     return any(
         opened >= 0 and value.find(close, opened) >= 0
         for opened, close in ((value.find('${'), '}'), (value.find('$('), ')'))

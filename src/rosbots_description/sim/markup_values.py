@@ -11,8 +11,8 @@ from itertools import islice
 
 from lxml import etree
 
-from .errors import ModelError
-from .markup import shortened, source_of
+from .errors import ModelError, ShapeError
+from .markup import XACRO_CURE, is_expression, line_of, shortened, source_of
 from .pose import IDENTITY, Pose, from_rpy
 from .spec import Element
 
@@ -29,6 +29,7 @@ MOST_DAMPED = 1000.0  # [1/s] with steps of a millisecond a link then stands at 
 _OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'name',
            'plugin': 'name', 'sensor': 'name', 'material': 'name'}
 _CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')
+_INFINITE = ('inf', 'infinity')
 _TRUE = {'true', 'yes', '1'}
 _COUNTS = {1: 'one finite number', 2: 'two finite numbers', 3: 'three finite numbers',
            4: 'four finite numbers', 6: 'six finite numbers', 7: 'seven finite numbers'}
@@ -49,12 +50,13 @@ def fault(
 
 def place(element: etree._Element) -> str:
     """Return where an element stands, e.g. "robot_description, line 12: joint 'j1'"."""
-    where = f'{source_of(element)}, line {element.sourceline}'
-    owner = _owner(element)
-    return f'{where}: {owner}' if owner else where
+    where = f'{source_of(element)}, {line_of(element)}'
+    called = owner(element)
+    return f'{where}: {called}' if called else where
 
 
-def _owner(element: etree._Element) -> str:
+def owner(element: etree._Element) -> str:
+    """Return what an element belongs to or is, e.g. "link 'base'"; '' where nothing has a name."""
     for candidate in (element, *element.iterancestors()):
         name = candidate.get(_OWNERS[candidate.tag]) if candidate.tag in _OWNERS else None
         if name:
@@ -143,9 +145,15 @@ def numbers(
     if values is None:
         raise fault(
             element,
-            f'{attribute}="{text}" of <{tag_of(element)}> is wrong; it takes {_COUNTS[count]}',
+            f'{attribute}="{text}" of <{tag_of(element)}> {_no_number(text, "is wrong", count)}',
         )
     return values
+
+
+def _no_number(text: str, fault: str, count: int) -> str:
+    if is_expression(text):
+        return f'is unexpanded xacro; {XACRO_CURE}'
+    return f'{fault}; it takes {_COUNTS[count]}'
 
 
 def number(element: etree._Element, attribute: str, default: float | None = None) -> float:
@@ -153,17 +161,36 @@ def number(element: etree._Element, attribute: str, default: float | None = None
     return numbers(element, attribute, None if default is None else (default,), 1)[0]
 
 
+def limit_number(
+    element: etree._Element, attribute: str, default: float | None = None
+) -> float:
+    """Return one number from an attribute, as `number` does, or infinity where it says inf."""
+    text = element.get(attribute, '').strip().lower()
+    if text.lstrip('+-') in _INFINITE:
+        return -math.inf if text.startswith('-') else math.inf
+    return number(element, attribute, default)
+
+
 def positive(element: etree._Element, attribute: str, count: int = 1) -> tuple[float, ...]:
-    """Return sizes: finite numbers greater than zero [m]."""
+    """Return sizes: finite numbers greater than zero [m].
+
+    Raises:
+        ShapeError: one is zero, so that there is no shape.
+        ModelError: one is negative, or as `numbers`.
+    """
     values = numbers(element, attribute, count=count)
-    if min(values) <= 0.0:
-        raise fault(
-            element,
-            f'{attribute}="{element.get(attribute)}" of <{tag_of(element)}> is wrong; '
-            'a size must be greater than zero',
-        )
+    written = f'{attribute}="{element.get(attribute)}" of <{tag_of(element)}>'
+    require_size(element, written, values)
     require_near(element, attribute, values)
     return values
+
+
+def require_size(element: etree._Element, written: str, values: Collection[float]) -> None:
+    """Refuse sizes that are not greater than zero; those of `positive` are its errors, too."""
+    if min(values) < 0.0:
+        raise fault(element, f'{written} is wrong; a size must be greater than zero')
+    if min(values) == 0.0:
+        raise ShapeError(f'{written} makes it empty')
 
 
 def require_near(element: etree._Element, what: str, values: Collection[float]) -> None:
@@ -231,7 +258,7 @@ def scalar(element: etree._Element) -> str:
 
 def is_endless(element: etree._Element) -> bool:
     """Tell whether the element says inf or Infinity, whatever the sign."""
-    return scalar(element).lower().lstrip('+-') in ('inf', 'infinity')
+    return scalar(element).lower().lstrip('+-') in _INFINITE
 
 
 def scalar_number(element: etree._Element) -> float:
@@ -243,8 +270,10 @@ def scalar_numbers(element: etree._Element, count: int) -> tuple[float, ...]:
     """Return the finite numbers of <tag value="1 2 3"/> or <tag>1 2 3</tag>."""
     values = parse_numbers(scalar(element), count)
     if values is None:
+        shown = f"is '{scalar(element)}'"
         raise fault(
-            element, f"<{tag_of(element)}> is '{scalar(element)}'; it takes {_COUNTS[count]}"
+            element,
+            f'<{tag_of(element)}> {_no_number(scalar(element), shown, count)}',
         )
     return values
 

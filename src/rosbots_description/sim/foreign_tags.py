@@ -1,0 +1,71 @@
+"""What a description has that is not its own language: xacro nobody expanded, foreign prefixes.
+
+As in Gazebo a tag of another namespace is ignored, with all that is in it, and an expression is the
+text that it is. Only where a number is needed is there none; see `markup_values`.
+"""
+
+from lxml import etree
+
+from .markup import XACRO_CURE, is_expression, line_of, shortened
+from .markup_values import tag_of
+
+_XACRO = 'xacro:'
+_OWN = ('gazebo', 'plugin', 'sensor')  # whatever stands in these is the business of who reads them
+
+
+def remove_xacro(root: etree._Element) -> list[str]:
+    """Remove all tags of xacro, in place; return the sentences to warn with."""
+    tags = _outermost(root)
+    shown = [_opening(element) for element in tags]
+    for element in tags:
+        element.getparent().remove(element)
+    notes = []
+    if shown:
+        notes.append(f'unexpanded xacro is ignored: {_listed(shown)}; {XACRO_CURE}')
+    expressions = _expressions(root)
+    if expressions:
+        notes.append(
+            f'unexpanded xacro is taken as it stands: {_listed(expressions)}; {XACRO_CURE}'
+        )
+    return notes
+
+
+def foreign_tags(robot: etree._Element) -> list[str]:
+    """Return the sentence to warn with of tags of a URDF that have a prefix."""
+    shown = [
+        _opening(element) for child in robot if child.tag not in _OWN
+        for element in child.iter(etree.Element) if ':' in tag_of(element)
+    ]
+    return [f'tags of another namespace are ignored: {_listed(shown)}'] if shown else []
+
+
+def _outermost(root: etree._Element) -> list[etree._Element]:
+    """Return the tags of xacro that are in no other such tag, in document order."""
+    found, waiting = [], [root]
+    while waiting:
+        for child in waiting.pop():
+            (found if tag_of(child).startswith(_XACRO) else waiting).append(child)
+    return sorted(found, key=lambda element: element.sourceline)
+
+
+def _opening(element: etree._Element) -> str:
+    attributes = ''.join(f' {key}="{value}"' for key, value in element.attrib.items())
+    return f'<{shortened(tag_of(element) + attributes, 100)}> ({line_of(element)})'
+
+
+def _expressions(root: etree._Element) -> list[str]:
+    found = []
+    for element in root.iter(etree.Element):
+        places = [(f'{key}="{value}"', value) for key, value in element.attrib.items()]
+        places.append(((element.text or '').strip(), element.text or ''))
+        found += [
+            f'{shortened(shown, 100)} in <{tag_of(element)}> ({line_of(element)})'
+            for shown, value in places if is_expression(value)
+        ]
+    return found
+
+
+def _listed(shown: list[str]) -> str:
+    most = 6
+    more = f' and {len(shown) - most} more' if len(shown) > most else ''
+    return ', '.join(shown[:most]) + more
