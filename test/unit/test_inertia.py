@@ -10,6 +10,7 @@ from rosbots_description.sim.inertia import (
     STAND_IN_RADIUS,
     is_positive,
     merge,
+    possible,
     principal_axes,
     tensor,
     turnable,
@@ -91,9 +92,47 @@ def test_only_the_axis_without_inertia_gets_some():
     assert turned.izz == pytest.approx(0.4 * 2.0 * STAND_IN_RADIUS**2)
 
 
-def test_a_tensor_of_no_real_body_is_left_alone():
-    obstacle = Inertial(1.0, ixx=1.0, iyy=100.0, izz=1.0)
-    assert turnable(obstacle) is obstacle
+def test_a_tensor_that_no_body_has_becomes_the_nearest_that_one_has():
+    rosbot = Inertial(1.0, ixx=0.01, iyy=0.01, izz=0.01, ixy=0.01, ixz=0.01, iyz=0.01)
+    nearest = tensor(possible(rosbot))
+    # Moments (0.03, 0, 0) become (0.02, 0.01, 0.01): those of a rod, about the same axes.
+    np.testing.assert_allclose(np.linalg.eigvalsh(nearest), (0.01, 0.01, 0.02), rtol=1e-9)
+    np.testing.assert_allclose(nearest @ np.ones(3), 0.02 * np.ones(3), rtol=1e-9)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_nothing_that_a_body_can_have_is_nearer_than_the_tensor_used(seed):
+    random = np.random.default_rng(seed)
+    root = random.normal(size=(3, 3))
+    full = root + root.T  # as a rule indefinite
+    given = Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
+                     ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
+    used = tensor(possible(given))
+    moments = np.linalg.eigvalsh(used)
+    assert moments[2] <= moments[0] + moments[1] + 1e-9
+    distance = np.linalg.norm(used - full)
+    for _ in range(200):
+        step = random.normal(size=(3, 3)) * random.choice([1e-3, 0.1, 1.0])
+        second = np.trace(used) / 2 * np.eye(3) - used  # positive semidefinite for a body
+        values, axes = np.linalg.eigh(second + step + step.T)
+        second = axes @ np.diag(np.maximum(values, 0.0)) @ axes.T
+        other = np.trace(second) * np.eye(3) - second
+        assert np.linalg.norm(other - full) >= distance - 1e-9
+
+
+@pytest.mark.parametrize('moments', [
+    (1.0, 1.0, 2.0),  # a flat disc
+    (0.12, 0.24, 0.39),  # a plate of 0.125, 0.235 and 0.36, written with two digits
+    (1.0, 1.0, 0.0),  # a rod
+])
+def test_a_tensor_that_a_body_can_have_but_for_rounding_is_left_alone(moments):
+    given = Inertial(1.0, ixx=moments[0], iyy=moments[1], izz=moments[2])
+    assert possible(given) is given
+
+
+def test_the_first_excess_that_is_more_than_rounding_is_mended():
+    assert possible(Inertial(1.0, ixx=1.0, iyy=1.0, izz=2.22)).izz == 2.22
+    assert possible(Inertial(1.0, ixx=1.0, iyy=1.0, izz=2.23)).izz < 2.23
 
 
 def test_a_negative_principal_moment_is_seen():

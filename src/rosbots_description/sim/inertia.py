@@ -13,8 +13,15 @@ from .spec import Inertial
 # this radius [m] about the axes in question.
 STAND_IN_RADIUS = 0.1
 
+# By how much of itself the greatest principal moment may exceed the sum of the others: so much does
+# that of a flat plate if two digits are written, each number being off by up to a twentieth.
+ROUNDING = 0.1
+
 # Significant digits that every linear algebra library agrees on.
 _DIGITS = 12
+
+# A moment smaller than this, in parts of the greatest, is zero but for rounding.
+_NEARLY_ZERO = 1e-9
 
 # Principal moments below this [m^2], times the mass, count as zero.
 _ZERO_RADIUS_SQUARED = 1e-12
@@ -102,11 +109,61 @@ def in_link_axes(inertial: Inertial) -> Inertial:
     )
 
 
+def possible(inertial: Inertial) -> Inertial:
+    """Return `inertial` with the nearest tensor that a body can have; unchanged where it is one.
+
+    The principal moments of a body are sums of two of its second moments, J1 = s2 + s3 and so on,
+    s >= 0; so none is greater than the other two together. Nearest is meant in the Frobenius norm:
+    the axes stay, and the moments are projected onto the cone of those sums. A tensor that fails by
+    no more than ROUNDING of its greatest moment is that of a body, written with few digits.
+    """
+    moments, axes = np.linalg.eigh(tensor(inertial))
+    greatest = max(map(abs, moments))
+    negative = moments[0] < -_NEARLY_ZERO * greatest
+    if not negative and 2.0 * greatest - sum(moments) <= ROUNDING * greatest:
+        return inertial
+    nearest = settle(axes @ np.diag(_sums_of_two(moments)) @ axes.T)
+    return replace(
+        inertial,
+        ixx=float(nearest[0, 0]), iyy=float(nearest[1, 1]), izz=float(nearest[2, 2]),
+        ixy=float(nearest[0, 1]), ixz=float(nearest[0, 2]), iyz=float(nearest[1, 2]),
+    )
+
+
+def impossible(link: str, given: Inertial, used: Inertial) -> str:
+    """Return the sentence to warn with where `possible` has changed a link's tensor."""
+    return (
+        f"link '{link}': no body has the inertia {_shown(given)} [kg m^2], as a principal moment "
+        'is greater than the other two together, or negative; the nearest that a body can have is '
+        f'used: {_shown(used)}'
+    )
+
+
+def _shown(inertial: Inertial) -> str:
+    return ' '.join(
+        f'{key}={getattr(inertial, key):.6g}' for key in ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
+    )
+
+
+def _sums_of_two(moments: np.ndarray) -> np.ndarray:
+    """Return the point nearest to `moments` among sums of two of three numbers that are >= 0.
+
+    Of the three numbers some are zero, and the others solve a least-squares problem (Karush, Kuhn
+    and Tucker); there are seven ways to choose them.
+    """
+    sums, best = np.ones((3, 3)) - np.eye(3), np.zeros(3)
+    for chosen in ([0], [1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]):
+        numbers = np.linalg.lstsq(sums[:, chosen], moments, rcond=None)[0]
+        point = sums[:, chosen] @ np.maximum(numbers, 0.0)
+        if np.linalg.norm(point - moments) < np.linalg.norm(best - moments):
+            best = point
+    return best
+
+
 def turnable(inertial: Inertial) -> Inertial:
     """Return `inertial` with each zero principal moment replaced by that of a small solid ball.
 
-    2/5 m r^2 with r = STAND_IN_RADIUS. An inertial that can turn is returned unchanged, also
-    where its tensor is one that no real body has.
+    2/5 m r^2 with r = STAND_IN_RADIUS. An inertial that can turn is returned unchanged.
     """
     moments, axes = principal_axes(inertial)
     zero = _ZERO_RADIUS_SQUARED * inertial.mass
@@ -123,7 +180,7 @@ def turnable(inertial: Inertial) -> Inertial:
 def is_positive(inertial: Inertial) -> bool:
     """Tell whether no principal moment is negative (rounding apart)."""
     moments, _ = principal_axes(inertial)
-    return min(moments) >= -1e-9 * max(abs(moment) for moment in moments)
+    return min(moments) >= -_NEARLY_ZERO * max(abs(moment) for moment in moments)
 
 
 def _nearest_order(axes: np.ndarray) -> list[int]:
