@@ -7,6 +7,7 @@ import time
 import pytest
 from support import ROOT, SETTLED, SPAWN_POSE, robot_spec
 
+from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.model_search import ModelSearch, find_world
 from rosbots_description.sim.pose import Pose, compose, to_rpy
 from rosbots_description.sim.spec import Box
@@ -234,3 +235,19 @@ def test_looking_for_overlaps_changes_no_motion():
         ends.append([model.pose for model in world.models.values()])
         world.close()
     assert ends[0] == ends[1]
+
+
+def test_a_world_stands_without_a_model_that_the_engine_does_not_take(world, monkeypatch, caplog):
+    spawn = world.spawn
+
+    def refuse_one(spec, name, pose):
+        if name == 'bad':
+            raise ModelError('no room')
+        return spawn(spec, name, pose)
+
+    monkeypatch.setattr(world, 'spawn', refuse_one)
+    model = '<model name="{}"><static>1</static><link name="l"/></model>'
+    populate(world, load('<sdf version="1.6"><world name="w">'
+                         f'{model.format("bad")}{model.format("good")}</world></sdf>'))
+    assert list(world.models) == ['good']
+    assert caplog.messages == ["model 'bad': no room; the world stands without this model"]

@@ -205,11 +205,72 @@ def _inverse(q):
     ('<physics><real_time_update_rate>1e-7</real_time_update_rate></physics>', 'at least 0.001'),
     ('<physics><max_step_size>fast</max_step_size></physics>', 'it takes one finite number'),
     ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
-    ('<light type="laser" name="l"/>', "light type 'laser' is unknown"),
-    ('<light type="point"/>', 'a <light> without name'),
 ])
 def test_what_is_broken_in_the_world_itself_is_refused(body, part):
     assert part in complaint(body)
+
+
+@pytest.mark.parametrize('body, said, without', [
+    ('<light type="laser" name="l"/>', "light type 'laser' is unknown", 'without this light'),
+    ('<light type="point"/>', 'a <light> without name', 'without this light'),
+    ('<light name="l"><pose>a b</pose></light>', 'it takes six finite numbers', 'this light'),
+    ('<frame/>', 'a <frame> without name', 'without this frame'),
+    ('<frame name="f"><pose>far away</pose></frame>', 'six finite numbers', 'without this frame'),
+    (BOX.format('b', '1 2 nan'), 'it takes six finite numbers', 'without this model'),
+    ('<include><uri>model://ground_plane</uri><name>g</name><pose>a</pose></include>',
+     'it takes six finite numbers', 'without this model'),
+    ('<include><uri>https://fuel/x</uri></include>', 'not fetched', 'without this model'),
+    ('<model/>', 'a <model> without name', 'without this model'),
+    ('<state world_name="w"><model name="m"><pose>a</pose></model></state>',
+     'it takes six finite numbers', "the world's <state> is not applied"),
+])
+def test_a_world_stands_without_an_element_that_is_broken(body, said, without, caplog):
+    world = load(body + GROUND)
+    assert [model.name for model, _ in world.models] == ['ground_plane']
+    (fault,) = world.faults
+    assert said in fault
+    (error,) = [r.getMessage() for r in caplog.records if r.levelno == logging.ERROR]
+    assert error.startswith(fault) and without in error
+
+
+def test_a_house_of_many_links_stands_without_the_one_mesh_that_is_missing(caplog):
+    wall = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
+    mailbox = ('<{0} name="{0}"><geometry><mesh><uri>model://mailbox/meshes/mailbox.dae</uri>'
+               '</mesh></geometry></{0}>')
+    house = (f'<model name="house"><static>1</static><link name="wall">{wall}</link>'
+             f'<link name="mailbox">{mailbox.format("collision")}{mailbox.format("visual")}</link>'
+             '</model>')
+    world = load(GROUND + house)
+    assert [model.name for model, _ in world.models] == ['ground_plane', 'house']
+    spec = world.models[1][0]
+    assert [len(link.collisions) for link in spec.links] == [1, 0]
+    assert spec.left_out == ("mesh 'model://mailbox/meshes/mailbox.dae'",)
+    assert world.faults == ()
+    (said,) = caplog.messages
+    assert said.endswith("; left out: collision of link 'mailbox' (line 1), "
+                         "visual of link 'mailbox' (line 1)")
+
+
+@pytest.mark.parametrize('pose, position, count', [
+    ('1 2 0.5 0 0', (1.0, 2.0, 0.5), 5), ('1', (1.0, 0.0, 0.0), 1),
+    ('1 2 3 0 0 0 7', (1.0, 2.0, 3.0), 7),
+])
+def test_a_pose_of_too_few_or_many_numbers_is_read_as_in_gazebo(pose, position, count, caplog):
+    box = BOX.format('b', pose)
+    include = ('<include><uri>model://ground_plane</uri><name>floor</name>'
+               f'<pose>{pose}</pose></include>')
+    world = load(f'{box}\n{include}')
+    assert [at.position for _, at in world.models] == [position, position]
+    said = [message for message in caplog.messages if 'six numbers' in message]
+    assert len(said) == 2
+    assert said[1].startswith(f'w.world, line 2: a <pose> has six numbers, this one has {count}:')
+
+
+def test_a_pose_within_a_plugin_is_left_as_it_is(caplog):
+    plugin = '<plugin name="p" filename="libp.so"><pose>1 2 3</pose></plugin>'
+    model, _ = load(f'<model name="m"><link name="l"/>{plugin}</model>').models[0]
+    assert model.plugins[0].element.child('pose').text == '1 2 3'
+    assert 'six numbers' not in caplog.text
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):

@@ -3,12 +3,13 @@
 import logging
 import os
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from .errors import ModelError
+from .errors import ModelError, SimError
 from .files import read_file
 from .markup import MAX_BYTES
 from .markup_values import fault, required_name
@@ -37,6 +38,12 @@ _IDLE = ('gui', 'audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates'
 _SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
            'libgazebo_ros_init.so', 'libgazebo_ros_factory.so')
 
+# What is said of an element that is no good.
+_WITHOUT = {
+    'model': 'the world stands without this model', 'light': 'the world stands without this light',
+    'frame': 'the world stands without this frame', 'state': "the world's <state> is not applied",
+}
+
 
 @dataclass
 class _Content:
@@ -58,8 +65,8 @@ def load_world(
 ) -> WorldSpec:
     """Read and check a world file.
 
-    A model that cannot be simulated, or an <include> that finds none, is an error in the log and
-    in `WorldSpec.faults`; the others stand, as in Gazebo.
+    A model, lamp, frame or state that is no good, or an <include> that finds none, is an error in
+    the log and in `WorldSpec.faults`; the others stand, as in Gazebo.
 
     Args:
         source: the file's path; it begins every message, and addresses may be relative to it.
@@ -76,14 +83,16 @@ def load_world(
         raise fault(document.root, 'it has no <world>; a world file holds one')
     document.notes.check(world, _READ, _IDLE)
     content = _Content()
-    frames = _frames(world)
+    frames = _frames(world, content)
     for element in world:
         reader = _READERS.get(element.tag)
         if reader is not None:
-            reader(document, element, frames, content)
+            with _left_out(content, element.tag):
+                reader(document, element, frames, content)
     states, time = (), 0.0
     if world.find('state') is not None:
-        states, time = read_states(document, world.find('state'))
+        with _left_out(content, 'state'):
+            states, time = read_states(document, world.find('state'))
     spec = WorldSpec(
         world.get('name', 'default'),
         tuple(content.models.values()),
@@ -118,15 +127,16 @@ def populate(world: World, spec: WorldSpec) -> None:
     """Put everything that moves or stands into a world that is empty, and set its clock.
 
     Lights and scene stay in `spec` for those who serve them; plugins of the world that do more
-    than the server does anyway are named as not run.
-
-    Raises:
-        ModelError: the world has a model of the same name already.
+    than the server does anyway are named as not run. A model that the world does not take is an
+    error in the log, and the others stand.
     """
     world.set_physics(spec.physics)
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
     for model, pose in spec.models:
-        world.spawn(model, model.name, pose)
+        try:
+            world.spawn(model, model.name, pose)
+        except SimError as error:
+            logger.error("model '%s': %s; %s", model.name, error, _WITHOUT['model'])
     for state in spec.states:
         model = world.models.get(state.name)
         if model is None:
@@ -141,16 +151,28 @@ def populate(world: World, spec: WorldSpec) -> None:
             )
 
 
-def _frames(world: etree._Element) -> Frames:
+@contextmanager
+def _left_out(content: _Content, tag: str) -> Iterator[None]:
+    """Turn a fault in one element of a world into an error in the log; the world stands without."""
+    try:
+        yield
+    except ModelError as error:
+        content.faults.append(str(error))
+        logger.error('%s; %s', error, _WITHOUT.get(tag, _WITHOUT['model']))
+
+
+def _frames(world: etree._Element, content: _Content) -> Frames:
     """Return the frames that models of a world may be posed in."""
     frames = Frames('world')
     for element in world:
         if element.tag in ('model', 'include'):
             name = element.get('name') or text_of(element, 'name')
             if name:
-                frames.add(name, element)
+                with suppress(ModelError):  # its reader says it
+                    frames.add(name, element)
         elif element.tag == 'frame':
-            frames.add(required_name(element), element, element.get('attached_to', ''))
+            with _left_out(content, 'frame'):
+                frames.add(required_name(element), element, element.get('attached_to', ''))
     return frames
 
 
@@ -167,11 +189,7 @@ def _read_model(
 def _read_include(
     document: SdfDocument, element: etree._Element, frames: Frames, content: _Content
 ) -> None:
-    try:
-        other = document.included(element)
-    except ModelError as error:
-        _leave_out(content, error)
-        return
+    other = document.included(element)
     light = other.root.find('light')
     if other.root.find('model') is None and light is not None:
         posed = light if element.find('pose') is None else element
@@ -188,21 +206,13 @@ def _add_model(
     content: _Content,
     read: Callable[[], ModelParts],
 ) -> None:
-    try:
-        parts = read()
-        if not parts.name:
-            raise fault(element, 'the model has no name; add <name>...</name>')
-        name = _free_name(document, element, parts.name, content)
-        own = element.find('pose') is not None or parts.pose_element is None
-        pose = frames.place(element if own else parts.pose_element.getparent())
-        content.models[name] = (model_spec(parts, name), pose)
-    except ModelError as error:
-        _leave_out(content, error)
-
-
-def _leave_out(content: _Content, error: ModelError) -> None:
-    content.faults.append(str(error))
-    logger.error('%s; the world stands without this model', error)
+    parts = read()
+    if not parts.name:
+        raise fault(element, 'the model has no name; add <name>...</name>')
+    name = _free_name(document, element, parts.name, content)
+    own = element.find('pose') is not None or parts.pose_element is None
+    pose = frames.place(element if own else parts.pose_element.getparent())
+    content.models[name] = (model_spec(parts, name), pose)
 
 
 def _free_name(

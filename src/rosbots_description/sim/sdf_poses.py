@@ -1,0 +1,34 @@
+"""Poses of SDF that are too short or too long, as Gazebo reads them."""
+
+from lxml import etree
+
+from .markup import line_of, shortened
+from .markup_values import parse_numbers, scalar
+
+_NUMBERS = 6  # x y z roll pitch yaw
+_FOREIGN = ('plugin',)  # what stands in these is the business of who reads them
+
+
+def complete_poses(root: etree._Element) -> list[str]:
+    """Give each <pose> of numbers six of them, in place; return the sentences to warn with.
+
+    As in Gazebo what is missing is 0, and what is too much is not read.
+    """
+    sentences = []
+    for element in root.iter('pose'):
+        text = scalar(element)
+        count = len(text.split())
+        if count in (0, _NUMBERS) or parse_numbers(text, count) is None or _is_foreign(element):
+            continue
+        if count == 7 and element.get('rotation_format') == 'quat_xyzw':
+            continue
+        element.text = ' '.join([*text.split(), *'000000'][:_NUMBERS])
+        sentences.append(
+            f'{line_of(element)}: a <pose> has six numbers, this one has {count}: '
+            f"'{shortened(text, 100)}' is read as '{shortened(element.text, 100)}'"
+        )
+    return sentences
+
+
+def _is_foreign(element: etree._Element) -> bool:
+    return any(ancestor.tag in _FOREIGN for ancestor in element.iterancestors())
