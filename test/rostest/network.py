@@ -60,7 +60,7 @@ OF_ROSOUT = {'/rosout'}  # rosout's own /rosout_agg is there where roslaunch sta
 OUR_TOPICS = {
     '/gazebo/visual_markers', '/gazebo/view/frames', '/gazebo/view/image_raw', '/tf_static',
 }
-OUR_SERVICES = {'step'}
+OUR_SERVICES = {'get_model_omissions', 'step'}
 # What the article's robot adds when it is spawned.
 OF_ROBOT = {'/odom', '/joint_states', '/tf', '/part2_cmr/cmd_vel'}
 PARAMETERS = {

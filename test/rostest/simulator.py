@@ -1,5 +1,6 @@
 """What the tests of the running simulator share: its services, and waiting for conditions."""
 
+import subprocess
 import time
 import unittest
 
@@ -44,6 +45,21 @@ def topics_of(node='/gazebo'):
     """Return the names of the topics that the node publishes or subscribes."""
     published, subscribed, _ = rospy.get_master().getSystemState()[2]
     return {name for name, nodes in published + subscribed if node in nodes}
+
+
+SENSOR_BOX = """<robot name="box">
+<link name="body"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
+  <collision><geometry><mesh filename="file:///nowhere/nope.stl"/></geometry></collision></link>
+<gazebo reference="body"><sensor name="camera1" type="camera"/></gazebo>
+<gazebo><plugin name="imu" filename="libgazebo_ros_imu.so"/></gazebo>
+</robot>"""
+
+
+def spawn_model(name, text):
+    """Run the real spawn_model on a text until it ends; return what it said."""
+    return subprocess.run(
+        ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-stdin', '-model', name], input=text,
+        capture_output=True, text=True, timeout=30, check=False)
 
 
 class SimulatorTest(unittest.TestCase):

@@ -24,13 +24,10 @@ def robot(*parts):
 
 # What is sent, and words that the sentence must hold: place, fault or cure.
 REFUSED = {
-    'missing mesh': (robot(LINK.format('a', MESH.format(
-        'package://rosbots_description/meshes/nope.dae'))), ['nope.dae']),
     'unclosed tags': ('<robot name="bad"><link name="a">', ['line']),
-    'mesh file that is not there': (
-        robot(LINK.format('a', MESH.format('file:///nowhere/nope.stl'))), ['/nowhere/nope.stl']),
-    'mesh of a model': (
-        robot(LINK.format('a', MESH.format('model://nowhere/nope.stl'))), ['model://nowhere']),
+    'mesh that climbs out of its package': (
+        robot(LINK.format('a', MESH.format('package://rosbots_description/%2e%2e/m.stl'))),
+        ['leads out of package']),
     'crossed tags': ('<robot name="bad"><link name="a"></robot></link>', ['line']),
     'endless comment': (robot('<!-- ', LINK.format('a', '')), ['<!--', '-->']),
     'no inertial': (robot('<link name="a"/>'), ["'a'", '<inertial>']),

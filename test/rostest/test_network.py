@@ -18,7 +18,7 @@ from network import (
     services_of,
     type_and_sum,
 )
-from rosbots_msgs.srv import Step
+from rosbots_msgs.srv import GetModelOmissions, Step
 from simulator import SimulatorTest, proxy, topics_of, wait_until
 
 METRICS = '/gazebo/performance_metrics'
@@ -35,6 +35,8 @@ class NetworkTest(SimulatorTest):
             with self.subTest(name):
                 self.assertEqual(type_and_sum(name), expected)
         self.assertEqual(type_and_sum('step'), ('rosbots_msgs/Step', Step._md5sum))
+        self.assertEqual(type_and_sum('get_model_omissions'),
+                         ('rosbots_msgs/GetModelOmissions', GetModelOmissions._md5sum))
 
     def test_topics(self):
         wait_until(lambda: set(PUBLISHED) <= topics_of(), 'dynamic_reconfigure')

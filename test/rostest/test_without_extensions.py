@@ -15,7 +15,7 @@ from network import (
     services_of,
     type_and_sum,
 )
-from simulator import SimulatorTest, topics_of, wait_until
+from simulator import SENSOR_BOX, SimulatorTest, spawn_model, topics_of, wait_until
 
 OF_GAZEBO = set(PUBLISHED) | set(SUBSCRIBED) | OF_ROSOUT
 
@@ -44,6 +44,12 @@ class WithoutExtensionsTest(SimulatorTest):
         self.spawn()
         self.assertEqual(topics_of(), OF_GAZEBO | OF_ROBOT)
         self.assertEqual(services_of(), set(SERVICES))
+
+    def test_spawn_model_is_content_with_a_simulator_that_cannot_tell_what_it_left_out(self):
+        done = spawn_model('box', SENSOR_BOX)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('Successfully spawned entity', done.stdout)
+        self.assertNotIn('without', done.stdout + done.stderr)
 
 
 if __name__ == '__main__':

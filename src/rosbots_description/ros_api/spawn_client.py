@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import sys
 import threading
@@ -10,10 +11,12 @@ import time
 from collections.abc import Sequence
 from xml.sax.saxutils import escape
 
+import rosgraph
 import rospy
 from gazebo_msgs.msg import ModelStates
 from gazebo_msgs.srv import DeleteModel
 from geometry_msgs.msg import Point, Pose, Quaternion
+from rosbots_msgs.srv import GetModelOmissions
 from std_srvs.srv import Empty
 
 from rosbots_description.ros_api.client_node import start_node
@@ -38,6 +41,7 @@ _SETTLE = 1.0  # [s] wall time that a simulator may need between its answer and 
 # As Gazebo's client asks for it; the server looks along its model path, and nowhere else.
 _DATABASE = ('<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
              '</world></sdf>')
+_LISTED = 12  # parts a model stands without that are named one by one
 _LAST_WORD = 1.5  # [s] wall time for the deletion at the end; Ctrl-C has to end us within 2 s
 
 
@@ -54,7 +58,7 @@ def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
         <gazebo_namespace>/model_states (gazebo_msgs/ModelStates)
     Calls:
         <gazebo_namespace>/spawn_urdf_model or spawn_sdf_model, set_model_configuration (-J),
-        unpause_physics (-unpause), delete_model (-b)
+        unpause_physics (-unpause), delete_model (-b); get_model_omissions where there is one
     """
     try:
         start_node('spawn_model', arguments, anonymous=True)
@@ -149,6 +153,7 @@ def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int
                  pose, flags.reference_frame, flags.gazebo_namespace):
         rospy.logerr('Spawn service failed. Exiting.')
         return FAILED
+    _tell_omissions(flags.model, flags.gazebo_namespace)
     if joints and not _set_joints(flags, joints):
         rospy.logerr('SetModelConfiguration service failed. Exiting.')
         return FAILED
@@ -159,6 +164,22 @@ def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int
         rospy.loginfo('Waiting for shutdown to delete model %s', flags.model)
         rospy.spin()
     return DONE
+
+
+def _tell_omissions(model: str, gazebo_namespace: str) -> None:
+    """Log what the simulator left out of the model, if it is one that can tell.
+
+    Gazebo has no such service, so whatever fails here is nobody's business.
+    """
+    service = rospy.resolve_name(gazebo_namespace + '/get_model_omissions')
+    with contextlib.suppress(rosgraph.MasterException, rospy.ServiceException, rospy.ROSException):
+        rosgraph.Master(rospy.get_name()).lookupService(service)
+        ask = rospy.ServiceProxy(service, GetModelOmissions)
+        omissions = interruptibly(lambda: ask(model), patience=_SETTLE).omissions
+        if omissions:
+            more = f' and {len(omissions) - _LISTED} more' if len(omissions) > _LISTED else ''
+            rospy.logwarn('spawned without: %s%s; see doc/gazebo_compatibility.md and the log of '
+                          'the simulator', ', '.join(omissions[:_LISTED]), more)
 
 
 def _set_joints(flags: argparse.Namespace, joints: dict[str, float]) -> bool | None:

@@ -5,6 +5,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gazebo_msgs.srv import SpawnModel, SpawnModelRequest, SpawnModelResponse
+from rosbots_msgs.srv import (
+    GetModelOmissions,
+    GetModelOmissionsRequest,
+    GetModelOmissionsResponse,
+)
 
 from ...sim.bullet_description import mesh_needs
 from ...sim.errors import ModelError, NotFoundError
@@ -20,7 +25,7 @@ from ...sim.world import World
 from ...sim.world_spec import LightSpec
 from ..conversions import read_pose
 from ..server import Server
-from .registry import CallError, refuse, service
+from .registry import EXTENSIONS, CallError, refuse, service
 
 logger = logging.getLogger(__name__)
 
@@ -95,6 +100,7 @@ def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, P
         request.model_name,
         robot_namespace=request.robot_namespace,
         find_package=server.find_package,
+        find_model=server.find_model,
     )
 
 
@@ -141,6 +147,17 @@ def warn_overlap(world: World, model: Model) -> None:
             model.name,
             ' and '.join(f"'{name}' ({depth:.2g} m deep)" for name, depth in deep.items()),
         )
+
+
+@service('get_model_omissions', GetModelOmissions, table=EXTENSIONS)
+def get_model_omissions(
+    server: Server, request: GetModelOmissionsRequest
+) -> GetModelOmissionsResponse:
+    """Tell what of a model's description is not simulated; Gazebo's answer has no place for it."""
+    model = server.world.models.get(request.model_name)
+    if model is None:
+        return refuse(GetModelOmissionsResponse(), 'GetModelOmissions: model does not exist')
+    return GetModelOmissionsResponse(True, 'GetModelOmissions: got omissions', model.left_out)
 
 
 def _spawn_light(server: Server, light: LightSpec) -> SpawnModelResponse:

@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""Whoever spawns a model is told what it stands without; Gazebo's own answer stays as it is."""
+
+import sys
+
+import rospy
+import rostest
+from rosbots_msgs.srv import GetModelOmissions
+from simulator import SENSOR_BOX, SimulatorTest, proxy, spawn_model
+
+PARTS = ["camera 'camera1'", "mesh 'file:///nowhere/nope.stl'", "plugin 'libgazebo_ros_imu.so'"]
+
+
+class OmissionsTest(SimulatorTest):
+
+    def setUp(self):
+        super().setUp()
+        self._omissions = proxy('get_model_omissions', GetModelOmissions)
+
+    def test_spawn_model_says_it_in_one_line(self):
+        done = spawn_model('box', SENSOR_BOX)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('Spawn status: SpawnModel: Successfully spawned entity\n', done.stdout)
+        (line,) = [line for line in done.stderr.splitlines() if 'spawned without' in line]
+        self.assertIn(f'spawned without: {", ".join(PARTS)}; see doc/gazebo_compatibility.md', line)
+        self.assertEqual(self._omissions('box').omissions, PARTS)
+
+    def test_of_a_model_that_is_whole_it_says_nothing(self):
+        done = spawn_model('rosbots', rospy.get_param('robot_description'))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn('without', done.stdout + done.stderr)
+        self.assertEqual(self._omissions('rosbots').omissions, [])
+
+    def test_a_model_that_is_not_there_has_no_omissions(self):
+        response = self._omissions('nobody')
+        self.assertFalse(response.success)
+        self.assertEqual(response.status_message, 'GetModelOmissions: model does not exist')
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_omissions', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'omissions', OmissionsTest, sys.argv)
