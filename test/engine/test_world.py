@@ -247,7 +247,22 @@ def test_a_model_lives_on_without_a_plugin_nobody_knows(caplog):
     with empty_world() as world:
         model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (plugin,)}), 'b', Pose())
         assert model.plugins == []
-    assert "no plugin 'libnope.so' here; known: libgazebo_ros_diff_drive.so" in caplog.text
+        assert model.left_out == ["plugin 'libnope.so'"]
+    assert caplog.messages == [
+        "model 'b', plugin 'p': unknown library 'libnope.so'; nothing is loaded "
+        'from GAZEBO_PLUGIN_PATH; see doc/gazebo_compatibility.md']
+
+
+def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
+    plugin = PluginSpec('imu', 'libgazebo_ros_imu.so', Element('plugin'))
+    with empty_world() as world:
+        model = world.spawn(
+            replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose())
+        assert model.left_out == ["plugin 'libgazebo_ros_imu.so'"]
+    ((level, sentence),) = [(r.levelname, r.getMessage()) for r in caplog.records]
+    assert (level, sentence) == (
+        'WARNING', "model 'b', plugin 'imu': libgazebo_ros_imu.so is known but not supported yet; "
+        'see doc/gazebo_compatibility.md')
 
 
 def test_a_model_lives_on_without_a_plugin_that_fails(caplog):

@@ -15,6 +15,7 @@ from rosbots_description.ros_api.packages import find_model, find_package
 from rosbots_description.ros_api.server import Server
 from rosbots_description.ros_api.world_loading import read_world
 from rosbots_description.sim import plugins  # noqa: F401  registers
+from rosbots_description.sim.gazebo_libraries import missing_libraries
 from rosbots_description.sim.plugins.registry import known_filenames
 from rosbots_description.sim.world import World
 
@@ -104,6 +105,11 @@ def test_the_node_offers_what_its_table_says_and_nothing_else(section, registere
 
 def test_every_plugin_has_a_row_that_says_it_is_there():
     assert set(known_filenames()) == offered('Plugins')
+
+
+def test_every_library_that_is_known_but_not_built_in_has_a_row_that_says_so():
+    rows = table('Plugins')
+    assert set(missing_libraries()) == {name for name, state in rows.items() if state == MISSING}
 
 
 def test_every_argument_of_the_launch_file_has_a_row():

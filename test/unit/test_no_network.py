@@ -23,7 +23,9 @@ LOAD_URDF = 'from rosbots_description.sim.urdf import load_urdf; load_urdf(TEXT,
 LOAD_SDF = ('from rosbots_description.ros_api.packages import find_model, find_package; '
             'from rosbots_description.sim.sdf import load_sdf; '
             'load_sdf(TEXT, "m", find_model=find_model, find_package=find_package)')
-MESH = '<link name="l"><collision><geometry><mesh filename="{}"/></geometry></collision></link>'
+INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+MESH = f'<link name="l">{INERTIAL}' \
+    '<collision><geometry><mesh filename="{}"/></geometry></collision></link>'
 SDF = '<sdf version="1.6"><world name="w"><include><uri>{}</uri></include></world></sdf>'
 COLLADA = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">

@@ -104,8 +104,16 @@ def test_the_first_directory_of_the_path_wins(tmp_path):
     put(tmp_path / 'first', 'cone', {'model.sdf': CONE.replace('body', 'first')})
     put(tmp_path / 'second', 'cone', {'model.sdf': CONE})
     search = ModelSearch([tmp_path / 'first', lambda: [tmp_path / 'second']])
-    assert search.directories() == [str(tmp_path / 'first'), str(tmp_path / 'second')]
+    assert list(search.directories()) == [str(tmp_path / 'first'), str(tmp_path / 'second')]
     assert search('cone') == str(tmp_path / 'first' / 'cone')
+
+
+@pytest.mark.parametrize('uri', ['model:///cone', 'model:////cone/', 'model://cone/model.sdf'])
+def test_any_number_of_slashes_may_follow_the_scheme(tmp_path, uri):
+    put(tmp_path, 'cone', {'model.sdf': CONE})
+    text = f'<sdf version="1.6"><world name="w"><include><uri>{uri}</uri></include></world></sdf>'
+    spec, _ = load_sdf(text, 'bot', find_model=ModelSearch([tmp_path]))
+    assert [link.name for link in spec.links] == ['body']
 
 
 def test_meshes_are_found_beside_the_description_that_names_them(tmp_path):

@@ -8,6 +8,7 @@ from rosbots_description.sim.markup import parse
 from rosbots_description.sim.uris import (
     UnknownPackage,
     file_path,
+    refuse_climbing,
     substitute_in_tree,
     substitute_packages,
 )
@@ -69,3 +70,17 @@ def test_a_path_is_taken_as_it_is_or_decoded_whichever_is_there(tmp_path, scheme
 def test_other_addresses_are_refused_with_a_cure(uri):
     with pytest.raises(ModelError, match='use .*file:///path'):
         file_path(parse('<mesh/>', 's'), uri)
+
+
+@pytest.mark.parametrize('uri', [
+    'package://bot/../x.dae', 'package://bot/%2e%2e/x.dae', 'package://bot/a/%2E%2E/.%2e/x.dae',
+    'package://bot/..%2fx.dae', 'package://bot%2f../x.dae',
+])
+def test_an_address_that_climbs_out_of_its_package_is_refused_however_it_is_written(uri):
+    with pytest.raises(ModelError, match="leads out of package 'bot'; '..' is not accepted"):
+        refuse_climbing(parse('<mesh/>', 's'), uri)
+
+
+@pytest.mark.parametrize('uri', ['package://bot/a/%2e%2e/x.dae', 'package://bot/..x', '/../x.dae'])
+def test_an_address_that_stays_in_its_package_is_not_refused(uri):
+    refuse_climbing(parse('<mesh/>', 's'), uri)

@@ -78,14 +78,10 @@ def _exports(package: str, attribute: str) -> list[str]:
     return []
 
 
-def find_model(inner: str) -> str | None:
-    """Return where model://`inner` is, or None.
-
-    It is looked for along GAZEBO_MODEL_PATH, the packages' paths and, as in Gazebo, in the folder
-    where users keep models.
-    """
-    return (
-        ModelSearch(path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')))(inner)
-        or ModelSearch(exported_directories('gazebo_model_path'))(inner)
-        or ModelSearch([os.path.expanduser('~/.gazebo/models')])(inner)
-    )
+# Where model:// leads: along GAZEBO_MODEL_PATH, the packages' paths and, as in Gazebo, into the
+# folder where users keep models.
+find_model = ModelSearch([
+    lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
+    lambda: exported_directories('gazebo_model_path'),
+    lambda: [os.path.expanduser('~/.gazebo/models')],
+])

@@ -6,6 +6,7 @@ is not simulated is named once. Different from Gazebo on purpose: the surface of
 reaches those of its collisions that have names of their own.
 """
 
+import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -13,14 +14,17 @@ from functools import partial
 from lxml import etree
 
 from .errors import ModelError
+from .gazebo_libraries import library_remark
 from .gazebo_materials import gazebo_material
 from .kinematic_tree import TreeLink
-from .markup import shortened
+from .left_out import LeftOut
+from .markup import line_of, shortened
 from .markup_values import (
     MAX_NOTES,
     fault,
     is_endless,
     note,
+    parse_numbers,
     place,
     require_damping,
     scalar,
@@ -43,6 +47,8 @@ _SURFACE_PATHS = {'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': '
                   'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
                   'surface/contact/ode/max_vel': 'max_vel',
                   'surface/contact/ode/min_depth': 'min_depth', 'laser_retro': 'laser_retro'}
+_NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor'}
+_LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
 _PARTS = ('sensor', 'light', 'projector')
 # Read and kept for whoever asks, but nothing here acts on it.
 _KEPT = {'mu2', 'fdir1', 'maxVel', 'minDepth', 'maxContacts', 'laserRetro'}
@@ -73,6 +79,25 @@ class GazeboTags:
     plugins: list[PluginSpec] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # sentences to warn with
     idle: list[str] = field(default_factory=list)  # elements without effect here
+    left_out: LeftOut = field(default_factory=LeftOut)
+
+
+def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
+    """Cut what stands behind the number of a tag that takes one, in place; Gazebo does not read it.
+
+    So it goes with '0.5;' and '0.5 0.5'.
+    """
+    for child in block:
+        if child.tag not in _NUMBER_TAGS or parse_numbers(scalar(child), 1) is not None:
+            continue
+        found = _LEADING_NUMBER.match(scalar(child))
+        if found and not is_endless(child):
+            written = scalar(child)
+            note(tags.notes, partial(
+                '{}: of <{}> {!r} only the number {} is read, as in Gazebo'.format,
+                place(child), child.tag, shortened(written, 60), found[0]))
+            child.attrib.pop('value', None)
+            child.text = found[0]
 
 
 def read_gazebo_tags(
@@ -88,6 +113,7 @@ def read_gazebo_tags(
     tags = GazeboTags()
     unread: list[str] = []
     for block in robot.findall('gazebo'):
+        _leading_numbers(block, tags)
         reference = block.get('reference')
         if not reference:
             _read_model_block(block, tags, unread)
@@ -191,13 +217,31 @@ def _read_link_block(
                 tags.idle += [_mention(part) for part in kept if part is not None]
         elif tag in _PARTS:
             link.sensors.append(to_element(child))
-            unread.append(_mention(child))
+            _mention_part(child, tags, unread)
         elif tag == 'material':
             _read_script(child, link, tags)
         elif tag == 'visual':
             _read_visual(child, link, tags)
         elif tag not in _JOINT_TAGS:
-            unread.append(_mention(child))
+            _mention_part(child, tags, unread)
+
+
+def _mention_part(element: etree._Element, tags: GazeboTags, unread: list[str]) -> None:
+    if element.tag == 'sensor':
+        link = element.getparent().get('reference')
+        tags.left_out.sensor(to_element(element), element, link)
+    elif element.tag == 'plugin':
+        _mention_plugin(element, tags)
+    else:
+        unread.append(_mention(element))
+
+
+def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
+    filename = element.get('filename', '').strip()
+    note(tags.notes, lambda: (
+        f'{place(element)}: a <plugin> of a link is not run, as in Gazebo; '
+        f'{library_remark(filename)}; put it into a <gazebo> without reference'
+    ))
 
 
 def _set_surface(link: LinkTags, key: str, element: etree._Element) -> None:
@@ -305,4 +349,4 @@ def _read_joint_block(
 
 
 def _mention(element: etree._Element) -> str:
-    return f'<{shortened(tag_of(element), 60)}> (line {element.sourceline})'
+    return f'<{shortened(tag_of(element), 60)}> ({line_of(element)})'

@@ -142,6 +142,7 @@ class Model:
             if joint.name in self.body.joints
         }
         self.plugins: list[ModelPlugin] = []
+        self.left_out = list(spec.left_out)  # what it stands without, each in few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)
 

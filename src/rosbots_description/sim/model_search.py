@@ -1,12 +1,12 @@
 """Find models and worlds by name along search paths, and the description in a model's folder."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from lxml import etree
 
-from .errors import NotFoundError
+from .errors import AbsentError, NotFoundError
 from .files import read_file
 from .markup import MAX_BYTES, parse
 from .markup_values import fault
@@ -76,12 +76,17 @@ class ModelSearch:
                 return os.path.abspath(path)
         return None
 
-    def directories(self) -> list[str]:
-        """Return the directories as they are now, in order."""
-        found: list[str] = []
+    def directories(self) -> Iterator[str]:
+        """Yield the directories as they are now, in order; no more are asked for than it takes."""
         for entry in self._directories:
-            found += [os.fspath(path) for path in (entry() if callable(entry) else [entry])]
-        return found
+            for path in entry() if callable(entry) else [entry]:
+                yield os.fspath(path)
+
+
+def searched(find_model: FindModel) -> str:
+    """Return where a search looks, for messages; '' where it does not tell."""
+    directories = getattr(find_model, 'directories', None)
+    return ', '.join(directories()) if directories else ''
 
 
 def path_directories(value: str) -> list[str]:
@@ -92,6 +97,37 @@ def path_directories(value: str) -> list[str]:
 def climbs(inner: str) -> bool:
     """Tell whether a path below a search directory is none, or would leave that directory."""
     return not inner.strip('/') or os.path.isabs(inner) or '..' in inner.split('/')
+
+
+def below_model_path(uri: str) -> str:
+    """Return what stands behind model://; as in Gazebo any number of slashes may follow."""
+    return uri.removeprefix('model://').lstrip('/')
+
+
+def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
+    """Return the absolute path that a model:// address stands for.
+
+    Args:
+        element: what names it, for the message.
+    Raises:
+        AbsentError: nothing is found there.
+        ModelError: it names no model, or climbs out (`..`) of the model path.
+    """
+    inner = below_model_path(uri)
+    if not inner:
+        raise fault(element, f"'{uri}' names no model; write model://MODEL/FILE")
+    if climbs(inner):
+        raise fault(element, f"'{uri}' leaves the model path; '..' is not accepted there")
+    found = find_model(inner)
+    if found is None:
+        raise fault(
+            element,
+            f"'{uri}' is not to be found along the model path "
+            f"({searched(find_model) or 'which is empty'}); add the folder that holds "
+            f"'{inner.split('/')[0]}' to GAZEBO_MODEL_PATH where the simulator is started",
+            AbsentError,
+        )
+    return found
 
 
 def description_file(path: str, asker: etree._Element) -> str:

@@ -5,12 +5,20 @@ from collections.abc import Callable
 
 from lxml import etree
 
-from .errors import AbsentError, ModelError
+from .errors import ModelError
 from .files import read_file, within
+from .foreign_tags import remove_xacro
 from .markup import MAX_BYTES, parse
 from .markup_values import fault, scalar, tag_of
-from .model_search import BUILT_IN_MODELS, FindModel, climbs, description_file
+from .model_search import (
+    BUILT_IN_MODELS,
+    FindModel,
+    below_model_path,
+    description_file,
+    in_models,
+)
 from .sdf_notes import Notes
+from .sdf_poses import complete_poses
 from .uris import FindPackage, file_path, refuse_climbing, substitute_packages
 
 NEWEST = (1, 7)
@@ -47,6 +55,10 @@ class SdfDocument:
         self.library = library
         self.root = parse(text, source)
         self.notes = Notes(source)
+        for sentence in remove_xacro(self.root):
+            self.notes.say(f'{source}: {sentence}')
+        for sentence in complete_poses(self.root):
+            self.notes.say(f'{source}, {sentence}')
         self._directory = directory
         self._home = home
         if self.root.tag not in ('sdf', 'gazebo'):
@@ -68,7 +80,7 @@ class SdfDocument:
                 package or the folder of the model that this text describes.
         """
         if uri.startswith('model://'):
-            return self._in_models(element, uri)
+            return in_models(element, uri, self.library.find_model)
         if uri.startswith('package://'):
             refuse_climbing(element, uri)
             if self.library.find_package is not None:
@@ -100,7 +112,7 @@ class SdfDocument:
                 f"'{uri}': models are not fetched from the network; put the model's folder on "
                 'GAZEBO_MODEL_PATH and include model://FOLDER',
             )
-        built_in = BUILT_IN_MODELS.get(uri.removeprefix('model://').strip('/'))
+        built_in = BUILT_IN_MODELS.get(below_model_path(uri).rstrip('/'))
         try:
             path = self.file(uri_element, uri)
         except ModelError:
@@ -108,20 +120,6 @@ class SdfDocument:
                 raise
             return self.library.built_in(uri, built_in)
         return self.library.open(description_file(path, uri_element), _home(uri, path))
-
-    def _in_models(self, element: etree._Element, uri: str) -> str:
-        inner = uri.removeprefix('model://')
-        if climbs(inner):
-            raise fault(element, f"'{uri}' leaves the model path; '..' is not accepted there")
-        found = self.library.find_model(inner)
-        if found is None:
-            raise fault(
-                element,
-                f"'{uri}' is not to be found along the model path; add the folder that holds "
-                f"'{inner.split('/')[0]}' to GAZEBO_MODEL_PATH where the simulator is started",
-                AbsentError,
-            )
-        return found
 
     def _read_version(self) -> tuple[int, int]:
         text = self.root.get('version', '').strip()
@@ -140,7 +138,7 @@ class SdfDocument:
 def _home(uri: str, path: str) -> str:
     """Return the folder of the model or package that an address names, which is at `path`."""
     if uri.startswith(('model://', 'package://')):
-        inner = os.path.normpath(uri.split('://', 1)[1]).split('/')
+        inner = os.path.normpath(uri.split('://', 1)[1].lstrip('/')).split('/')
         for _ in inner[1:]:
             path = os.path.dirname(path)
     return path if os.path.isdir(path) else os.path.dirname(path)

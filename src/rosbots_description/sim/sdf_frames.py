@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from lxml import etree
 
+from .errors import AbsentError
 from .markup_values import fault, suggestion, tag_of
 from .pose import IDENTITY, Pose, compose
 from .sdf_values import pose_in
@@ -89,7 +90,8 @@ class Frames:
         """Return the link that a frame moves with.
 
         Raises:
-            ModelError: there is no such frame, it is attached to none, or frames form a ring.
+            AbsentError: there is no such frame.
+            ModelError: it is attached to none, or frames form a ring.
         """
         seen: list[str] = []
         while True:
@@ -110,6 +112,7 @@ class Frames:
                 asker,
                 f"<{tag_of(asker)}> names '{name}', but no link, joint or frame is called so"
                 f'{suggestion(name, self._frames)}',
+                AbsentError,
             )
         return frame
 

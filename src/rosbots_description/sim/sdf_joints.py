@@ -10,7 +10,7 @@ from .markup_values import fault, required_name
 from .pose import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames
-from .sdf_values import limit_of, not_negative_of, text_of, truth_of, unit_vector_of
+from .sdf_values import limit_of, not_negative_of, numbers_of, text_of, truth_of, unit_vector_of
 from .spec import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
 
 _TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC, 'fixed': FIXED}
@@ -117,6 +117,9 @@ def _motion(
 
 def _axis(document: SdfDocument, axis: etree._Element, frame: Pose, frames: Frames) -> Vector:
     """Return the unit axis in the joint's frame."""
+    if numbers_of(axis, 'xyz', _UP) == (0.0, 0.0, 0.0):
+        document.notes.warn(axis, "<xyz> '0 0 0' has no direction, x is used as in Gazebo")
+        return (1.0, 0.0, 0.0)
     vector = unit_vector_of(axis, 'xyz', _UP)
     version = document.version
     if version >= _AXIS_BY_NAME:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from lxml import etree
 
-from .inertia import is_positive
 from .kinematic_tree import WORLD
 from .markup_values import fault, require_mass, required_name, to_element
 from .pose import IDENTITY, Pose, relative, to_rpy
@@ -59,10 +58,20 @@ def read_link(
         kinematic=truth_of(element, 'kinematic'),
         linear_damping=damping_of(element, 'velocity_decay/linear'),
         angular_damping=damping_of(element, 'velocity_decay/angular'),
-        sensors=tuple(
-            _part(part, frames, pose) for part in element if part.tag in _PARTS
-        ),
+        sensors=_sensors(document, element, frames, pose),
     )
+
+
+def _sensors(
+    document: SdfDocument, link: etree._Element, frames: Frames, link_pose: Pose
+) -> tuple[Element, ...]:
+    parts = []
+    for element in link:
+        if element.tag in _PARTS:
+            parts.append(_part(element, frames, link_pose))
+        if element.tag == 'sensor':
+            document.notes.left_out.sensor(parts[-1], element, link.get('name'))
+    return tuple(parts)
 
 
 def _shapes(
@@ -124,18 +133,10 @@ def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Iner
     values = {key: number_of(element, f'inertia/{key}', 1.0) for key in _MOMENTS}
     values |= {key: number_of(element, f'inertia/{key}', 0.0) for key in _PRODUCTS}
     require_mass(element, mass, values.values())
-    inertial = Inertial(mass, pose_in(element.find('pose')), **values)
-    if any(values.values()):
-        for key in _MOMENTS:
-            if values[key] <= 0.0:
-                raise fault(
-                    element.find(f'inertia/{key}'),
-                    f'<{key}> is {values[key]:g}; a moment of inertia is greater than zero',
-                )
-        if not is_positive(inertial):
+    for key in _MOMENTS:
+        if values[key] < 0.0:
             raise fault(
-                element.find('inertia'),
-                'the products ixy, ixz, iyz are too great beside ixx, iyy, izz: about some axis '
-                'the moment of inertia is negative',
+                element.find(f'inertia/{key}'),
+                f'<{key}> is {values[key]:g}; a moment of inertia is greater than zero',
             )
-    return inertial
+    return Inertial(mass, pose_in(element.find('pose')), **values)

@@ -11,8 +11,10 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from .bounds import excess
-from .inertia import turnable
+from .errors import AbsentError
+from .inertia import impossible, possible, turnable
 from .kinematic_tree import WORLD
+from .markup import shortened
 from .markup_values import fault, required_name, to_element
 from .pose import Pose, compose
 from .sdf_document import SdfDocument
@@ -42,6 +44,7 @@ class ModelParts:
     joints: list[tuple[JointSpec, etree._Element]] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
     inner: dict[str, Pose] = field(default_factory=dict)  # models within, where their frames stand
+    left_out: list[str] = field(default_factory=list)  # what it stands without
 
 
 def read_model(
@@ -60,13 +63,8 @@ def read_model(
     parts = ModelParts(
         document, element, element.get('name', ''), static, element.find('pose')
     )
-    # What is in a model that stands still stands still.
-    inherited = True if static else None
-    inner = [
-        read_model(document, child, inherited) if child.tag == 'model'
-        else read_include(document, child, inherited)
-        for child in element if child.tag in ('model', 'include')
-    ]
+    known = len(document.notes.left_out.parts)
+    inner = _inner_models(document, element, True if static else None)
     frames = _frames(element, inner)
     for child in element.iterfind('plugin'):
         _add_plugin(document, child, parts)
@@ -78,13 +76,47 @@ def read_model(
     for model in inner:
         _take_in(parts, model, frames.pose_of(model.name, model.element))
     for child in element.iterfind('joint'):
-        joint = read_joint(document, child, frames)
-        if joint is not None:
-            parts.joints.append((joint, child))
+        _add_joint(document, child, frames, parts)
+    parts.left_out += document.notes.left_out.parts[known:]
     canonical = element.get('canonical_link')
     if canonical and parts.links and canonical != parts.links[0].name:
         document.notes.warn(element, 'canonical_link is not read; the first link is canonical')
     return parts
+
+
+def _inner_models(
+    document: SdfDocument, element: etree._Element, static: bool | None
+) -> list[ModelParts]:
+    """Return the models in a model; what is in one that stands still stands still.
+
+    As in Gazebo a model stands without those it includes that are not to be found.
+    """
+    inner = []
+    for child in element:
+        if child.tag == 'model':
+            inner.append(read_model(document, child, static))
+        elif child.tag == 'include':
+            try:
+                document.included(child)
+            except AbsentError as error:
+                called = f"model '{shortened(text_of(child, 'uri'), 100)}'"
+                document.notes.left_out.part(called, error)
+            else:
+                inner.append(read_include(document, child, static))
+    return inner
+
+
+def _add_joint(
+    document: SdfDocument, element: etree._Element, frames: Frames, parts: ModelParts
+) -> None:
+    """Add a joint to a model; as in Gazebo it stands without one whose links are not there."""
+    try:
+        joint = read_joint(document, element, frames)
+    except AbsentError as error:
+        document.notes.left_out.part(f"joint '{shortened(element.get('name'), 100)}'", error)
+        return
+    if joint is not None:
+        parts.joints.append((joint, element))
 
 
 def read_include(
@@ -131,7 +163,8 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     if not parts.static:
         links = _movable(parts, links, {joint.child for joint in joints})
     spec = ModelSpec(
-        name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner
+        name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner,
+        left_out=tuple(dict.fromkeys(parts.left_out)),
     )
     too_much = excess(spec)
     if too_much:
@@ -163,6 +196,7 @@ def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
     """Add an inner model, which stands at `pose`, to the outer one."""
     prefix = f'{inner.name}::'
     parts.inner[inner.name] = pose
+    parts.left_out += inner.left_out
     parts.inner |= {prefix + name: compose(pose, place) for name, place in inner.inner.items()}
     names = {link.name for link in inner.links} | {joint.name for joint, _ in inner.joints}
     bolted = inner.static and not parts.static
@@ -227,8 +261,12 @@ def _movable(
     """Return the links of a model that moves, as the engine can move them; notes say what not."""
     notes, made = parts.document.notes, []
     for link in links:
-        inertial = turnable(link.inertial or UNIT_INERTIAL)
-        if inertial is not (link.inertial or UNIT_INERTIAL):
+        given = link.inertial or UNIT_INERTIAL
+        real = possible(given)
+        if real is not given:
+            notes.warn(parts.element, impossible(link.name, given, real))
+        inertial = turnable(real)
+        if inertial is not real:
             notes.warn(
                 parts.element,
                 f"link '{link.name}': an inertia of zero cannot be simulated; "

@@ -6,6 +6,7 @@ from itertools import islice
 
 from lxml import etree
 
+from .left_out import LeftOut
 from .markup import shortened
 from .markup_values import MAX_NOTES, parse_numbers, place, scalar, tag_of
 
@@ -28,7 +29,7 @@ _KEPT = {
     'limit': ('velocity',), 'scene': ('ambient', 'background', 'shadows'),
 }
 # The same, but the model is not what its author expects.
-_NOT_RUN = {'link': ('sensor', 'light', 'projector')}
+_NOT_RUN = {'link': ('light', 'projector')}
 
 # Parts that do something by being there, whatever stands in them.
 _PARTS = {part for parts in _NOT_RUN.values() for part in parts}
@@ -38,9 +39,14 @@ _EMPTY = {'surface', 'friction', 'ode', 'bullet', 'torsional', 'bounce', 'contac
 
 
 class Notes:
-    """Collects what is to be said about one file; `log` says it, each thing once."""
+    """Collects what is to be said about one file; `log` says it, each thing once.
+
+    Attributes:
+        left_out: what the models in it stand without.
+    """
 
     def __init__(self, source: str) -> None:
+        self.left_out = LeftOut()
         self._source = source
         self._unread: dict[str, dict[int, None]] = {}  # path -> lines, in order
         self._idle: dict[str, dict[int, None]] = {}
@@ -79,12 +85,18 @@ class Notes:
 
     def log(self) -> None:
         """Say everything; what changes nothing that is simulated only at level debug."""
-        for sentence in self._sentences:
-            logger.warning('%s', sentence)
+        for sentence in self.left_out.errors():
+            logger.error('%s', self._with_source(sentence))
+        for sentence in (*self._sentences, *self.left_out.remarks()):
+            logger.warning('%s', self._with_source(sentence))
         if self._unread:
             logger.warning('%s: not simulated: %s', self._source, _list(self._unread))
         if self._idle:
             logger.debug('%s: without effect here: %s', self._source, _list(self._idle))
+
+    def _with_source(self, sentence: str) -> str:
+        named = sentence.startswith(self._source)
+        return sentence if named else f'{self._source}: {sentence}'
 
 
 def _is_neutral(element: etree._Element) -> bool:

@@ -2,10 +2,10 @@
 
 from lxml import etree
 
-from .errors import AbsentError, ModelError
+from .errors import AbsentError, ModelError, ShapeError
 from .gazebo_materials import gazebo_material
 from .gazebo_tags import ENDLESS_FRICTION
-from .markup_values import fault, is_endless, tag_of
+from .markup_values import fault, is_endless, owner, place, tag_of
 from .mesh_reading import check_mesh
 from .pose import Pose
 from .sdf_document import SdfDocument
@@ -41,17 +41,17 @@ _UP = (0.0, 0.0, 1.0)
 def read_collision(
     document: SdfDocument, element: etree._Element, name: str, pose: Pose
 ) -> Collision | None:
-    """Return a <collision>, or None where its shape is noted as not simulated.
+    """Return a <collision>, or None where its shape is noted as left out.
 
     Args:
         pose: in the link's frame.
     Raises:
-        ModelError: a number, geometry or mesh file is missing or wrong.
+        ModelError: a number or geometry is missing or wrong.
     """
     document.notes.check(
         element, ('pose', 'geometry', 'surface', 'max_contacts', 'laser_retro'), ('meta',)
     )
-    geometry = _geometry(document, element)
+    geometry = _shape(document, element)
     if geometry is None:
         return None
     return Collision(name, geometry, pose, _surface(document, element))
@@ -60,29 +60,34 @@ def read_collision(
 def read_visual(
     document: SdfDocument, element: etree._Element, name: str, pose: Pose
 ) -> Visual | None:
-    """Return a <visual>, or None where it is invisible or its shape is noted as not shown.
+    """Return a <visual>, or None where it is invisible or its shape is noted as left out.
 
     Args:
         pose: in the link's frame.
     Raises:
-        ModelError: a number or geometry is missing or wrong, or a mesh broken.
+        ModelError: a number or geometry is missing or wrong.
     """
     document.notes.check(
         element,
         ('pose', 'geometry', 'material', 'transparency', 'visible'),
         ('cast_shadows', 'laser_retro', 'meta', 'visibility_flags'),
     )
-    try:
-        geometry = _geometry(document, element)
-    except AbsentError as error:
-        document.notes.say(f'{error}; it is not shown')
-        return None
+    geometry = _shape(document, element)
     if geometry is None or not truth_of(element, 'visible', True):
         return None
     material = _material(document, element)
     if material is None and not isinstance(geometry, Mesh):
         material = Material()
     return Visual(name, geometry, pose, material)
+
+
+def _shape(document: SdfDocument, element: etree._Element) -> Geometry | None:
+    """Return the geometry, or None where there can be none and the link stands without."""
+    try:
+        return _geometry(document, element)
+    except ShapeError as error:
+        document.notes.left_out.shape(element, error)
+        return None
 
 
 def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None:
@@ -111,6 +116,7 @@ def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None
             return None
         case tag if tag in _NOT_SIMULATED:
             document.notes.unread(shape)
+            document.notes.left_out.parts.append(f'{tag} of {owner(element)}')
             return None
     raise fault(
         shape,
@@ -126,15 +132,19 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
         raise fault(element, 'a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>')
     scale = numbers_of(element, 'scale', (1.0, 1.0, 1.0))
     if 0.0 in scale:
-        raise fault(element, '<scale> of <mesh> is wrong; no factor may be zero')
-    path = document.file(uri_element, uri)
+        written = text_of(element, 'scale')
+        raise ShapeError(f"<scale> '{written}' of <mesh> makes it empty")
+    try:
+        path = document.file(uri_element, uri)
+    except AbsentError as error:
+        raise ShapeError(str(error).removeprefix(f'{place(uri_element)}: '), uri) from error
     submesh = text_of(element, 'submesh/name')
     try:
         if submesh:
             path = submesh_file(path, submesh, truth_of(element, 'submesh/center'))
         check_mesh(path, scale)
     except ModelError as error:
-        raise fault(uri_element, str(error), type(error)) from error
+        raise ShapeError(str(error), uri) from error
     return Mesh(path, scale, uri)
 
 

@@ -9,6 +9,7 @@ from .markup_values import (
     is_endless,
     require_damping,
     require_near,
+    require_size,
     scalar,
     scalar_numbers,
     tag_of,
@@ -61,16 +62,14 @@ def sizes_of(parent: etree._Element, path: str, count: int = 1) -> tuple[float, 
     """Return lengths greater than zero [m]; the element must be there.
 
     Raises:
-        ModelError: it is missing, no number, or not greater than zero.
+        ShapeError: one is zero, so that there is no shape.
+        ModelError: it is missing, no number, or negative.
     """
     element = parent.find(path)
     if element is None:
         raise fault(parent, f'<{tag_of(parent)}> has no <{path}> [m]')
     values = scalar_numbers(element, count)
-    if min(values) <= 0.0:
-        raise fault(
-            element, f"<{path}> is '{scalar(element)}'; a size must be greater than zero"
-        )
+    require_size(element, f"<{path}> '{scalar(element)}' of <{tag_of(parent)}>", values)
     require_near(element, 'the size', values)
     return values
 

@@ -208,6 +208,7 @@ class ModelSpec:
     static: bool = False
     lumped: Mapping[str, str] = field(default_factory=dict)  # link that disappeared -> its heir
     inner: Mapping[str, Pose] = field(default_factory=dict)  # model within -> pose of its frame
+    left_out: tuple[str, ...] = ()  # what it stands without, each in few words
 
     def link(self, name: str) -> LinkSpec | None:
         """Return the link of that name, or None."""

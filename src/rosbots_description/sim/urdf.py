@@ -7,13 +7,15 @@ from lxml import etree
 
 from .bounds import excess
 from .errors import ModelError
+from .foreign_tags import foreign_tags, remove_xacro
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
-from .inertia import turnable
+from .inertia import impossible, possible, turnable
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
-from .markup import parse, shortened
+from .markup import XACRO_CURE, parse, shortened
 from .markup_values import check_name, fault, note, origin, required_name, tag_of
 from .meshes import check_mesh
+from .model_search import FindModel
 from .pose import IDENTITY, Pose
 from .repointing import repoint_plugin
 from .spec import LinkSpec, ModelSpec
@@ -30,6 +32,7 @@ def load_urdf(
     source: str = 'robot_description',
     robot_namespace: str = '',
     find_package: FindPackage | None = None,
+    find_model: FindModel = lambda inner: None,
 ) -> tuple[ModelSpec, Pose]:
     """Read, check and lump a URDF.
 
@@ -38,6 +41,7 @@ def load_urdf(
         source: where the text comes from, a file or parameter; it begins every message.
         robot_namespace: given to plugins that have no <robotNamespace>; '' for none.
         find_package: package name -> its directory, or None if unknown, for package://.
+        find_model: path below the model path -> file, or None, for model:// of meshes.
 
     Returns:
         The model, and the <origin> directly below <robot>, which the caller composes with the
@@ -56,8 +60,15 @@ def load_urdf(
     if find_package is not None:
         substitute_in_tree(robot, find_package)
     inject_namespace(robot, robot_namespace)
-    notes: list[str] = []
-    tree, tags = _read(robot, notes)
+    xacro = remove_xacro(robot)
+    notes = [*xacro, *foreign_tags(robot)]
+    try:
+        tree, tags = _read(robot, notes, find_model)
+    except ModelError as error:
+        if not xacro or XACRO_CURE in str(error):
+            raise
+        # What is missing is most likely what xacro would have made.
+        raise ModelError(f'{error}; {"; ".join(xacro)}') from error
     lumped = lump(tree)
     require_links(tree, lumped)
     spec = ModelSpec(
@@ -67,12 +78,15 @@ def load_urdf(
         tuple(repoint_plugin(plugin, lumped.heirs) for plugin in tags.plugins),
         tags.static,
         {link: heir for link, (heir, _) in lumped.heirs.items()},
+        left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(lumped.vanished)))),
     )
     too_much = excess(spec)
     if too_much:
         raise fault(robot, too_much)
     pose = _robot_origin(robot)
-    for sentence in [*notes, *_lumping_notes(lumped)]:
+    for sentence in tags.left_out.errors():
+        logger.error("model '%s' (%s): %s", name, source, sentence)
+    for sentence in [*notes, *tags.left_out.remarks(), *_lumping_notes(lumped)]:
         logger.warning("model '%s' (%s): %s", name, source, sentence.removeprefix(f'{source}, '))
     if tags.idle:
         idle = ', '.join(dict.fromkeys(tags.idle))
@@ -80,7 +94,9 @@ def load_urdf(
     return spec, pose
 
 
-def _read(robot: etree._Element, notes: list[str]) -> tuple[Tree, GazeboTags]:
+def _read(
+    robot: etree._Element, notes: list[str], find_model: FindModel
+) -> tuple[Tree, GazeboTags]:
     link_elements, joint_elements = robot.findall('link'), robot.findall('joint')
     tags = read_gazebo_tags(
         robot,
@@ -89,7 +105,7 @@ def _read(robot: etree._Element, notes: list[str]) -> tuple[Tree, GazeboTags]:
     )
     notes += tags.notes
     joints = [read_joint(element, tags.kept_joints, notes) for element in joint_elements]
-    reader = LinkReader(robot, check_mesh)
+    reader = LinkReader(robot, check_mesh, tags.left_out, find_model)
     links = [
         apply_tags(link, tags.links.get(link.spec.name))
         for link in (reader.read(element) for element in link_elements)
@@ -105,6 +121,7 @@ def _read(robot: etree._Element, notes: list[str]) -> tuple[Tree, GazeboTags]:
 
 def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
     """Return the links, those without resistance to turning with some; `notes` names them."""
+    links = tuple(_possible_link(link, notes) for link in links)
     turned = tuple(replace(link, inertial=turnable(link.inertial)) for link in links)
     changed = [new.name for old, new in zip(links, turned, strict=True)
                if new.inertial is not old.inertial]
@@ -114,6 +131,15 @@ def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[Link
             'that of a small ball of the same mass is used'
         ))
     return turned
+
+
+def _possible_link(link: LinkSpec, notes: list[str]) -> LinkSpec:
+    """Return the link with an inertia that a body can have; `notes` has both tensors."""
+    inertial = possible(link.inertial)
+    if inertial is link.inertial:
+        return link
+    note(notes, lambda: impossible(link.name, link.inertial, inertial))
+    return replace(link, inertial=inertial)
 
 
 def _lumping_notes(lumped: Lumped) -> list[str]:
@@ -138,6 +164,10 @@ def _robot_origin(robot: etree._Element) -> Pose:
     except ModelError as error:
         logger.error('%s; the model stands where it is spawned', error)
         return IDENTITY
+
+
+def _quoted(links: tuple[str, ...]) -> list[str]:
+    return [f"link '{shortened(link, 60)}'" for link in links]
 
 
 def _names(names: tuple[str, ...] | list[str], most: int = 12) -> str:

@@ -1,16 +1,18 @@
 """Read the parts of a URDF: shapes, looks, masses, links and joints, each number checked."""
 
+import math
 from collections.abc import Callable, Mapping
 
 from lxml import etree
 
-from .errors import AbsentError, ModelError
+from .errors import AbsentError, ModelError, ShapeError
 from .gazebo_materials import gazebo_material
-from .inertia import is_positive
 from .kinematic_tree import FREE, TreeJoint, TreeLink
+from .left_out import LeftOut
 from .markup import shortened
 from .markup_values import (
     fault,
+    limit_number,
     note,
     number,
     numbers,
@@ -21,6 +23,7 @@ from .markup_values import (
     required_name,
     suggestion,
 )
+from .model_search import FindModel, in_models
 from .pose import Vector
 from .spec import (
     FIXED,
@@ -55,10 +58,17 @@ class LinkReader:
     either a primitive is grey and a mesh keeps its own colours.
     """
 
-    def __init__(self, robot: etree._Element, check_mesh: CheckMesh) -> None:
+    def __init__(
+        self,
+        robot: etree._Element,
+        check_mesh: CheckMesh,
+        left_out: LeftOut,
+        find_model: FindModel,
+    ) -> None:
         self._check_mesh = check_mesh
         self._materials: dict[str, Material] = {}
         self.notes: list[str] = []  # sentences to warn with
+        self._left_out, self._find_model = left_out, find_model
         for element in robot.iterfind('material'):
             colour = self._colour(element)
             if colour is not None:
@@ -73,26 +83,25 @@ class LinkReader:
         """Return the link of a <link> element.
 
         Raises:
-            ModelError: a name, number, geometry or mesh file is missing or wrong.
+            ModelError: a name, number or geometry is missing or wrong.
         """
         spec = LinkSpec(
             required_name(element),
             inertial=_inertial(element),
-            collisions=tuple(
-                Collision(child.get('name', ''), self._geometry(child), origin(child))
-                for child in element.iterfind('collision')
-            ),
+            collisions=tuple(filter(None, map(self._collision, element.iterfind('collision')))),
             visuals=tuple(filter(None, map(self._visual, element.iterfind('visual')))),
         )
         return TreeLink(spec, element)
 
+    def _collision(self, element: etree._Element) -> Collision | None:
+        geometry = self._shape(element)
+        if geometry is None:
+            return None
+        return Collision(element.get('name', ''), geometry, origin(element))
+
     def _visual(self, element: etree._Element) -> Visual | None:
-        """Return the looks, or None where they are a mesh that is not there, as in Gazebo."""
-        try:
-            geometry = self._geometry(element)
-        except AbsentError as error:
-            sentence = f'{error}; it is not shown'
-            note(self.notes, lambda: sentence)
+        geometry = self._shape(element)
+        if geometry is None:
             return None
         material = self._material(element.find('material'))
         if material is None and not isinstance(geometry, Mesh):
@@ -104,7 +113,7 @@ class LinkReader:
             return None
         name = element.get('name', '')
         found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
-        if found is None and element.find('texture') is None:
+        if found is None and element.find('texture') is None and element.find('color') is None:
             note(self.notes, lambda: (
                 f'{place(element)}: it has no <color> anywhere, it is shown grey'
                 f'{suggestion(name, self._materials)}'
@@ -115,8 +124,22 @@ class LinkReader:
         colour = element.find('color')
         if colour is None:
             return None
-        rgba = numbers(colour, 'rgba', count=4)
+        try:
+            rgba = numbers(colour, 'rgba', count=4)
+        except ModelError as error:
+            sentence = f'{error}; the colour is ignored, as in Gazebo'
+            if sentence not in self.notes:
+                note(self.notes, lambda: sentence)
+            return None
         return Material(tuple(min(1.0, max(0.0, value)) for value in rgba))
+
+    def _shape(self, element: etree._Element) -> Geometry | None:
+        """Return the geometry, or None where there can be none and the link stands without."""
+        try:
+            return self._geometry(element)
+        except ShapeError as error:
+            self._left_out.shape(element, error)
+            return None
 
     def _geometry(self, element: etree._Element) -> Geometry:
         geometry = element.find('geometry')
@@ -146,16 +169,23 @@ class LinkReader:
             raise fault(element, 'a <mesh> without filename; add filename="package://…"')
         scale = numbers(element, 'scale', (1.0, 1.0, 1.0))
         if 0.0 in scale:
-            raise fault(
-                element, f'scale="{element.get("scale")}" of <mesh> is wrong; no factor may be zero'
-            )
-        refuse_climbing(element, element.get('uri', ''))
-        path = file_path(element, filename)
+            raise ShapeError(f'scale="{element.get("scale")}" of <mesh> makes it empty')
+        uri = element.get('uri', filename)
+        refuse_climbing(element, uri)
+        try:
+            path = self._path(element, filename)
+        except AbsentError as error:
+            raise ShapeError(str(error).removeprefix(f'{place(element)}: '), uri) from error
         try:
             self._check_mesh(path, scale)
         except ModelError as error:
-            raise fault(element, str(error), type(error)) from error
-        return Mesh(path, scale, element.get('uri', filename))
+            raise ShapeError(str(error), uri) from error
+        return Mesh(path, scale, uri)
+
+    def _path(self, element: etree._Element, filename: str) -> str:
+        if filename.startswith('model://'):
+            return in_models(element, filename, self._find_model)
+        return file_path(element, filename)
 
 
 def _inertial(link: etree._Element) -> Inertial | None:
@@ -175,19 +205,12 @@ def _inertial(link: etree._Element) -> Inertial | None:
     products = {key: number(inertia, key, 0.0) for key in ('ixy', 'ixz', 'iyz')}
     require_mass(element, mass, (*moments.values(), *products.values()))
     inertial = Inertial(mass, origin(element), **moments, **products)
-    if any((*moments.values(), *products.values())):
-        for key, value in moments.items():
-            if value <= 0.0:
-                raise fault(
-                    inertia,
-                    f'{key}="{inertia.get(key)}" of <inertia> is wrong; '
-                    'a moment of inertia is greater than zero',
-                )
-        if not is_positive(inertial):
+    for key, value in moments.items():
+        if value < 0.0:
             raise fault(
                 inertia,
-                'the products ixy, ixz, iyz are too great beside ixx, iyy, izz: about some axis '
-                'the moment of inertia is negative',
+                f'{key}="{inertia.get(key)}" of <inertia> is wrong; '
+                'a moment of inertia is greater than zero',
             )
     return inertial if mass > 0.0 else None
 
@@ -227,9 +250,9 @@ def read_joint(
     dynamics = element.find('dynamics')
     return TreeJoint(
         JointSpec(
-            name, kind, parent, child, axis=_axis(element),
-            damping=_not_negative(dynamics, 'damping'),
-            friction=_not_negative(dynamics, 'friction'),
+            name, kind, parent, child, axis=_axis(element, notes),
+            damping=_not_negative(dynamics, 'damping', notes),
+            friction=_not_negative(dynamics, 'friction', notes),
             **_limits(element, written, notes),
         ),
         element, origin(element),
@@ -244,34 +267,37 @@ def _end(element: etree._Element, role: str) -> str:
     return link
 
 
-def _axis(element: etree._Element) -> Vector:
-    """Return the unit axis in the joint's frame; x where none is given, as in URDF."""
+def _axis(element: etree._Element, notes: list[str]) -> Vector:
+    """Return the unit axis in the joint's frame; x where none is given, or none by zeros."""
     axis = element.find('axis')
     if axis is None:
         return (1.0, 0.0, 0.0)
     x, y, z = numbers(axis, 'xyz', (1.0, 0.0, 0.0))
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
-        raise fault(
-            axis, f'xyz="{axis.get("xyz")}" of <axis> has no direction; one of the three '
-            'must not be zero, e.g. "0 0 1"',
-        )
+        note(notes, lambda: (
+            f'{place(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
+            'x is used as in Gazebo; one of the three must not be zero, e.g. "0 0 1"'
+        ))
+        return (1.0, 0.0, 0.0)
     # Scaled first, so that neither tiny nor huge numbers are squared.
     x, y, z = x / largest, y / largest, z / largest
     length = (x * x + y * y + z * z) ** 0.5
     return (x / length, y / length, z / length)
 
 
-def _not_negative(element: etree._Element | None, attribute: str) -> float:
+def _not_negative(
+    element: etree._Element | None, attribute: str, notes: list[str]
+) -> float:
     if element is None:
         return 0.0
     value = number(element, attribute, 0.0)
     if value < 0.0:
-        raise fault(
-            element, f'{attribute}="{element.get(attribute)}" of <{element.tag}> is negative; '
-            'it takes energy out of a motion and is zero or more',
-        )
-    return value
+        note(notes, lambda: (
+            f'{place(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
+            'negative, 0 is used; it takes energy out of a motion'
+        ))
+    return max(0.0, value)
 
 
 def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str, float]:
@@ -287,10 +313,10 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str
         return {}
     limits: dict[str, float] = {}
     for key in ('effort', 'velocity'):
-        value = number(limit, key)
-        if value >= 0.0:
+        value = limit_number(limit, key)
+        if 0.0 <= value < math.inf:
             limits[key] = value
-    lower, upper = number(limit, 'lower', 0.0), number(limit, 'upper', 0.0)
+    lower, upper = limit_number(limit, 'lower', 0.0), limit_number(limit, 'upper', 0.0)
     if written == 'continuous':
         return limits
     if lower > upper:
@@ -300,4 +326,6 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str
             'the two are switched'
         ))
         lower, upper = low, high
-    return limits | {'lower': lower, 'upper': upper}
+    return limits | {
+        key: value for key, value in (('lower', lower), ('upper', upper)) if math.isfinite(value)
+    }

@@ -7,7 +7,7 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from .errors import ModelError
+from .errors import AbsentError
 from .markup_values import fault, place
 
 FindPackage = Callable[[str], str | None]  # package name -> its directory, None if unknown
@@ -15,7 +15,7 @@ FindPackage = Callable[[str], str | None]  # package name -> its directory, None
 _PACKAGE = re.compile(r'package://([^/\s"\'<>]*)')
 
 
-class UnknownPackage(ModelError):  # noqa: N818 (short, as it is used as a kind of answer)
+class UnknownPackage(AbsentError):  # noqa: N818 (short, as it is used as a kind of answer)
     """A package:// address names a package that is not to be found; `package` is its name."""
 
     def __init__(self, package: str, where: str = '') -> None:
@@ -74,14 +74,14 @@ def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
 
 
 def refuse_climbing(element: etree._Element, uri: str) -> None:
-    """Refuse a package:// address that leads out of its package.
+    """Refuse a package:// address that leads out of its package, also where %2e says `.`.
 
     Raises:
         ModelError: its `..` go further up than its folders went down.
     """
     if not uri.startswith('package://'):
         return
-    package, _, inner = uri.removeprefix('package://').partition('/')
+    package, _, inner = unquote(uri.removeprefix('package://')).partition('/')
     if os.path.normpath(inner.lstrip('/')).split('/')[0] == '..':
         raise fault(
             element, f"'{uri}' leads out of package '{package}'; '..' is not accepted there"
@@ -97,18 +97,22 @@ def file_path(element: etree._Element, uri: str) -> str:
     Args:
         element: what names the file, for the message.
     Raises:
-        ModelError: the address has another form.
+        AbsentError: the address has another form.
     """
     if uri.startswith('file://'):
         path = uri.removeprefix('file://')
     elif '://' in uri:
         scheme = uri.split('://', 1)[0]
         if scheme == 'package':
-            raise fault(element, f"'{uri}': packages cannot be looked up here; use file:///path")
+            raise fault(
+                element, f"'{uri}': packages cannot be looked up here; use file:///path",
+                AbsentError,
+            )
         raise fault(
             element,
             f"'{uri}': {scheme}:// addresses are not read here; "
             'use package://PACKAGE/file or file:///path',
+            AbsentError,
         )
     else:
         path = uri
@@ -116,6 +120,7 @@ def file_path(element: etree._Element, uri: str) -> str:
         raise fault(
             element,
             f"'{uri}' is no absolute address; use package://PACKAGE/file or file:///path",
+            AbsentError,
         )
     if '%' in path and not os.path.exists(path):
         path = unquote(path)

@@ -11,6 +11,7 @@ from .bullet_description import mesh_needs
 from .clock import END, SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
+from .gazebo_libraries import PAGE, library_remark, missing_libraries
 from .guard import LARGEST, Guard, is_lost
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
@@ -18,7 +19,7 @@ from .meshes import EngineFile, MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
 from .plugins.base import ModelPlugin
-from .plugins.registry import known_filenames, plugin_class
+from .plugins.registry import library_name, plugin_class
 from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
 from .spec import Mesh, ModelSpec, PluginSpec
@@ -282,14 +283,17 @@ class World:
         where = f"model '{model.name}', plugin '{spec.name}'"
         cls = plugin_class(spec.filename)
         if cls is None:
-            known = ', '.join(known_filenames())
-            logger.error("%s: no plugin '%s' here; known: %s", where, spec.filename, known)
+            known = library_name(spec.filename) in missing_libraries()
+            logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
+                       where, library_remark(spec.filename), PAGE)
+            model.left_out.append(f"plugin '{spec.filename}'")
             return
         plugin = cls(self, model, spec)
         try:
             plugin.load()
         except SimError as error:
             logger.error('%s: %s; the model lives on without it', where, error)
+            model.left_out.append(f"plugin '{spec.filename}'")
             return
         model.plugins.append(plugin)
         self.schedule.add(plugin)

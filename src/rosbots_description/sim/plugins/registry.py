@@ -19,10 +19,16 @@ def register(filename: str) -> Callable[[type], type]:
 
 def plugin_class(filename: str) -> type | None:
     """Return the class for a library's file name, with or without a path or `.so`; else None."""
-    name = filename.rsplit('/', 1)[-1]
-    if not name.endswith('.so'):
-        name += '.so'
-    return _PLUGINS.get(name) or _PLUGINS.get('lib' + name)
+    return _PLUGINS.get(library_name(filename))
+
+
+def library_name(filename: str) -> str:
+    """Return a library's file name as `known_filenames` has it; '' for an empty one."""
+    name = filename.rsplit('/', 1)[-1].strip()
+    if not name:
+        return ''
+    name = name if name.endswith('.so') else f'{name}.so'
+    return name if name.startswith('lib') else f'lib{name}'
 
 
 def known_filenames() -> list[str]:

@@ -1,0 +1,199 @@
+"""What a model is to have and stands without is named once, with place, reason and page."""
+
+import logging
+
+import pytest
+
+from rosbots_description.sim.gazebo_libraries import PAGE, library_remark
+from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.sdf import load_sdf
+from rosbots_description.sim.spec import Box
+from rosbots_description.sim.urdf import load_urdf
+
+MASS = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
+
+
+def urdf(inside='', after='', **options):
+    text = f'<robot name="r">\n<link name="a">{MASS}{inside}</link>\n{after}</robot>'
+    return load_urdf(text, 'bot', source='bot.urdf', **options)[0]
+
+
+def sdf(inside, find_model=None):
+    text = f'<sdf version="1.6"><model name="m">\n<link name="a">{inside}</link></model></sdf>'
+    return load_sdf(text, 'bot', source='b.sdf', find_model=find_model or ModelSearch())[0]
+
+
+def shape(kind, geometry):
+    return f'<{kind} name="s"><geometry>{geometry}</geometry></{kind}>'
+
+
+def said(caplog):
+    return [(record.levelname, record.getMessage()) for record in caplog.records]
+
+
+def test_a_mesh_that_is_missing_is_one_error_with_all_who_use_it(caplog, tmp_path):
+    mesh = '<mesh filename="package://p/wheel.dae"/>'
+    spec = urdf(
+        shape('collision', mesh) + shape('collision', '<box size="1 1 1"/>')
+        + '\n' + shape('visual', mesh), find_package={'p': str(tmp_path)}.get)
+    assert [part.geometry for part in spec.links[0].collisions] == [Box((1.0, 1.0, 1.0))]
+    assert spec.links[0].visuals == ()
+    assert spec.left_out == ("mesh 'package://p/wheel.dae'",)
+    assert said(caplog) == [('ERROR', (
+        f"model 'bot' (bot.urdf): mesh file '{tmp_path}/wheel.dae' does not exist or cannot be "
+        "reached; check name and package (written 'package://p/wheel.dae'); "
+        "left out: collision of link 'a' (line 2), visual of link 'a' (line 3)"))]
+
+
+def test_a_mesh_that_is_missing_from_the_model_path_is_said_with_where_it_was_looked_for(
+        caplog, tmp_path):
+    spec = sdf(shape('collision', '<mesh><uri>model://mailbox/m.dae</uri></mesh>'),
+               ModelSearch([tmp_path / 'a', tmp_path / 'b']))
+    assert spec.links[0].collisions == ()
+    assert spec.left_out == ("mesh 'model://mailbox/m.dae'",)
+    ((level, sentence),) = said(caplog)
+    assert level == 'ERROR'
+    assert sentence.startswith("b.sdf: 'model://mailbox/m.dae' is not to be found along the model "
+                               f"path ({tmp_path}/a, {tmp_path}/b); add the folder")
+    assert sentence.endswith("; left out: collision of link 'a' (line 2)")
+
+
+def test_a_urdf_finds_meshes_along_the_model_path_too(tmp_path):
+    (tmp_path / 'bot').mkdir()
+    (tmp_path / 'bot' / 'm.OBJ').write_text(TRIANGLE)
+    spec = urdf(shape('collision', '<mesh filename="model://bot/m.OBJ" scale="-1 1 1"/>'),
+                find_model=ModelSearch([tmp_path]))
+    assert spec.links[0].collisions[0].geometry.path == str(tmp_path / 'bot' / 'm.OBJ')
+    assert spec.left_out == ()
+
+
+@pytest.mark.parametrize('filename, reason', [
+    ('{folder}/m.obj', 'is broken'), ('meshes/m.obj', 'is no absolute address'),
+    ('http://host/m.obj', 'http:// addresses are not read'), ('{folder}/m.wrl', 'is not read'),
+])
+def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, caplog, filename, reason):
+    for name in ('m.obj', 'm.wrl'):
+        (tmp_path / name).write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
+    spec = urdf(shape('visual', f'<mesh filename="{filename.format(folder=tmp_path)}"/>'))
+    assert spec.links[0].visuals == ()
+    ((level, sentence),) = said(caplog)
+    assert level == 'ERROR' and reason in sentence
+    assert sentence.endswith("; left out: visual of link 'a' (line 2)")
+
+
+@pytest.mark.parametrize('geometry', [
+    '<box size="0 0 0"/>', '<box size="1 0 1"/>', '<sphere radius="0"/>', '<sphere radius="0.0"/>',
+    '<cylinder radius="0" length="1"/>', '<cylinder radius="1" length="0"/>',
+    '<mesh filename="/nowhere/m.dae" scale="1 0 0"/>',
+])
+@pytest.mark.parametrize('kind', ['collision', 'visual'])
+def test_a_shape_of_a_urdf_without_size_is_left_out(kind, geometry, caplog):
+    spec = urdf(shape(kind, geometry))
+    assert (spec.links[0].collisions, spec.links[0].visuals) == ((), ())
+    assert spec.left_out == (f"{kind} of link 'a'",)
+    ((level, sentence),) = said(caplog)
+    assert level == 'WARNING'
+    assert sentence.startswith("model 'bot' (bot.urdf): line 2: link 'a': ")
+    assert sentence.endswith(f'makes it empty; the {kind} is left out')
+
+
+@pytest.mark.parametrize('geometry', [
+    '<box><size>0 0 0</size></box>', '<sphere><radius>0</radius></sphere>',
+    '<cylinder><radius>1</radius><length>0</length></cylinder>',
+    '<mesh><uri>/nowhere/m.dae</uri><scale>1 0 0</scale></mesh>',
+])
+@pytest.mark.parametrize('kind', ['collision', 'visual'])
+def test_a_shape_of_an_sdf_without_size_is_left_out(kind, geometry, caplog):
+    spec = sdf(shape(kind, geometry))
+    assert (spec.links[0].collisions, spec.links[0].visuals) == ((), ())
+    assert spec.left_out == (f"{kind} of link 'a'",)
+    ((level, sentence),) = said(caplog)
+    assert level == 'WARNING'
+    assert sentence.startswith("b.sdf, line 2: link 'a': ")
+
+
+SENSORS = """<sensor name="cam1" type="camera">
+  <plugin name="p" filename="libgazebo_ros_camera.so"/></sensor>
+<sensor name="imu" type="imu"><plugin name="q" filename="libgazebo_ros_imuu.so"/></sensor>
+<sensor name="bare" type="ray"/>"""
+NAMED = (
+    "camera 'cam1' of link 'a' (line {}), libgazebo_ros_camera.so is known but not supported yet; "
+    "imu 'imu' of link 'a' (line {}), unknown library 'libgazebo_ros_imuu.so'; "
+    "did you mean 'libgazebo_ros_imu.so'?; ray 'bare' of link 'a' (line {}); see " + PAGE)
+PARTS = ("camera 'cam1' (libgazebo_ros_camera.so)", "imu 'imu' (libgazebo_ros_imuu.so)",
+         "ray 'bare'")
+
+
+def test_sensors_of_a_urdf_are_named_with_type_link_and_library(caplog):
+    spec = urdf(after=f'<gazebo reference="a">\n{SENSORS}</gazebo>')
+    assert spec.left_out == PARTS
+    assert said(caplog) == [('WARNING', "model 'bot' (bot.urdf): left out, as no <sensor> is "
+                             f'simulated yet: {NAMED.format(4, 6, 7)}')]
+
+
+def test_sensors_of_an_sdf_are_named_with_type_link_and_library(caplog):
+    spec = sdf(f'\n{SENSORS}')
+    assert spec.left_out == PARTS
+    assert said(caplog) == [('WARNING', 'b.sdf: left out, as no <sensor> is simulated yet: '
+                             + NAMED.format(3, 5, 6))]
+
+
+def test_each_model_of_a_file_tells_what_it_stands_without_itself():
+    inner = '<model name="{0}"><link name="l"><sensor name="{0}" type="ray"/></link></model>'
+    text = f'<sdf version="1.6">{inner.format("x")[:-8]}{inner.format("y")}</model></sdf>'
+    spec, _ = load_sdf(text, 'bot', find_model=ModelSearch())
+    assert sorted(spec.left_out) == ["ray 'x'", "ray 'y'"]
+
+
+def test_a_model_stands_without_what_it_includes_and_without_the_joint_to_that(caplog):
+    text = """<sdf version="1.6"><model name="m"><link name="a"/>
+<include><uri>model://hokuyo</uri><pose>1 0 0 0 0 0</pose></include>
+<joint name="j" type="fixed"><child>hokuyo::link</child><parent>a</parent></joint>
+</model></sdf>"""
+    spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch(['/models']))
+    assert [link.name for link in spec.links] == ['a']
+    assert spec.joints == ()
+    assert spec.left_out == ("model 'model://hokuyo'", "joint 'j'")
+    assert [level for level, _ in said(caplog)] == ['ERROR', 'ERROR']
+    assert caplog.messages[0].startswith("b.sdf, line 2: model 'm': 'model://hokuyo' is not to be")
+    assert caplog.messages[1].startswith("b.sdf, line 3: joint 'j': <child> names 'hokuyo::link'")
+    assert caplog.messages[1].endswith("; the model stands without joint 'j'")
+
+
+def test_links_without_mass_are_among_what_is_left_out():
+    spec = urdf(after='<link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
+                '<child link="b"/></joint>')
+    assert spec.left_out == ("link 'b'",)
+
+
+def test_a_hundred_thousand_uses_of_missing_meshes_make_a_bearable_log(caplog):
+    mesh = shape('visual', '<mesh filename="/nowhere/m{}.dae"/>')
+    urdf(''.join(mesh.format(i) for i in range(2000)) + mesh.format(0) * 2000)
+    assert len(caplog.records) <= 50
+    assert all(len(message) < 2500 for message in caplog.messages)
+
+
+@pytest.mark.parametrize('filename', [
+    'libgazebo_ros_imu.so', '/opt/ros/noetic/lib/libgazebo_ros_imu.so', 'gazebo_ros_imu',
+])
+def test_a_library_that_is_known_is_called_that_however_it_is_written(filename):
+    assert library_remark(filename) == 'libgazebo_ros_imu.so is known but not supported yet'
+
+
+@pytest.mark.parametrize('filename, remark', [
+    ('libgazebo_ros_dif_drive.so', "did you mean 'libgazebo_ros_diff_drive.so'?"),
+    ('libhector_sonar.so', 'nothing is loaded from GAZEBO_PLUGIN_PATH'),
+    ('', "unknown library ''"),
+    ('libgazebo_ros_diff_drive.so', 'works only in a <gazebo> or <model>'),
+])
+def test_a_library_that_is_unknown_reads_differently(filename, remark):
+    assert remark in library_remark(filename)
+
+
+def test_a_plugin_of_a_link_is_named_with_its_library(caplog):
+    urdf(after='<gazebo reference="a"><plugin filename="libgazebo_ros_p3d.so"/></gazebo>')
+    ((level, sentence),) = said(caplog)
+    assert level == logging.getLevelName(logging.WARNING)
+    assert 'libgazebo_ros_p3d.so is known but not supported yet' in sentence
+    assert sentence.endswith('put it into a <gazebo> without reference')
