@@ -7,7 +7,7 @@ from itertools import islice
 from lxml import etree
 
 from .left_out import LeftOut
-from .markup import shortened
+from .markup import line_of, shortened
 from .markup_values import MAX_NOTES, parse_numbers, place, scalar, tag_of
 
 logger = logging.getLogger(__name__)
@@ -48,8 +48,8 @@ class Notes:
     def __init__(self, source: str) -> None:
         self.left_out = LeftOut()
         self._source = source
-        self._unread: dict[str, dict[int, None]] = {}  # path -> lines, in order
-        self._idle: dict[str, dict[int, None]] = {}
+        self._unread: dict[str, dict[str, None]] = {}  # path -> lines, in order
+        self._idle: dict[str, dict[str, None]] = {}
         self._sentences: dict[str, None] = {}
 
     def check(
@@ -70,7 +70,7 @@ class Notes:
         """Note an element that is not simulated, unless it asks for nothing."""
         if not _is_neutral(element):
             lines = (self._idle if idle else self._unread).setdefault(_path(element), {})
-            lines[element.sourceline] = None
+            lines[line_of(element)] = None
 
     def warn(self, element: etree._Element, sentence: str) -> None:
         """Note that something is done differently than `element` asks."""
@@ -117,9 +117,9 @@ def _path(element: etree._Element) -> str:
     return '/'.join(reversed(tags[:-1] or tags))
 
 
-def _list(lines_of: dict[str, dict[int, None]]) -> str:
+def _list(lines_of: dict[str, dict[str, None]]) -> str:
     listed = ', '.join(
-        f'{shortened(path, 200)} (line {next(iter(lines))}'
+        f'{shortened(path, 200)} ({next(iter(lines))}'
         + (f' and {len(lines) - 1} more)' if len(lines) > 1 else ')')
         for path, lines in islice(lines_of.items(), MAX_NOTES)
     )

@@ -156,7 +156,8 @@ def get_model_omissions(
     """Tell what of a model's description is not simulated; Gazebo's answer has no place for it."""
     model = server.world.models.get(request.model_name)
     if model is None:
-        return refuse(GetModelOmissionsResponse(), 'GetModelOmissions: model does not exist')
+        # Not logged: spawn_model asks for whatever it has spawned, lights too.
+        return GetModelOmissionsResponse(False, 'GetModelOmissions: model does not exist', [])
     return GetModelOmissionsResponse(True, 'GetModelOmissions: got omissions', model.left_out)
 
 
