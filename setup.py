@@ -1,5 +1,6 @@
-"""Tell catkin which Python packages there are."""
+"""Tell catkin which Python packages there are, here and in the companion that links here."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import find_packages, setup
 
-setup(**generate_distutils_setup(packages=find_packages('src'), package_dir={'': 'src'}))
+setup(**generate_distutils_setup(packages=find_packages('src'), package_dir={'': 'src'},
+                                 package_data={'': ['config/*', 'worlds/*']}))

@@ -5,7 +5,7 @@ import math
 import time
 
 import pytest
-from support import ROOT, SETTLED, SPAWN_POSE, robot_spec
+from support import LIBRARY, SETTLED, SPAWN_POSE, robot_spec
 
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.model_search import ModelSearch, find_world
@@ -38,7 +38,7 @@ def load(text):
 
 
 def own(name):
-    return open_world(find_world(f'worlds/{name}.world', [ROOT]), find_model=ModelSearch())
+    return open_world(find_world(f'worlds/{name}.world', [LIBRARY]), find_model=ModelSearch())
 
 
 def fill(world, body):
@@ -104,7 +104,7 @@ def test_the_robot_does_not_drive_through_the_walls_of_the_maze(world):
 
 
 def test_an_empty_world_file_is_read_in_a_moment():
-    path = find_world('worlds/empty.world', [ROOT])
+    path = find_world('worlds/empty.world', [LIBRARY])
     load(path.read_bytes())  # what is done once in a process is done
     start = time.perf_counter()
     for _ in range(20):

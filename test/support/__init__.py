@@ -17,6 +17,7 @@ from rosbots_description.sim.world import World
 from rosbots_description.sim.worlds import add_empty_world
 
 ROOT = Path(__file__).resolve().parents[2]
+LIBRARY = ROOT / 'src' / 'rosbots_description'
 XACRO = ROOT / 'urdf' / 'rosbots.xacro'
 SPAWN_POSE = Pose((0.0, 0.0, 0.5))  # of spawn.launch
 SETTLED = 2500  # steps after which the robot has fallen from there and stands

@@ -71,8 +71,8 @@ def test_rviz_gets_a_folder_and_log_levels_unless_the_user_has_given_them(tmp_pa
 
 
 def test_the_layouts_have_time_displays_and_views_and_the_window_can_follow_a_model():
-    for name in ('gzclient', 'rosbots', 'simulation'):
-        layout = yaml.safe_load(config_file().with_name(f'{name}.rviz').read_text())
+    for path in (config_file(), *(ROOT / 'config').glob('*.rviz')):
+        layout = yaml.safe_load(path.read_text())
         assert {panel['Name'] for panel in layout['Panels']} == {'Displays', 'Views', 'Time'}
         assert layout['Window Geometry']['Time'] == {'collapsed': False}
     views = yaml.safe_load(config_file().read_text())['Visualization Manager']['Views']

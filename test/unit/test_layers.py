@@ -68,6 +68,12 @@ def test_the_simulator_imports_no_messages():
     assert not found
 
 
+def test_no_module_imports_this_library_by_a_name():
+    using = [path for path, tree in files().items()
+             if imported(tree) & {'rosbots_description', 'rosbots_simulator'}]
+    assert using == []  # a user's own package may have the one, and the other is only a link
+
+
 @pytest.mark.parametrize('layer, above', [('sim', {'ros_api', 'cli'}), ('ros_api', {'cli'})])
 def test_no_layer_imports_one_above_it(layer, above):
     assert not {path for path, tree in files(layer).items() if imported_layers(tree) & above}

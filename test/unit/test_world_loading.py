@@ -61,6 +61,15 @@ def test_all_our_own_worlds_can_be_read():
         assert read_world(name).faults == ()
 
 
+def test_our_own_worlds_need_no_package(tmp_path, monkeypatch, places):
+    write(tmp_path / 'theirs' / 'package.xml',
+          '<package><name>rosbots_description</name></package>')
+    for path in ('', str(tmp_path / 'theirs')):
+        monkeypatch.setenv('ROS_PACKAGE_PATH', path)
+        packages._packages.cache_clear()
+        assert read_world('worlds/shapes.world').models
+
+
 def test_a_path_is_taken_as_given(tmp_path):
     write(tmp_path / 'mine.world', EMPTY.format('mine'))
     assert read_world(str(tmp_path / 'mine.world')).name == 'mine'

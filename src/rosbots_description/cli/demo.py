@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
-from rosbots_description.cli.demo_report import (
+from .demo_report import (
     DRIVE,
     SPEED_RATIO,
     TURN_RATIO,
@@ -22,8 +22,8 @@ from rosbots_description.cli.demo_report import (
     steady_motion,
     table,
 )
-from rosbots_description.cli.launched import Launched
-from rosbots_description.cli.program import run
+from .launched import Launched
+from .program import run
 
 _MODEL = 'rosbots'
 PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
@@ -75,8 +75,8 @@ def _run(folder: Path) -> None:
     environment = _private_environment(folder)
     os.environ.update(environment)  # for our own node
     # Late, so that --help answers at once.
-    from rosbots_description.cli.demo_plot import save_picture
-    from rosbots_description.ros_api.demo_client import DemoClient
+    from ..ros_api.demo_client import DemoClient
+    from .demo_plot import save_picture
     with ExitStack() as stack:
         _say('starting the simulator with an empty world')
         server = stack.enter_context(Launched(
@@ -116,7 +116,7 @@ def _private_environment(folder: Path) -> dict[str, str]:
 
 def _spawn(client, log: Path, environment: Mapping[str, str]) -> None:
     """Spawn the robot by its launch file and wait until it stands and listens."""
-    from rosbots_description.ros_api.demo_client import wait_until
+    from ..ros_api.demo_client import wait_until
     with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
         done = spawn.wait(_SPAWN)
     if not done or not client.present():
@@ -127,7 +127,7 @@ def _spawn(client, log: Path, environment: Mapping[str, str]) -> None:
 
 def _drive(client, folder: Path) -> list[Row]:
     """Drive all segments, write the picture and return what was measured."""
-    from rosbots_description.cli.demo_plot import plot_path
+    from .demo_plot import plot_path
     rows, path, odometry = [], [], []
     for segment in DRIVE:
         truth, reported = client.drive(segment.speed, segment.turn_rate, segment.duration)

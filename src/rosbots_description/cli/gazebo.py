@@ -9,7 +9,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from rosbots_description.cli.gzclient import display_works
+from .gzclient import display_works
 
 _POLL = 0.1  # [s] between two looks at the children
 _GRACE = 5.0  # [s] for a child to end after being asked

@@ -47,12 +47,9 @@ def display_works() -> bool:
     return True
 
 
-def config_file() -> Path | None:
-    """Return RViz's config in the package rosbots_description, or None if it cannot be found."""
-    from ..ros_api.packages import find_package  # noqa: PLC0415  most of what there is to load
-
-    package = find_package('rosbots_description')
-    return Path(package, 'config', 'gzclient.rviz') if package else None
+def config_file() -> Path:
+    """Return the layout of the window, which lies beside the code wherever that is installed."""
+    return Path(__file__).resolve().parents[1] / 'config' / 'gzclient.rviz'
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -69,9 +66,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     rviz, config = shutil.which('rviz'), config_file()
     if rviz is None:
         _say('no window: rviz is not installed; on Debian: apt install rviz')
-        return 1
-    if config is None:
-        _say('no window: the package rosbots_description is not on ROS_PACKAGE_PATH')
         return 1
     command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings]
     return _attend(command, surroundings(os.environ, config.with_name('gzclient_log.config')))

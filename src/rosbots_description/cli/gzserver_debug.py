@@ -6,7 +6,7 @@ import faulthandler
 import signal
 from collections.abc import Sequence
 
-from rosbots_description.cli import gzserver
+from . import gzserver
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -7,7 +7,7 @@ import pstats
 import sys
 from collections.abc import Sequence
 
-from rosbots_description.cli import gzserver
+from . import gzserver
 
 LINES = 40  # of the table
 

@@ -8,8 +8,8 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rosbots_description.cli.key_terminal import read_key, single_keys
-from rosbots_description.cli.teleop_keys import BANNER, QUIT, Driver, Speeds
+from .key_terminal import read_key, single_keys
+from .teleop_keys import BANNER, QUIT, Driver, Speeds
 
 _LOOK = 0.1  # [s] between two looks for a subscriber
 _FIRST_NOTE, _NEXT_NOTE = 2.0, 2.5  # [s] of waiting before the first and between further notes
@@ -53,8 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
               'launch-prefix="xterm -e".', file=sys.stderr)
         return 1
     # Late, so that the message above needs no ROS.
-    from rosbots_description.ros_api.client_node import is_running, own_parameters, start_node
-    from rosbots_description.ros_api.velocity_publisher import VelocityPublisher
+    from ..ros_api.client_node import is_running, own_parameters, start_node
+    from ..ros_api.velocity_publisher import VelocityPublisher
     try:
         start_node('teleop_twist_keyboard', arguments)
         settings = Settings(**own_parameters(vars(Settings())))

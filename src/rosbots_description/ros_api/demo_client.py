@@ -13,9 +13,9 @@ from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
-from rosbots_description.ros_api.planar_sample import PlanarSample
-from rosbots_description.sim.pose import yaw_of
-from rosbots_description.sim.view import EYE, TARGET
+from ..sim.pose import yaw_of
+from ..sim.view import EYE, TARGET
+from .planar_sample import PlanarSample
 
 _PERIOD = 0.04  # [s] wall time between two looks; every look asks the simulator
 _ANSWER = 5.0  # [s] wall time in which a running simulator answers

@@ -9,7 +9,7 @@ from rospy.rostime import _set_rostime
 
 from ..sim.errors import one_line
 
-_ROOT = 'rosbots_description'
+_ROOT = __name__.partition('.')[0]  # this library, under whichever name it was imported
 _LEVELS = {
     'debug': logging.DEBUG,
     'info': logging.INFO,

@@ -19,21 +19,21 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from rosbots_msgs.srv import GetModelOmissions
 from std_srvs.srv import Empty
 
-from rosbots_description.ros_api.client_node import start_node
-from rosbots_description.ros_api.gazebo_interface import (
+from ..sim.pose import from_rpy
+from .client_node import start_node
+from .gazebo_interface import (
     interruptibly,
     set_model_configuration_client,
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
-from rosbots_description.ros_api.master import AddressError
-from rosbots_description.ros_api.model_source import (
+from .master import AddressError
+from .model_source import (
     MissingFileError,
     SourceError,
     canonical_xml,
     read_file,
 )
-from rosbots_description.sim.pose import from_rpy
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 

@@ -13,7 +13,8 @@ from ..sim.world_file import open_world, populate
 from ..sim.world_spec import WorldSpec
 from .packages import exported_directories, find_model, find_package
 
-_PACKAGE = 'rosbots_description'
+_OWN = Path(__file__).resolve().parents[1]  # holds worlds/, wherever this library is installed
+_LIBRARY = __name__.partition('.')[0]
 
 
 def read_world(name: str) -> WorldSpec:
@@ -36,14 +37,13 @@ def fill_world(world: World, spec: WorldSpec) -> None:
 
 def own_worlds() -> list[str]:
     """Return how the worlds that come with the simulator are called, e.g. 'worlds/empty.world'."""
-    return [f'worlds/{path.name}' for folder in _own_folder()
-            for path in sorted(Path(folder).glob('*.world'))]
+    return [f'worlds/{path.name}' for path in sorted(_OWN.glob('worlds/*.world'))]
 
 
 @contextmanager
 def held_records() -> Iterator[list[logging.LogRecord]]:
     """Collect what is logged, for `replay` once there is a node to log it."""
-    logger, records = logging.getLogger(_PACKAGE), _Records()
+    logger, records = logging.getLogger(_LIBRARY), _Records()
     propagate, level = logger.propagate, logger.level
     logger.addHandler(records)
     logger.propagate = False
@@ -84,13 +84,8 @@ def _find(name: str) -> Path:
 
 
 def _places() -> Iterator[str]:
-    places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), *_own_folder()]
+    places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_OWN)]
     yield from places
     for path in exported_directories('gazebo_media_path'):  # what takes long comes last
         if path not in places:
             yield path
-
-
-def _own_folder() -> list[str]:
-    package = find_package(_PACKAGE)
-    return [os.path.join(package, 'worlds')] if package else []
