@@ -10,7 +10,7 @@ LAUNCH = Path(__file__).resolve().parents[2] / 'companions' / 'gazebo_ros' / 'la
 _COMMON = {
     'paused': 'false',
     'use_sim_time': 'true',
-    'extra_gazebo_args': '',
+    'extra_gazebo_args': ' ',  # empty there, which the help of roslaunch calls required
     'gui': 'true',
     'debug': 'false',
     'physics': 'ode',

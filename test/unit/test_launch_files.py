@@ -7,6 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from roslaunch.arg_dump import dump_args
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.xmlloader import XmlLoader
 
@@ -63,6 +64,12 @@ def test_every_argument_is_explained(path):
     silent = [arg.get('name') for arg in ElementTree.parse(path).getroot().findall('arg')
               if not (arg.get('doc') or '').strip()]
     assert silent == []
+
+
+@pytest.mark.parametrize('path', FILES, ids=name)
+def test_the_help_calls_no_argument_required(load, capsys, path):
+    dump_args([str(path)])
+    assert 'Required' not in capsys.readouterr().out
 
 
 def test_load_description_starts_nothing(load):
