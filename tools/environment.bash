@@ -1,19 +1,24 @@
 # Enter the environment of the workspace; sourced by ./rosbots, needs ROOT and WORKSPACE.
 
-# Foreign workspaces that the caller has sourced stay visible behind ours.
+# The workspaces that the caller has sourced come before ours, so that a package of theirs is found
+# where both have one of that name.
 enter_environment() {
-  local devel=$WORKSPACE/devel foreign=${ROS_PACKAGE_PATH:-} room
+  local name room
   room=$(find_room) || exit 1
+  local -A callers=()
+  for name in CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONPATH ROS_PACKAGE_PATH; do
+    callers[$name]=${!name:-}
+    unset "$name"
+  done
   # The generated setup file reads variables that may be unset, and its own _CATKIN_SETUP_DIR.
   set +u
   unset _CATKIN_SETUP_DIR
   # shellcheck disable=SC1091
-  TMPDIR=$room source "$devel/setup.bash" --extend
+  TMPDIR=$room source "$WORKSPACE/devel/setup.bash"
   set -u
-  # what the caller had set by hand has been replaced just now
-  if [[ -n $foreign && :$ROS_PACKAGE_PATH: != *:$foreign:* ]]; then
-    export ROS_PACKAGE_PATH=$ROS_PACKAGE_PATH:$foreign
-  fi
+  for name in "${!callers[@]}"; do
+    export "$name=$(put_before "${callers[$name]}" "${!name:-}")"
+  done
   # python3 must be the one with PyBullet, whatever else (pyenv, conda) is first in the caller's PATH.
   # Our own programs come before those that pip made, for one of them is called xacro as well.
   export PATH="$WORKSPACE/devel/bin:$WORKSPACE/venv/bin:$PATH"
@@ -56,6 +61,21 @@ takes_files() {
   rm -f "$probe"
   return "$code"
 }
+
+# put_before THEIRS OURS: one search path of two, each folder once.
+put_before() {
+  local folder i path=$2
+  local folders=()
+  IFS=: read -ra folders <<< "$1"
+  for ((i = ${#folders[@]} - 1; i >= 0; i--)); do
+    folder=${folders[i]}
+    if [[ -n $folder && :$2: != *:$folder:* ]]; then path=$folder${path:+:$path}; fi
+  done
+  echo "$path"
+}
+
+# Forget what the caller has sourced: for what shows or tests the robot of this project.
+leave_workspaces() { unset CMAKE_PREFIX_PATH PKG_CONFIG_PATH PYTHONPATH ROS_PACKAGE_PATH; }
 
 # ROS writes its logs there, and roslaunch starts nothing where it cannot.
 find_ros_home() {

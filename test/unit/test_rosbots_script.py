@@ -52,6 +52,41 @@ def test_a_shell_reads_commands_and_knows_roscd():
     assert result.stdout.strip() == str(ROOT)
 
 
+@pytest.fixture
+def theirs(tmp_path):
+    """A workspace that the caller has sourced, with a package of the name that ours has."""
+    package = tmp_path / 'src' / 'rosbots_description'
+    package.mkdir(parents=True)
+    (package / 'package.xml').write_text('<package><name>rosbots_description</name></package>')
+    return package
+
+
+@pytest.mark.parametrize(('arguments', 'sees_theirs'), [
+    (('exec', 'rospack'), True), (('launch',), True), (('shell', '-c', ':'), True),
+    (('demo',), False), (('test',), False),
+])
+def test_a_users_package_wins_but_where_ours_is_shown_or_tested(
+        arguments, sees_theirs, theirs, tmp_path):
+    # what becomes of the script in the end says which package it would see
+    instead = tmp_path / 'instead.bash'
+    instead.write_text('exec() { rospack find rosbots_description; }')
+    result = rosbots(*arguments, BASH_ENV=str(instead), ROS_PACKAGE_PATH=str(theirs.parent))
+    found = os.path.realpath(result.stdout.strip())
+    assert found == str(theirs if sees_theirs else ROOT), result.stderr
+
+
+def test_an_interactive_shell_keeps_ours_behind_the_workspace_that_bashrc_sources(theirs, tmp_path):
+    (tmp_path / '.bashrc').write_text(
+        f'unset CMAKE_PREFIX_PATH PYTHONPATH; ROS_PACKAGE_PATH={theirs.parent}')
+    shell = ('bash', '--rcfile', str(ROOT / 'tools' / 'shell.bashrc'), '-i', '-c',
+             'rospack find rosbots_description; rospack find gazebo_ros; echo $unset')
+    result = rosbots('exec', *shell, HOME=str(tmp_path))
+    assert result.returncode == 0, result.stderr
+    own, gazebo = result.stdout.split()
+    assert own == str(theirs)
+    assert os.path.realpath(gazebo) == str(ROOT / 'companions' / 'gazebo_ros')
+
+
 def test_logs_have_a_folder_without_a_home():
     nothing = '/dev/null/home'
     result = rosbots('exec', 'sh', '-c', 'test -w "$ROS_HOME/log"', HOME=nothing, ROS_HOME='')
