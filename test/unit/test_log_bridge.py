@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from rosbots_description.ros_api.log_bridge import Preparation
+from rosbots_description.ros_api.log_bridge import Preparation, Unrepeated
 
 
 @pytest.fixture
@@ -24,3 +24,15 @@ def test_a_name_cannot_begin_a_line_of_its_own(logger, caplog):
 def test_a_long_name_is_cut(logger, caplog):
     logger.error('%s', 'x' * 100_000)
     assert len(caplog.messages[0]) < 2000
+
+
+def test_what_was_said_is_not_said_again_until_it_may_be_forgotten(logger, caplog):
+    said = Unrepeated()
+    logger.addFilter(said)
+    try:
+        for name in ['torque', 'torque', 'legacyMode', *map(str, range(1000)), 'torque']:
+            logger.warning('<%s> is not read', name)
+    finally:
+        logger.removeFilter(said)
+    assert caplog.messages[:2] == ['<torque> is not read', '<legacyMode> is not read']
+    assert caplog.messages.count('<torque> is not read') == 2

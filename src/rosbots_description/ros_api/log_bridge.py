@@ -10,6 +10,8 @@ from rospy.rostime import _set_rostime
 from ..sim.errors import one_line
 
 _ROOT = __name__.partition('.')[0]  # this library, under whichever name it was imported
+_LOADING = ('sim.plugins.params', 'sim.plugins.diff_drive')  # they log only while they load
+_REMEMBERED = 1000  # texts
 _LEVELS = {
     'debug': logging.DEBUG,
     'info': logging.INFO,
@@ -33,6 +35,8 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
         ours.addHandler(handler)
     ours.setLevel(rosout.level)
     ours.propagate = False
+    for module in _LOADING:
+        ours.getChild(module).addFilter(Unrepeated())
 
 
 def set_level(name: str) -> None:
@@ -64,6 +68,24 @@ def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
         handlers += logger.handlers
         logger = logger.parent if logger.propagate else None
     return handlers
+
+
+class Unrepeated(logging.Filter):
+    """Lets each text through once: a robot that is spawned again has the same flaws as before."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said: set[str] = set()
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Tell whether the message is new, or was said too long ago to be known."""
+        text = record.getMessage()
+        if text in self._said:
+            return False
+        if len(self._said) >= _REMEMBERED:
+            self._said.clear()
+        self._said.add(text)
+        return True
 
 
 class Preparation(logging.Handler):

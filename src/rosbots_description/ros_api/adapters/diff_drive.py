@@ -62,20 +62,20 @@ class DiffDriveAdapter(Adapter):
         self._odometry_topic = topic_name(namespace, config.odometry_topic)
 
     def open(self) -> None:
-        """Advertise and subscribe, with upstream's log lines."""
+        """Advertise and subscribe, with upstream's log lines; all but one need --verbose."""
         config, prefix = self.plugin.config, self.plugin.log_prefix
         set_level(config.ros_debug_level)
         logger.info('Starting plugin %s', prefix.removesuffix(': '))
         self._prefix = find_tf_prefix(self.plugin.namespace)
-        logger.info('%s<tf_prefix> = %s', prefix, self._prefix)
+        logger.debug('%s<tf_prefix> = %s', prefix, self._prefix)
         if config.publish_wheel_joint_state:
             self._followers = subscribers(rospy.resolve_name(self._joint_states_topic))
             self._joint_states = self.advertise(self._joint_states_topic, JointState, 1000)
-            logger.info('%sAdvertise joint_states', prefix)
+            logger.debug('%sAdvertise joint_states', prefix)
         self._tf = self.advertise('/tf', TFMessage, 100)
-        logger.info('%sTry to subscribe to %s', prefix, config.command_topic)
+        logger.debug('%sTry to subscribe to %s', prefix, config.command_topic)
         self.subscribe(self._command_topic, Twist, self._on_command, 1)
-        logger.info('%sSubscribe to %s', prefix, config.command_topic)
+        logger.debug('%sSubscribe to %s', prefix, config.command_topic)
         if config.publish_tf:
             self._odometry_layout = OdometryLayout(
                 frame_name(self._prefix, config.odometry_frame),
@@ -83,7 +83,7 @@ class DiffDriveAdapter(Adapter):
                 POSE_VARIANCES,
             )
             self._odometry = self.advertise(self._odometry_topic, OdometryMessage, 1)
-            logger.info('%sAdvertise odom on %s ', prefix, config.odometry_topic)
+            logger.debug('%sAdvertise odom on %s ', prefix, config.odometry_topic)
 
     def connect(self) -> None:
         """Join the plugin's outputs to the publishers that were opened."""
