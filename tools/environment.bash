@@ -19,9 +19,6 @@ enter_environment() {
   for name in "${!callers[@]}"; do
     export "$name=$(put_before "${callers[$name]}" "${!name:-}")"
   done
-  # python3 must be the one with PyBullet, whatever else (pyenv, conda) is first in the caller's PATH.
-  # Our own programs come before those that pip made, for one of them is called xacro as well.
-  export PATH="$WORKSPACE/devel/bin:$WORKSPACE/venv/bin:$PATH"
   export PYTHONUTF8=1  # so that names and files are read as UTF-8 whatever the locale says
   # roslaunch looks for a program by distutils; setuptools would put all of itself in its place,
   # which makes roslaunch start 0.1 s later.

@@ -46,12 +46,20 @@ class InstallSpaceTest(unittest.TestCase):
         return printed.strip()
 
     def test_packages_and_modules_come_from_there(self):
-        for package in ('rosbots_description', 'gazebo_ros', 'gazebo_msgs', 'xacro'):
+        for package in ('rosbots_description', 'rosbots_simulator', 'gazebo_ros', 'gazebo_msgs',
+                        'xacro'):
             self.assertTrue(self.output(f'rospack find {package}').startswith(str(self.root)))
         code = 'import rosbots_description, gazebo_ros.gazebo_interface as g; ' \
-            'print(rosbots_description.__file__, g.__file__)'
+            'import rosbots_simulator.cli.gzclient as c; ' \
+            'print(rosbots_description.__file__, g.__file__, c.__file__)'
         for path in self.output(f'python3 -c "{code}"').split():
             self.assertTrue(path.startswith(str(self.root)), path)
+
+    def test_what_the_window_reads_is_there(self):
+        code = 'import rosbots_simulator.cli.gzclient as c; print(c._CONFIG)'
+        config = self.output(f'python3 -c "{code}"')
+        self.assertTrue(config.startswith(str(self.root)), config)
+        self.assertTrue(Path(config).is_file(), config)
 
     def test_the_robot_drives_there(self):
         launched = self.start('roslaunch rosbots_description simulation.launch gui:=false')

@@ -1,0 +1,1 @@
+"""The reader has a Python module of this name, too."""

@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""A reader of the tutorial with their own rosbots_description types what the README says."""
+
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+from contextlib import contextmanager
+from pathlib import Path
+
+import readme
+import rostest
+from simulator import BOX, wait_until
+from terminal import Terminal
+
+sys.path.insert(0, str(readme.ROOT / 'test'))
+from support.article_package import THEIR_LINK, write_article_package  # noqa: E402  (see above)
+
+STEP = 30.0  # [s, wall] in which a step shows what it is to show
+BUILD = 120.0  # [s, wall] for a workspace, which takes a quarter of it
+MOST_LINES = 39  # that a terminal may show from its start to Ctrl-C
+RED = '\x1b[31m'
+MOVED = 0.05  # [m]
+SPAWNED = 'Spawn status: SpawnModel: Successfully spawned entity'
+ONCE, EACH_TERMINAL, LINK_OURS, ANY_ROBOT = readme.code_blocks('In your own catkin workspace')
+STEPS = readme.steps()
+
+
+class Newcomer:
+    """Somebody with a home of their own, in which the clone is ~/rosbots, and a workspace."""
+
+    def __init__(self):
+        self.home = Path(tempfile.mkdtemp(prefix='newcomer_'))
+        (self.home / 'rosbots').symlink_to(readme.ROOT)
+        self.source = self.home / 'catkin_ws' / 'src'
+        self.source.mkdir(parents=True)
+        self.environment = {
+            'HOME': str(self.home), 'PATH': '/usr/local/bin:/usr/bin:/bin', 'LANG': 'C.UTF-8',
+            'ROS_MASTER_URI': os.environ['ROS_MASTER_URI'], 'ROS_HOSTNAME': 'localhost',
+            # where ./rosbots has its workspace if the clone's path is an odd one
+            'XDG_CACHE_HOME': os.environ.get('XDG_CACHE_HOME', os.path.expanduser('~/.cache')),
+        }
+
+    def type(self, script, limit=STEP, check=True):
+        """Return what a shell shows that reads these lines and ends at the first that fails."""
+        ended = subprocess.run(
+            ['bash', '-ec', script], env=self.environment, cwd=self.home, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, timeout=limit,
+            check=False)
+        if check and ended.returncode:
+            raise AssertionError(f'{script!r} failed:\n{ended.stdout}')
+        return ended.stdout
+
+    def type_sourced(self, command):
+        """Return what a command shows in a terminal that begins as the README says."""
+        return self.type(EACH_TERMINAL + command)
+
+    def leave(self):
+        shutil.rmtree(self.home)
+
+
+class Walk:
+    """The terminals of a newcomer, each with one program in it; `shown` is what is in them."""
+
+    def __init__(self, newcomer):
+        self._newcomer = newcomer
+        self._terminals = {}
+        self.shown = {}
+
+    def open(self, command):
+        """Begin a terminal as the README says, and type a command."""
+        self._terminals[command] = Terminal('bash', '-c', f'{EACH_TERMINAL}exec {command}',
+                                            environment=self._newcomer.environment)
+        return command
+
+    def keys(self, command, text):
+        self._terminals[command].type(text)
+
+    def runs(self, command):
+        return self._terminals[command].process.poll() is None
+
+    def wait(self, condition, what):
+        """Wait, and look at all screens meanwhile, for a full one stops who writes to it."""
+        def looked():
+            self.shown |= {command: terminal.shown()
+                           for command, terminal in self._terminals.items()}
+            return condition()
+        wait_until(looked, what, STEP)
+
+    def see(self, command, text):
+        self.wait(lambda: text in self.shown[command], f'{text!r} after {command}')
+
+    def end(self, number=signal.SIGINT):
+        """Press Ctrl-C in each terminal whose program still runs, the first one last."""
+        for command, terminal in reversed(list(self._terminals.items())):
+            if self.runs(command):
+                os.killpg(terminal.process.pid, number)
+            self.wait(lambda command=command: not self.runs(command), f'the end of {command}')
+
+    def leave(self):
+        self.end(signal.SIGTERM)
+        while self._terminals:
+            self._terminals.popitem()[1].close()
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        return probe.getsockname()[1]
+
+
+@contextmanager
+def screen():
+    """Start an X server that nobody sees; its name goes to the block."""
+    reader, writer = os.pipe()
+    server = subprocess.Popen(['Xvfb', '-displayfd', str(writer), '-screen', '0', '1024x768x24'],
+                              pass_fds=[writer], stderr=subprocess.DEVNULL)
+    try:
+        yield f':{os.read(reader, 16).decode().strip()}'
+    finally:
+        server.terminate()
+        server.wait()
+        os.close(reader)
+        os.close(writer)
+
+
+class OwnPackageTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.reader = Newcomer()
+        cls.package = cls.reader.source / 'rosbots_description'
+        write_article_package(cls.package)
+        cls.reader.type(ONCE, BUILD)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.reader.leave()
+
+    def test_all_nine_steps(self):
+        self.addCleanup(self.reader.environment.update, self.reader.environment.copy())
+        walk = Walk(self.reader)
+        with screen() as self.reader.environment['DISPLAY']:
+            self.addCleanup(walk.leave)
+            self._walk(walk)
+            walk.end()
+        for command, shown in walk.shown.items():
+            self.assertNotIn(RED, shown, command)
+            self.assertLessEqual(shown.count('\n'), MOST_LINES, f'{command}:\n{shown[:6000]}')
+
+    def _walk(self, walk):
+        type_sourced = self.reader.type_sourced
+        (spawn,), (delete,), (topics,) = STEPS[4], STEPS[6], STEPS[7]
+        # 1: their package
+        self.assertEqual(type_sourced(f'{STEPS[1][0]}; pwd').strip(), str(self.package))
+        # 2: their robot in RViz, from `cat`
+        port = free_port()
+        self.reader.environment['ROS_MASTER_URI'] = f'http://localhost:{port}'
+        walk.see(walk.open(f'{STEPS[2][0]} -p {port}'), 'started core service')
+        view = walk.open(STEPS[2][1])
+        walk.wait(lambda: '/rviz' in type_sourced('rostopic info /tf || true'), 'RViz reading TF')
+        self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
+        # 5: their robot, from xacro.py, waits for a simulator
+        early = walk.open(spawn)
+        walk.see(early, 'Waiting for service /gazebo/spawn_urdf_model')
+        # 3: which comes with worlds and window
+        walk.open(STEPS[3][0])
+        walk.see(early, SPAWNED)
+        self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
+        walk.wait(lambda: '/gazebo_gui' in type_sourced('rosnode list'), 'the window')
+        # 6: it goes
+        self.assertIn('success: True', type_sourced(delete))
+        self.assertNotIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
+        # 4 and 7: it comes again
+        walk.see(walk.open(f'{spawn} x:=1'), SPAWNED)
+        self.assertIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
+        # 8: it is driven
+        start, teleop = self._x(), walk.open(STEPS[8][0])
+        walk.see(teleop, 'currently:')
+        walk.keys(teleop, 'i')
+        walk.wait(lambda: self._x() > start + MOVED, 'the robot driving')
+        walk.keys(teleop, '\x03')
+        # any other robot: the world is there already
+        (self.reader.home / 'my_robot.urdf').write_text(BOX, encoding='utf-8')
+        self.assertIn(STEPS[3][0], ANY_ROBOT)
+        self.assertIn(SPAWNED, type_sourced(ANY_ROBOT.splitlines()[1]))
+        self.assertTrue(walk.runs(view))
+
+    def _x(self):
+        state = self.reader.type_sourced(
+            "rosservice call /gazebo/get_model_state '{model_name: rosbots}'")
+        return float(re.search(r'x: (\S+)', state)[1])
+
+    def test_every_form_of_a_launch_file_expands_their_robot(self):
+        for name, form in (('rviz', 'cat '), ('spawn', 'xacro.py '),
+                           ('spawn_in_order', 'xacro --inorder ')):
+            self.assertIn(form, (self.package / 'launch' / f'{name}.launch').read_text())
+            shown = self.reader.type_sourced(
+                f'roslaunch --dump-params rosbots_description {name}.launch')
+            self.assertIn(THEIR_LINK, shown, name)
+
+    def test_ours_does_not_get_into_a_package_of_theirs(self):
+        before = sorted(self.package.rglob('*'))
+        self.assertIn('File exists', self.reader.type(LINK_OURS, check=False))
+        self.assertEqual(sorted(self.package.rglob('*')), before)
+
+    def test_their_package_wins_when_ours_is_put_over_their_workspace(self):
+        files = '~/rosbots/rosbots exec roslaunch --files rosbots_description spawn.launch'
+        self.assertIn(str(self.package), self.reader.type_sourced(files))
+
+    def test_their_package_wins_in_a_workspace_over_ours(self):
+        over = self.reader.home / 'over'
+        write_article_package(over / 'src' / 'rosbots_description')
+        self.reader.type('~/rosbots/rosbots exec catkin_make -C ~/over', BUILD)
+        shown = self.reader.type(
+            'source ~/over/devel/setup.bash; rospack find rosbots_description;'
+            'python3 -c "import rosbots_description; print(rosbots_description.__doc__)";'
+            'rosrun gazebo_ros gzserver --iters 10 worlds/shapes.world')
+        self.assertIn(str(over / 'src' / 'rosbots_description'), shown)
+        self.assertIn('The reader has a Python module', shown)
+
+    def test_the_finished_robot_is_found_and_stands(self):
+        newcomer = Newcomer()
+        self.addCleanup(newcomer.leave)
+        newcomer.type(LINK_OURS + ONCE, BUILD)
+        shown = newcomer.type_sourced(f'{STEPS[1][0]}; pwd -P')
+        self.assertEqual(shown.strip(), str(readme.ROOT))
+        walk = Walk(newcomer)
+        self.addCleanup(walk.leave)
+        simulation = walk.open('roslaunch rosbots_description simulation.launch gui:=false')
+        walk.see(simulation, SPAWNED)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('rosbots_description', 'own_package', OwnPackageTest, sys.argv)
