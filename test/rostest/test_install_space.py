@@ -56,7 +56,7 @@ class InstallSpaceTest(unittest.TestCase):
             self.assertTrue(path.startswith(str(self.root)), path)
 
     def test_what_the_window_reads_is_there(self):
-        code = 'import rosbots_simulator.cli.gzclient as c; print(c._CONFIG)'
+        code = 'import rosbots_simulator.cli.gzclient as c; print(c.config_file())'
         config = self.output(f'python3 -c "{code}"')
         self.assertTrue(config.startswith(str(self.root)), config)
         self.assertTrue(Path(config).is_file(), config)

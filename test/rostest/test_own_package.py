@@ -75,7 +75,7 @@ class Walk:
     def open(self, command):
         """Begin a terminal as the README says, and type a command."""
         self._terminals[command] = Terminal('bash', '-c', f'{EACH_TERMINAL}exec {command}',
-                                            environment=self._newcomer.environment)
+                                            env=self._newcomer.environment)
         return command
 
     def keys(self, command, text):

@@ -62,10 +62,10 @@ class DiffDriveAdapter(Adapter):
         self._odometry_topic = topic_name(namespace, config.odometry_topic)
 
     def open(self) -> None:
-        """Advertise and subscribe, with upstream's log lines; all but one need --verbose."""
+        """Advertise and subscribe, with upstream's log lines, if verbose."""
         config, prefix = self.plugin.config, self.plugin.log_prefix
         set_level(config.ros_debug_level)
-        logger.info('Starting plugin %s', prefix.removesuffix(': '))
+        logger.debug('Starting plugin %s', prefix.removesuffix(': '))
         self._prefix = find_tf_prefix(self.plugin.namespace)
         logger.debug('%s<tf_prefix> = %s', prefix, self._prefix)
         if config.publish_wheel_joint_state:
