@@ -13,6 +13,8 @@ THEIR_LINK = 'made_by_the_reader'  # only their robot has it
 def write_article_package(folder: Path) -> None:
     """Write the package: launch files, a robot with the article's numbers, and meshes."""
     shutil.copytree(_DATA / 'article_package', folder)
+    for path in list((folder / 'launch').iterdir()):
+        path.rename(path.with_suffix(''))  # roslaunch finds .launch files anywhere in a package
     shutil.copytree(_ROOT / 'meshes', folder / 'meshes')
     (folder / 'urdf').mkdir()
     (folder / 'urdf' / 'rosbots.xacro').write_bytes(ElementTree.tostring(_robot()))

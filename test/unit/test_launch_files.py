@@ -54,6 +54,11 @@ def test_the_launch_files_are_there():
     assert {'load_description', 'rviz', 'simulation', 'spawn'} <= {path.stem for path in FILES}
 
 
+def test_roslaunch_finds_each_file_once():
+    for path in ROOT.glob('launch/*.launch'):  # it looks through the whole package
+        assert list(ROOT.glob(f'[!.]*/**/{path.name}')) == [path]
+
+
 @pytest.mark.parametrize('path', FILES, ids=name)
 def test_launch_file_loads(load, path):
     load(path)
