@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from support import ROOT
 
 from rosbots_description.cli.gzclient import config_file, surroundings
 
