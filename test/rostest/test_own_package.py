@@ -189,7 +189,7 @@ class OwnPackageTest(unittest.TestCase):
         (self.reader.home / 'my_robot.urdf').write_text(BOX, encoding='utf-8')
         self.assertIn(STEPS[3][0], ANY_ROBOT)
         self.assertIn(SPAWNED, type_sourced(ANY_ROBOT.splitlines()[1]))
-        self.assertTrue(walk.runs(view))
+        self.assertTrue(walk.runs(view), walk.shown[view])
 
     def _x(self):
         state = self.reader.type_sourced(
