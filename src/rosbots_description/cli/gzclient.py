@@ -116,14 +116,13 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     if told:  # meanwhile
         end()
     watch = ServerWatch(tell)
-    watch.look()
-    while True:
-        try:
+    code = None
+    while code is None and not told:  # who is told to end says no more of the simulator
+        watch.look()
+        with contextlib.suppress(subprocess.TimeoutExpired):
             code = window.wait(PERIOD)
-        except subprocess.TimeoutExpired:
-            watch.look()
-        else:
-            return 0 if told else code
+    window.wait()
+    return 0 if told else code
 
 
 def _say(sentence: str) -> None:

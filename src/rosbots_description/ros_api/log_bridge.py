@@ -10,7 +10,7 @@ from rospy.rostime import _set_rostime
 from ..sim.errors import one_line
 
 _ROOT = __name__.partition('.')[0]  # this library, under whichever name it was imported
-_LOADING = ('sim.plugins.params', 'sim.plugins.diff_drive')  # they log only while they load
+_PLUGINS = f'{_ROOT}.sim.plugins.'  # their modules log only while a plugin is loaded
 _REMEMBERED = 1000  # texts
 _LEVELS = {
     'debug': logging.DEBUG,
@@ -35,8 +35,9 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
         ours.addHandler(handler)
     ours.setLevel(rosout.level)
     ours.propagate = False
-    for module in _LOADING:
-        ours.getChild(module).addFilter(Unrepeated())
+    for name in tuple(logging.root.manager.loggerDict):
+        if name.startswith(_PLUGINS):
+            logging.getLogger(name).addFilter(Unrepeated())
 
 
 def set_level(name: str) -> None:

@@ -134,7 +134,7 @@ class DiffDriveAdapter(Adapter):
     def _tell_root(self, edge: FrameTransform, moved: FrameTransform) -> None:
         if self._told_root != moved.child:
             self._told_root = moved.child
-            logger.info(
+            logger.debug(
                 '%sanother node holds %s still in %s, so %s -> %s is published in place of %s -> '
                 '%s: TF keeps one parent for each frame', self.plugin.log_prefix, edge.child,
                 moved.child, moved.parent, moved.child, edge.parent, edge.child,

@@ -75,7 +75,6 @@ def read_config(params: Params) -> DiffDriveConfig:
         right_joint=read('rightJoint', 'right_joint'),
         odometry_source=_odometry_source(params),
     )
-    params.warn_missing()
     for tag, value in (
         ('wheelSeparation', config.wheel_separation),
         ('wheelDiameter', config.wheel_diameter),

@@ -23,7 +23,6 @@ class Params:
         self.prefix = prefix
         self._element = element
         self._read: set[str] = set()
-        self._missing: list[str] = []
 
     def text(self, tag: str) -> str | None:
         """Return the tag's text without surrounding blanks, or None; says nothing."""
@@ -32,7 +31,7 @@ class Params:
         return None if child is None else child.text.strip()
 
     def read(self, tag: str, default: Value, shown: str | None = None) -> Value:
-        """Return the tag's value in the type of `default`; `warn_missing` tells of a missing tag.
+        """Return the tag's value in the type of `default`; a missing tag is a warning.
 
         Args:
             shown: what the warning names as default where it is not the plain value.
@@ -42,18 +41,13 @@ class Params:
         text = self.text(tag)
         if text is None:
             shown = shown or _show(default)
-            self._missing.append(f'missing <{tag}> default is {shown}')
+            logger.warning('%smissing <%s> default is %s', self.prefix, tag, shown)
             return default
         if isinstance(default, bool):
             return self._boolean(tag, text, default)
         if isinstance(default, float):
             return self._number(tag, text)
         return text
-
-    def warn_missing(self) -> None:
-        """Name the tags that were not there and what counts instead, in one line."""
-        if self._missing:
-            logger.warning('%s%s', self.prefix, '; '.join(self._missing))
 
     def ignore(self, *tags: str) -> None:
         """Count `tags` as read: they are known to mean nothing here."""
