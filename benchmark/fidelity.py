@@ -36,7 +36,7 @@ UNITS = {
 }
 SMALL = 0.2  # of a quantity below this no share is told: it would say nothing
 # Aims: share of Gazebo's mean, or distance in the quantity's unit.
-SPEED_SHARE, REST_SHARE, T90_SHARE, YAW, RAMP = 0.01, 0.02, 0.05, 0.05, 0.010
+SPEED_SHARE, REST_SHARE, T90_SHARE, RAMP = 0.03, 0.04, 0.05, 0.015
 IDLE = 30.0  # [s]
 
 
@@ -50,8 +50,8 @@ def compare_recorded(name: str) -> list[str]:
     way = math.hypot(gazebo['x'], gazebo['y'])
     apart = math.dist((ours['x'], ours['y']), (gazebo['x'], gazebo['y']))
     if turns:
-        yaw = abs(angle_between(ours['yaw'], gazebo['yaw']))
-        rows.append(_verdict(name, 'heading at rest', f'{yaw:.4f} rad', yaw <= YAW))
+        share = abs(angle_between(ours['yaw'], gazebo['yaw']) / gazebo['yaw'])
+        rows.append(_verdict(name, 'heading at rest', f'{share:.2%} off', share <= REST_SHARE))
     else:
         share = apart / way
         rows.append(_verdict(name, 'place at rest', f'{share:.2%} off', share <= REST_SHARE))

@@ -26,7 +26,6 @@ SETTINGS = {
     '50 passes': Tuning(passes=1.0),
     '20 passes': Tuning(passes=0.4),
     '8 passes': Tuning(passes=0.16),
-    'hard drag': Tuning(dragged_sinks=0.0),
     'cone': Tuning(friction_cone=True),
     'prisms': Tuning(exact_cylinders=False),
     'push 200/s': Tuning(push_out=200.0),

@@ -17,8 +17,8 @@ from article import OUTPUT
 from rosbots_description.cli import gzserver
 from rosbots_description.ros_api import node
 from rosbots_description.sim.clock import NANOSECONDS
+from rosbots_description.sim.model import Joint
 from rosbots_description.sim.schedule import Hook
-from rosbots_description.sim.wheel_pair import WheelPair
 from rosbots_description.sim.world import World
 
 _FILE = OUTPUT / 'recorded.json'
@@ -70,19 +70,20 @@ def read() -> Record:
 def main() -> int:
     """Be the server until it is told to stop; return the exit code."""
     recorder = Recorder()
-    drive = WheelPair.drive
+    set_motor = Joint.set_motor
 
     class RecordedWorld(World):
         def __init__(self) -> None:
             super().__init__()
             self.schedule.add(recorder)
 
-    def recorded_drive(pair: WheelPair, left: float, right: float) -> None:
-        drive(pair, left, right)
-        recorder.note_target(left)
+    def recorded_set_motor(joint: Joint, velocity: float, effort: float) -> None:
+        set_motor(joint, velocity, effort)
+        if 'left' in joint.name:
+            recorder.note_target(velocity)
 
     node.World = RecordedWorld
-    WheelPair.drive = recorded_drive
+    Joint.set_motor = recorded_set_motor
     code = gzserver.main()
     recorder.save()
     return code

@@ -14,12 +14,12 @@ from support.motion import (
     ramp_delays,
 )
 
-SPEED_SHARE = 0.01  # of Gazebo's steady speed
-WHEEL_SHARE = 0.006  # of the speed of Gazebo's wheels
+SPEED_SHARE = 0.03  # of Gazebo's steady speed
+WHEEL_SHARE = 0.015  # of the speed of Gazebo's wheels
 T90_SHARE = 0.05  # of the time to 90 % of the steady speed
-DISPLACEMENT_SHARE = 0.02  # of the way Gazebo's robot has gone at rest
-TURN_TOLERANCE = 0.05  # [rad] after five seconds of turning
-RAMP_TOLERANCE = 0.010  # [s] by which a speed is reached earlier or later
+DISPLACEMENT_SHARE = 0.04  # of the way Gazebo's robot has gone at rest
+TURN_SHARE = 0.04  # of the angle Gazebo's robot has turned at rest
+RAMP_TOLERANCE = 0.015  # [s] by which a speed is reached earlier or later
 REST_HEIGHT = (-0.120, 0.002)  # [m] of base_footprint: the wheels reach 0.12 m below it
 IDLE_CREEP = 1e-4  # [m] in thirty seconds
 TREMBLING = 1e-3  # [m/s or rad/s] of a robot at rest; in Gazebo it is 0.004 and 0.016
@@ -62,9 +62,14 @@ def test_the_robot_comes_to_rest_where_gazebos_does(name):
     assert apart < DISPLACEMENT_SHARE * math.hypot(x, y)
 
 
-@pytest.mark.parametrize('name', COMMANDS)
-def test_the_heading_at_rest_is_gazebos(name):
-    assert abs(angle_between(ours(name)['yaw'], RECORDED[name]['yaw'])) < TURN_TOLERANCE
+@pytest.mark.parametrize('name', ['turn', 'arc'])
+def test_the_robot_comes_to_rest_at_gazebos_heading(name):
+    yaw = RECORDED[name]['yaw']
+    assert abs(angle_between(ours(name)['yaw'], yaw)) < TURN_SHARE * abs(yaw)
+
+
+def test_a_straight_drive_veers_no_more_than_gazebos():
+    assert abs(ours('straight')['yaw']) <= abs(RECORDED['straight']['yaw'])
 
 
 def test_speeding_up_and_slowing_down_follow_gazebos_ramp():

@@ -1,4 +1,4 @@
-"""Odometry from the wheels tells what the wheels did, on a robot whose tyres creep."""
+"""Odometry from the wheels tells what the wheels did."""
 
 import math
 

@@ -1,24 +1,21 @@
 """A diff drive without an engine: a model of two wheel joints that obey at once, or as told."""
 
 import math
-from functools import partial
 from types import SimpleNamespace
 
 from rosbots_description.sim.clock import SimClock
 from rosbots_description.sim.errors import NotFoundError
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy
+from rosbots_description.sim.pose import Pose, Twist, from_rpy
 from rosbots_description.sim.spec import (
     Collision,
     Cylinder,
     Element,
-    Inertial,
     JointSpec,
     LinkSpec,
     ModelSpec,
     PluginSpec,
 )
-from rosbots_description.sim.tuning import Tuning
 
 TAGS = {
     'robotNamespace': '/',
@@ -30,8 +27,6 @@ TAGS = {
     'updateRate': '100',
 }
 STEP = 0.001  # [s]
-BASE = Inertial(4.0, ixx=0.1, iyy=0.1, izz=0.2)
-WHEEL = Inertial(0.5, ixx=0.01, iyy=0.01, izz=0.01)
 PERIOD_STEPS = 10
 
 
@@ -42,14 +37,9 @@ class Wheel:
         self.name, self.model = name, model
         self.spec = JointSpec(name, 'revolute', 'base', f'{name}_link')
         self.position, self.velocity, self.effort = 0.0, 0.0, 0.0
-        self.weight = 0.0  # [N]; nothing rests on a wheel of these tests unless they say so
-        self.gives = None  # what comes of the speed asked for: speed and effort
 
     def set_motor(self, velocity, effort):
-        self.velocity, self.effort = self.gives(velocity) if self.gives else (velocity, effort)
-
-    def normal_force(self):
-        return self.weight
+        self.velocity, self.effort = velocity, effort
 
 
 class FakeModel:
@@ -60,53 +50,19 @@ class FakeModel:
         self.wheels = {'left': Wheel('left', self), 'right': Wheel('right', self)}
         self.now = (Pose(), Twist())
         y = {'left': 0.4, 'right': -0.4}
-        self.ground = self.aside = 0.0  # [m/s] at which it drives along x, and is moved along y
-        self.turns = 0.0  # [rad/s] about the middle between the wheels
-        self.radius = wheel_collisions[0].geometry.radius if wheel_collisions else 0.0
         side = from_rpy(-math.pi / 2, 0.0, 0.0)
         wheel_links = [
-            LinkSpec(
-                f'{name}_link', Pose((0.0, y[name], 0.2), side), WHEEL, collisions=wheel_collisions
-            )
+            LinkSpec(f'{name}_link', Pose((0.0, y[name], 0.2), side), collisions=wheel_collisions)
             for name in y
         ]
-        self.spec = ModelSpec('robot', (LinkSpec('base', inertial=BASE), *wheel_links))
+        self.spec = ModelSpec('robot', (LinkSpec('base'), *wheel_links))
         self.links = {
-            link.name: SimpleNamespace(
-                pose=Pose((0.1, *link.pose.position[1:])), state=partial(self.link_state, link)
-            )
+            link.name: SimpleNamespace(pose=Pose((0.1, *link.pose.position[1:])))
             for link in self.spec.links
         }
-        self.body = None
-        self.rolling = set()  # links that were let to roll
-        self.holds = {}  # which shares of its friction each link holds
-        self.contacts = {}  # with what links touch
-        self.pushes = []  # what the base was pushed with: force and torque
-        self.engine = SimpleNamespace(
-            set_hold=lambda _, link, axis, hold: self.holds.__setitem__(link, hold),
-            contacts=lambda _, link: self.contacts.get(link, []),
-            push=lambda _, link, force, torque, place: self.pushes.append((force, torque)),
-            friction_towards=Tuning().friction_towards,
-            let_sink=lambda *_: None,
-            let_roll=lambda _, link: self.rolling.add(link),
-        )
 
     def state(self):
         return self.now
-
-    def link_state(self, link):
-        """Return where a link is as it drives through the origin, and its twist."""
-        name = link.name.removesuffix('_link')
-        spins = self.wheels[name].velocity if name in self.wheels else 0.0
-        linear = (self.ground - self.turns * link.pose.position[1], self.aside, 0.0)
-        return link.pose, Twist(linear, (0.0, spins, self.turns))
-
-    @property
-    def pose(self):
-        """Return where it is by `now`, turned as its wheels have turned it."""
-        left, right = (self.wheels[side].position * self.radius for side in ('left', 'right'))
-        told = from_rpy(0.0, 0.0, (right - left) / 0.8)
-        return compose(self.now[0], Pose((0.0, 0.0, 0.0), told))
 
     def joint(self, name):
         if name not in self.wheels:

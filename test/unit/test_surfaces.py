@@ -15,7 +15,7 @@ from rosbots_description.sim.spec import (
     JointSpec,
     LinkSpec,
 )
-from rosbots_description.sim.surfaces import crowned, sinking_spring
+from rosbots_description.sim.surfaces import crowned, rolling_arm
 
 TYRE = Collision('tyre', Cylinder(0.1, 0.05))
 AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')
@@ -54,8 +54,6 @@ def test_a_crown_has_a_size_whatever_the_wheels(length):
         assert 0.0 < shape.geometry.length <= length
 
 
-@pytest.mark.parametrize('mass', [0.2, 50.0])
-def test_what_a_robot_drags_sinks_in_under_it_and_does_not_bounce(mass):
-    stiffness, damping = sinking_spring(mass, 5e-4)
-    assert stiffness * 5e-4 == pytest.approx(9.8 * mass)
-    assert damping**2 == pytest.approx(4.0 * stiffness * mass)
+@pytest.mark.parametrize(('joint', 'arm'), [(None, 5e-4), (AXLE, 0.0)])
+def test_a_loose_cylinder_resists_rolling_and_a_wheel_does_not(joint, arm):
+    assert rolling_arm([TYRE], joint) == pytest.approx(arm)

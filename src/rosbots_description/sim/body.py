@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .pose import Pose, Quaternion, Twist, Vector
+from .pose import Pose, Twist
 
 
 @dataclass(frozen=True)
@@ -19,41 +19,11 @@ class Part:
     com_in_origin: Pose
 
 
-class Touching(NamedTuple):
-    """A part of a link that touches: PyBullet's body and index, and which way its axes stand.
-
-    `axes` turn the part's own axes into those of the link; `rigid` tells that nobody described how
-    it gives way.
-    """
+class Place(NamedTuple):
+    """A part of a body: the numbers that PyBullet gave to the body and to its link, -1 its base."""
 
     body: int
     index: int
-    axes: Quaternion
-    rigid: bool
-
-
-class Contact(NamedTuple):
-    """Where something was pressed in the last step [m], and what it was held with there [N].
-
-    Both are given in the world; the friction may be that on either side.
-    """
-
-    place: Vector
-    friction: Vector
-
-
-class Hold(NamedTuple):
-    """Which shares of its friction a surface holds: along an axle, and in the other directions."""
-
-    sideways: float = 1.0
-    ahead: float = 1.0
-
-    def rounded(self) -> 'Hold':
-        """Return it in hundredths: friction does not change with each bit that a robot turns by."""
-        return Hold(*(round(share, 2) for share in self))
-
-
-HOLDS_ALL = Hold()
 
 
 class Body:
@@ -70,10 +40,7 @@ class Body:
         self.weightless: list[tuple[int, int, float]] = []
         self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
-        self.surfaces: dict[str, list[Touching]] = {}  # what each link touches with
-        self.holds: dict[str, Hold] = {}  # last shares of each link's friction
-        self.rolling: set[str] = set()  # links that roll without resistance
-        self.sinking: set[str] = set()  # links that give way by a hair
+        self.surfaces: dict[str, list[Place]] = {}  # what each link touches with
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,15 @@
 """Makes PyBullet's bodies of links and joints; their text is that of bullet_description.py."""
 
 import os
-from collections.abc import Sequence
 from itertools import combinations, product
 
-from .body import Body, Part, Touching
+from .body import Body, Part, Place
 from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .inertia import principal_axes
-from .pose import NO_ROTATION, Pose, Vector, compose, inverse
-from .spec import FIXED, Collision, Inertial, JointSpec, Mesh, ModelSpec
+from .pose import Pose, Vector, compose, inverse
+from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
 from .surfaces import (
     Groups,
     contact_spring,
@@ -24,7 +23,7 @@ from .surfaces import (
     with_inner_first,
 )
 from .tuning import Tuning
-from .untouching import Place, Untouching
+from .untouching import Untouching
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 _MASSLESS = Inertial(0.0)
@@ -121,10 +120,7 @@ class BodyMaker:
             return  # one body without the self-collision flag never touches itself
         if spec.static:
             return  # what stands does not touch what stands
-        places = {
-            link: [Place(part.body, part.index) for part in surfaces]
-            for link, surfaces in body.surfaces.items()
-        }
+        places = body.surfaces
         for own in places.values():
             for one, other in combinations(own, 2):
                 self._untouching.add(one, other)
@@ -196,10 +192,9 @@ class BodyMaker:
         part = body.parts[link.name]
         body.surfaces[link.name] = surfaces = []
         for k, group in enumerate(groups):
-            index, turn = part.index, part.com_in_origin.orientation
-            if k:  # a rider stands in the frame of the joint above its link
+            index = part.index
+            if k:
                 index = index_of[f'l{i}r{k}']
-                turn = joint.pose.orientation if joint else NO_ROTATION
                 pybullet.changeDynamics(
                     part.body,
                     index,
@@ -207,34 +202,34 @@ class BodyMaker:
                     physicsClientId=self._client,
                 )
             if group:
-                self._set_surface(part.body, index, group, step_size)
-                rigid = is_rigid(group[0].surface)
-                surfaces.append(Touching(part.body, index, turn, rigid))
+                rolling = rolling_arm(group, joint)
+                self._set_surface(part.body, index, group[0].surface, rolling, step_size)
+                surfaces.append(Place(part.body, index))
 
     def _set_surface(
-        self, number: int, index: int, group: Sequence[Collision], step_size: float
+        self, number: int, index: int, surface: Surface, rolling: float, step_size: float
     ) -> None:
-        """Set up what a body touches with, by collisions of equal surface."""
-        surface = group[0].surface
+        """Set up what a body touches with.
+
+        Args:
+            rolling: PyBullet's rolling friction [m].
+            step_size: of the simulation [s].
+        """
         pybullet.changeDynamics(
             number,
             index,
             lateralFriction=friction(surface),
             spinningFriction=0.0,
-            rollingFriction=rolling_arm(group),
+            rollingFriction=rolling,
             restitution=0.0,
             physicsClientId=self._client,
         )
         if not is_rigid(surface):
-            spring = contact_spring(surface, step_size, self._tuning.push_out)
-            self.set_spring(number, index, *spring)
-
-    def set_spring(self, number: int, index: int, stiffness: float, damping: float) -> None:
-        """Let what a body touches with give way: stiffness [N/m], damping [N s/m]."""
-        pybullet.changeDynamics(
-            number,
-            index,
-            contactStiffness=stiffness,
-            contactDamping=damping,
-            physicsClientId=self._client,
-        )
+            stiffness, damping = contact_spring(surface, step_size, self._tuning.push_out)
+            pybullet.changeDynamics(
+                number,
+                index,
+                contactStiffness=stiffness,
+                contactDamping=damping,
+                physicsClientId=self._client,
+            )

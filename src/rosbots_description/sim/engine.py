@@ -7,16 +7,14 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
-from collections.abc import Iterator
-
-from .body import HOLDS_ALL, Body, Contact, Hold, Motion, Part
+from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .physics import PhysicsSettings
-from .pose import ALONG, Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
+from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from .spec import ModelSpec
-from .surfaces import overlap_share, sinking_spring
+from .surfaces import overlap_share
 from .tuning import Tuning
 
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then
@@ -51,10 +49,9 @@ class Engine:
         self._weightless: list[Body] = []  # those with links that feel no gravity
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
-        # What has been read since the last step, by PyBullet's body and index: one call of PyBullet
-        # costs as much as reading all joints, or all contacts, of a body.
+        # What has been read since the last step, by PyBullet's body and index: reading one joint
+        # costs as much as reading all of a body's.
         self._joint_readings: dict[int, dict[int, tuple]] = {}
-        self._points: dict[int, dict[int, list[tuple]]] = {}
         self.apply(physics)
 
     def close(self) -> None:
@@ -88,14 +85,14 @@ class Engine:
         """Remove everything; the same bodies added again then move bit for bit as before."""
         self._maker.reset()
         self._weightless.clear()
-        self._forget_readings()
+        self._joint_readings.clear()
         self.waste = 0
         self.apply(self._physics)
 
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
         step, client = self._step, self._client
-        self._forget_readings()
+        self._joint_readings.clear()
         for _ in range(steps):
             if self._weightless:
                 self._lift_weightless()
@@ -120,7 +117,7 @@ class Engine:
 
     def remove(self, body: Body) -> None:
         """Take a model out of the world."""
-        self._forget_readings()
+        self._joint_readings.clear()
         if body in self._weightless:
             self._weightless.remove(body)
         self.waste += body.size
@@ -143,7 +140,7 @@ class Engine:
 
     def set_motion(self, body: Body, motion: Motion) -> None:
         """Let a model be where another one of the same links and joints was, moving as it did."""
-        self._forget_readings()
+        self._joint_readings.clear()
         self.set_root_poses(body, {link: pose for link, (pose, _) in motion.roots.items()})
         for link, (_, twist) in motion.roots.items():
             self.set_root_twist(body, link, twist)
@@ -188,7 +185,7 @@ class Engine:
 
     def set_twist(self, body: Body, twist: Twist) -> None:
         """Let all links move with this velocity of their root's origin, in world axes."""
-        self._forget_readings()
+        self._joint_readings.clear()
         for link in body.roots:
             self.set_root_twist(body, link, twist)
         for number, index in body.joints.values():
@@ -245,65 +242,9 @@ class Engine:
             readings = self._joint_readings[number] = dict(zip(indices, states, strict=True))
         return readings[index]
 
-    def normal_force(self, body: Body, link: str) -> float:
-        """Return the sum of the normal forces on a link in the last step [N]."""
-        return sum(point[9] for point in self._touched(body, link))
-
-    def contacts(self, body: Body, link: str) -> list[Contact]:
-        """Return where a link was pressed in the last step."""
-        found = []
-        for point in self._touched(body, link):
-            place, (normal_force, first, one, second, other) = point[5], point[9:14]
-            if normal_force > 0.0:
-                friction = (first * a + second * b for a, b in zip(one, other, strict=True))
-                found.append(Contact(place, tuple(friction)))
-        return found
-
-    def set_hold(self, body: Body, link: str, axis: Vector, hold: Hold) -> None:
-        """Let a link's surfaces hold only shares of their friction; `axis` of its frame is an axle.
-
-        Surfaces none of whose own axes it is hold as they did.
-        """
-        if body.holds.get(link, HOLDS_ALL) == hold:
-            return  # it does so already
-        body.holds[link] = hold
-        for part in body.surfaces[link]:
-            own = rotate(conjugate(part.axes), axis)
-            along = [abs(component) > ALONG for component in own]
-            if not any(along):
-                continue
-            scales = [hold.sideways if is_axle else hold.ahead for is_axle in along]
-            pybullet.changeDynamics(
-                part.body, part.index, anisotropicFriction=scales, physicsClientId=self._client
-            )
-
-    def friction_towards(self, yaw: float) -> float:
-        """Return how many times its mu what slides in that direction [rad] is held back by."""
-        return self._tuning.friction_towards(yaw)
-
-    def let_sink(self, body: Body, link: str, mass: float) -> None:
-        """Let a link give way by a hair under a mass [kg], if nobody described how it does."""
-        if link in body.sinking or not self._tuning.dragged_sinks or mass <= 0.0:
-            return  # it does so already, or not at all
-        body.sinking.add(link)
-        spring = sinking_spring(mass, self._tuning.dragged_sinks)
-        for part in body.surfaces[link]:
-            if part.rigid:
-                self._maker.set_spring(part.body, part.index, *spring)
-
-    def let_roll(self, body: Body, link: str) -> None:
-        """Take from a link what keeps cylinders from rolling off: a motor holds this one."""
-        if link in body.rolling:
-            return  # it does so already
-        body.rolling.add(link)
-        for part in body.surfaces[link]:
-            pybullet.changeDynamics(
-                part.body, part.index, rollingFriction=0.0, physicsClientId=self._client
-            )
-
     def set_joint_position(self, body: Body, joint: str, position: float) -> None:
         """Put a joint at `position` [rad or m], at rest."""
-        self._forget_readings()
+        self._joint_readings.clear()
         number, index = body.joints[joint]
         pybullet.resetJointState(number, index, position, 0.0, self._client)
 
@@ -320,22 +261,6 @@ class Engine:
             force=effort,
             physicsClientId=self._client,
         )
-
-    def _forget_readings(self) -> None:
-        self._joint_readings.clear()
-        self._points.clear()
-
-    def _touched(self, body: Body, link: str) -> Iterator[tuple]:
-        """Yield PyBullet's contact points of a link in the last step."""
-        for part in body.surfaces[link]:
-            points = self._points.get(part.body)
-            if points is None:
-                points = self._points[part.body] = {}
-                for point in pybullet.getContactPoints(part.body, physicsClientId=self._client):
-                    points.setdefault(point[3], []).append(point)
-                    if point[2] == part.body:  # it touches itself
-                        points.setdefault(point[4], []).append(point)
-            yield from points.get(part.index, ())
 
     def _link_state(self, part: Part, velocity: bool) -> tuple:
         return pybullet.getLinkState(

@@ -108,10 +108,6 @@ class Joint:
             effort = max(-limit, min(limit, effort))
         self.model.engine.push_joint(self.model.body, self.name, effort)
 
-    def normal_force(self) -> float:
-        """Return the sum of the normal forces on the child link in the last step [N]."""
-        return self.model.engine.normal_force(self.model.body, self.spec.child)
-
     def set_motor(self, velocity: float, effort: float) -> None:
         """Drive towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
         self.model.engine.set_joint_motor(self.model.body, self.name, velocity, effort)

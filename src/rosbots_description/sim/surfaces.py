@@ -11,7 +11,6 @@ from operator import not_
 
 from .bullet_description import MeshFile, Tree
 from .edges import leaning
-from .inertia import principal_axes
 from .inner_shapes import inner_shapes
 from .pose import ALONG, UP, Vector, conjugate, dot, rotate
 from .spec import (
@@ -19,7 +18,6 @@ from .spec import (
     REVOLUTE,
     Collision,
     Cylinder,
-    Inertial,
     JointSpec,
     LinkSpec,
     Plane,
@@ -50,30 +48,22 @@ _SINKS_IN = 5e-5  # [m] one side of a wheel may be so much lower, and both still
 
 
 def surface_groups(tree: Tree, i: int) -> Groups:
-    """Return the collisions of link `i` by equal surface: first the link's own, then the riders'.
-
-    PyBullet takes the axes of the inertia for a body's own. Where those of a robot's root are
-    askew, all of its collisions ride, with the axes of the link: what a robot drags over the ground
-    has to hold sideways and ahead differently (dragging.py).
-    """
+    """Return the collisions of link `i` by equal surface: the link's own, then the riders'."""
     link, joint = tree.links[i], tree.joints[i]
-    groups = _by_surface([shape for one in link.collisions for shape in crowned(one, link, joint)])
-    if groups and i == 0 and _drives(tree) and _is_askew(tree.links[0].inertial):
-        return [(), *groups]
-    return groups or [()]
+    shapes = [shape for one in link.collisions for shape in crowned(one, link, joint)]
+    return _by_surface(shapes) or [()]
 
 
 def with_inner_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups | None:
     """Return the groups of a robot's root anew: first what no plane can touch, which needs no look.
 
-    The rest rides, as it does anyway where the root's axes are askew. None if it is not worth it.
+    The rest rides. None if it is not worth it.
     """
-    touching = [group for group in groups if group]
-    if not touching or not _drives(tree):
+    if not _drives(tree):
         return None
-    first, *others = touching
-    inner = inner_shapes(first, mesh_file)
-    if sum(inner) < (1 if len(touching) < len(groups) else _WORTH_A_RIDER):
+    first, *others = groups
+    inner = inner_shapes(first, mesh_file) if first else ()
+    if sum(inner) < _WORTH_A_RIDER:
         return None
     halves = [tuple(compress(first, half)) for half in (inner, map(not_, inner))]
     return [*halves, *others]
@@ -112,11 +102,10 @@ def crowned(
     that is the same end for the left and the right wheel, what they push with would turn a robot.
     """
     wheel = collision.geometry
-    if joint is None or joint.type != REVOLUTE or not isinstance(wheel, Cylinder):
+    if not _is_wheel(collision, joint):
         return (collision,)
     axis = rotate(collision.pose.orientation, UP)
-    tumbles = abs(dot(axis, joint.axis_in_child)) < ALONG
-    if tumbles or touching_end(wheel, rotate(link.pose.orientation, axis)):
+    if touching_end(wheel, rotate(link.pose.orientation, axis)):
         return (collision,)
     reach = math.hypot(wheel.radius, wheel.radius, wheel.length / 2.0)
     shoulders = max(wheel.radius - _CROWN * reach, wheel.radius / 2.0)
@@ -124,6 +113,13 @@ def crowned(
         replace(collision, geometry=Cylinder(wheel.radius, min(_CREST, wheel.length))),
         replace(collision, geometry=Cylinder(shoulders, wheel.length)),
     )
+
+
+def _is_wheel(collision: Collision, joint: JointSpec | None) -> bool:
+    """Tell whether a collision is a cylinder that a joint turns about its own axis."""
+    if joint is None or joint.type != REVOLUTE or not isinstance(collision.geometry, Cylinder):
+        return False
+    return abs(dot(rotate(collision.pose.orientation, UP), joint.axis_in_child)) >= ALONG
 
 
 def touching_end(wheel: Cylinder, axis: Vector) -> float:
@@ -155,13 +151,6 @@ def _axle(tree: Tree) -> Vector | None:
     return None
 
 
-def _is_askew(inertial: Inertial) -> bool:
-    """Tell whether the principal axes are none of the link's."""
-    _, turn = principal_axes(inertial)
-    axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    return any(max(map(abs, rotate(turn, axis))) < ALONG for axis in axes)
-
-
 def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
     """Group by equal surface, since PyBullet knows one friction per body; first seen first."""
     groups: dict = {}
@@ -181,15 +170,17 @@ def friction(surface: Surface) -> float:
     return min(1.0, max(0.0, surface.mu))
 
 
-def rolling_arm(collisions: Sequence[Collision]) -> float:
+def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> float:
     """Return PyBullet's rolling friction of a body [m]: how far before the axle the ground pushes.
 
     Only cylinders need it. One that lies has an edge at each end, and PyBullet finds but one of
     them in a step; the other pushes from where it was, from behind, and a can at rest would roll
-    away faster and faster.
+    away faster and faster. Wheels do not: they touch in one place (`crowned`, `touching_end`).
     """
     shapes = [collision.geometry for collision in collisions]
     if not all(isinstance(shape, Cylinder) for shape in shapes):
+        return 0.0
+    if any(_is_wheel(collision, joint) for collision in collisions):
         return 0.0
     return _ROLLING_RESISTANCE * max((shape.radius for shape in shapes), default=0.0)
 
@@ -217,13 +208,3 @@ def contact_spring(surface: Surface, step_size: float, push_out: float) -> tuple
     """
     least = step_size * surface.kp * (1.0 / overlap_share(step_size, push_out) - 1.0)
     return surface.kp, max(surface.kd, least)
-
-
-def sinking_spring(mass: float, depth: float) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of what sinks by a depth [m] under a mass [kg].
-
-    The damping is critical. With more a blow would be over in one step, before PyBullet has found
-    all that meets.
-    """
-    stiffness = mass * _GRAVITY / depth
-    return stiffness, 2.0 * math.sqrt(stiffness * mass)

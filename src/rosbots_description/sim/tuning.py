@@ -1,6 +1,5 @@
 """What the engine is free to choose: the settings that nothing in a model or a world prescribes."""
 
-import math
 from dataclasses import dataclass
 
 
@@ -14,16 +13,9 @@ class Tuning:
             x and y axis each, as Gazebo's ODE does: diagonally it can be 1.4 times as large.
         exact_cylinders: whether cylinders are round; False makes them prisms of 32 edges.
         push_out: rate at which overlapping bodies are pushed apart [1/s].
-        dragged_sinks: how far what a driven robot drags over the ground sinks in under all of its
-            weight [m]; 0 for not at all.
     """
 
     passes: float = 0.22
     friction_cone: bool = False
     exact_cylinders: bool = True
     push_out: float = 10.0
-    dragged_sinks: float = 5e-4
-
-    def friction_towards(self, yaw: float) -> float:
-        """Return how many times its mu what slides in that direction [rad] is held back by."""
-        return 1.0 if self.friction_cone else abs(math.cos(yaw)) + abs(math.sin(yaw))

@@ -1,15 +1,7 @@
 """Which of PyBullet's bodies pass through each other, for as long as both of them are there."""
 
-from typing import NamedTuple
-
+from .body import Place
 from .bullet import pybullet
-
-
-class Place(NamedTuple):
-    """A part of a body: the numbers that PyBullet gave to the body and to its link, -1 its base."""
-
-    body: int
-    index: int
 
 
 class Untouching:

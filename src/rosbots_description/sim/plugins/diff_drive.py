@@ -6,16 +6,19 @@ Behaviour, defaults and timing are those of libgazebo_ros_diff_drive.so in gazeb
 import logging
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..clock import NANOSECONDS
 from ..errors import NotFoundError, PluginError
 from ..pose import Pose, Twist, compose, from_rpy, inverse, yaw_of
 from ..readings import FrameTransform, JointStates, Odometry, Port
-from ..wheel import Wheel
-from ..wheel_pair import WheelPair
+from ..wheel_geometry import radius_of, track_of
 from .base import ModelPlugin
 from .params import Params
 from .registry import register
+
+if TYPE_CHECKING:
+    from ..model import Joint
 
 logger = logging.getLogger(__name__)
 
@@ -107,7 +110,7 @@ class DiffDrive(ModelPlugin):
     """Drive two wheel joints from a planar velocity command; report odometry.
 
     Outputs, each a `Port`: `odometry` (`Odometry`), `wheel_transform` (`FrameTransform`, once per
-    wheel) and `joint_states` (`JointStates`: right, left). `wheels` are the left and the right one.
+    wheel) and `joint_states` (`JointStates`: right, left). `wheels` are the joints, left first.
     """
 
     def load(self) -> None:
@@ -122,7 +125,6 @@ class DiffDrive(ModelPlugin):
         self.config = read_config(self.params)
         self.odometry, self.wheel_transform, self.joint_states = Port(), Port(), Port()
         self.wheels = (self._wheel(self.config.left_joint), self._wheel(self.config.right_joint))
-        self._pair = WheelPair(self.model, *self.wheels, self.world.clock)
         self._warn_unread()
         self._warn_geometry()
         rate = self.config.update_rate
@@ -137,14 +139,14 @@ class DiffDrive(ModelPlugin):
         # The first encoder step spans all of the time so far, as upstream's does.
         self._encoder_ns = 0
         self.reset()
-        self._pair.release()
+        for wheel in self.wheels:
+            wheel.set_motor(0.0, self.config.wheel_torque)
 
     def reset(self) -> None:
         """Forget command, encoder odometry and the time of the last update."""
         self._command = (0.0, 0.0)
         self._encoder_pose = (0.0, 0.0, 0.0)  # x [m], y [m], yaw [rad]
         self._encoder_twist = (0.0, 0.0)  # forward [m/s], yaw rate [rad/s]
-        self._pair.rest()
         self._last_ns = self.world.clock.now_ns
         self._set_due()
 
@@ -184,8 +186,8 @@ class DiffDrive(ModelPlugin):
             for i in (0, 1):
                 self._setpoint[i] += max(-limit, min(limit, missing[i]))
             target = self._setpoint
-        left, right = target
-        self._pair.drive(left / radius, right / radius)
+        for wheel, speed in zip(self.wheels, target, strict=True):
+            wheel.set_motor(speed / radius, config.wheel_torque)
 
     def _publish(self) -> None:
         config = self.config
@@ -208,7 +210,7 @@ class DiffDrive(ModelPlugin):
 
     def _send_wheel_transforms(self, model_pose: Pose) -> None:
         world_in_model = inverse(model_pose)
-        for spec in (wheel.joint.spec for wheel in self.wheels):
+        for spec in (wheel.spec for wheel in self.wheels):
             pose = compose(world_in_model, self.model.links[spec.child].pose)
             self.wheel_transform.send(FrameTransform(spec.parent, spec.child, pose))
 
@@ -242,9 +244,9 @@ class DiffDrive(ModelPlugin):
         child = self.spec.element.child('robotNamespace')
         return (child.text.strip() if child is not None else '') or self.model.name
 
-    def _wheel(self, name: str) -> Wheel:
+    def _wheel(self, name: str) -> 'Joint':
         try:
-            return Wheel(self.model.joint(name), self.config.wheel_torque, self.world.clock)
+            return self.model.joint(name)
         except NotFoundError as error:
             raise PluginError(
                 f"{self.log_prefix}couldn't get wheel hinge joint named {name}: {error}"
@@ -263,9 +265,10 @@ class DiffDrive(ModelPlugin):
     def _warn_geometry(self) -> None:
         """Say so when the numbers given contradict the wheels that touch the ground."""
         left, right = self.wheels
-        if left.radius is None or right.radius is None:
+        radius, track = radius_of(left), track_of(left, right)
+        if radius is None or track is None:
             return
-        diameter, track = 2.0 * left.radius, math.dist(left.place_on_axle(), right.place_on_axle())
+        diameter = 2.0 * radius
         config = self.config
         forward = diameter / config.wheel_diameter
         turn = forward * config.wheel_separation / track if track > 0.0 else math.inf
