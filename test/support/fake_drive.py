@@ -81,14 +81,17 @@ def make(wheel_collisions=(), **tags):
 
 
 def run(plugin, steps):
-    """Advance like the world does: time first, then the hook if it is due."""
+    """Advance like the world does: time, the hook if it is due, physics, its report."""
     clock = plugin.world.clock
     for _ in range(steps):
         clock.steps += 1
+        due = plugin.due <= clock.steps
+        if due:
+            plugin.update()
         for wheel in plugin.model.wheels.values():
             wheel.position += wheel.velocity * STEP
-        if plugin.due <= clock.steps:
-            plugin.update()
+        if due:
+            plugin.observe()
 
 
 def rim_speeds(plugin):

@@ -237,10 +237,24 @@ def test_numbers_that_contradict_the_wheels_are_one_warning(caplog):
     make(wheel_collisions=wheel_of(0.23))
     lines = [r for r in caplog.records if 'contradict' in r.getMessage()]
     assert len(lines) == 1
-    assert '0.885 of the commanded speed' in lines[0].getMessage()
+    assert '0.88 of the commanded speed' in lines[0].getMessage()
+    assert 'or at 0.87 and 1.20 if it drags a caster' in lines[0].getMessage()
     assert lines[0].levelno == logging.WARNING
 
 
 def test_numbers_that_fit_the_wheels_are_no_warning(caplog):
     make(wheel_collisions=wheel_of(0.23), wheelDiameter='0.46', wheelSeparation='0.8')
     assert 'contradict' not in caplog.text
+
+
+def test_a_left_joint_on_the_right_side_is_one_warning_with_the_cure(caplog):
+    make(wheel_collisions=wheel_of(0.26), leftJoint='right', rightJoint='left')
+    lines = [r.getMessage() for r in caplog.records if 'this robot will' in r.getMessage()]
+    assert len(lines) == 1
+    assert "turn right when asked to turn left, for 'right' is on the right side" in lines[0]
+    assert lines[0].endswith('swap <leftJoint> and <rightJoint>')
+
+
+def test_wheels_on_their_sides_are_no_warning(caplog):
+    make(wheel_collisions=wheel_of(0.26))
+    assert 'this robot will' not in caplog.text

@@ -2,6 +2,7 @@
 
 import logging
 import math
+from collections.abc import Callable
 from fractions import Fraction
 
 logger = logging.getLogger(__name__)
@@ -22,6 +23,9 @@ class Hook:
     def update(self) -> None:
         """Do the work of this step and set the next `due`."""
         raise NotImplementedError
+
+    def observe(self) -> None:
+        """Report the state at the end of a step in which `update` ran, after physics."""
 
 
 class Herald:
@@ -73,17 +77,16 @@ class Schedule:
         """Return the earliest step count at which a hook wants to run."""
         return min([hook.due for hook in self._hooks], default=NEVER)
 
-    def run(self, step: int) -> None:
-        """Run every hook that is due at `step` or was due before.
+    def run(self, step: int, physics: Callable[[], None]) -> None:
+        """Make one step: every hook that is due at `step` or before, then physics, then reports.
 
-        One that fails is told of in the log and left out for a while; the others go on.
+        A hook that fails is told of in the log and left out for a while; the others go on.
         """
-        for hook in self._hooks:
-            if hook.due <= step:
-                try:
-                    hook.update()
-                except Exception:
-                    _leave_out(hook, step)
+        due = [hook for hook in self._hooks if hook.due <= step]
+        done = [hook for hook in due if _tried(hook, hook.update, step)]
+        physics()
+        for hook in done:
+            _tried(hook, hook.observe, step)
 
     def change_step(self, now: int, ratio: Fraction) -> None:
         """Keep all due at their time, now that steps last `ratio` times as long.
@@ -93,6 +96,16 @@ class Schedule:
         for hook in (*self._hooks, *self._heralds):
             if hook.due != NEVER:
                 hook.due = now + max(1, math.ceil((hook.due - now) / ratio))
+
+
+def _tried(hook: Hook, work: Callable[[], None], step: int) -> bool:
+    """Let a hook do its work; return whether it did not fail."""
+    try:
+        work()
+    except Exception:
+        _leave_out(hook, step)
+        return False
+    return True
 
 
 def _leave_out(failed: Hook | Herald, step: int) -> None:

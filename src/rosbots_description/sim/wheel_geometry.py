@@ -1,9 +1,8 @@
-"""What a wheel is: the radius of the shape that touches the ground, and the track of two."""
+"""What a wheel is: its radius, its axle, and how two of them carry a robot."""
 
-import math
 from typing import TYPE_CHECKING
 
-from .pose import compose, dot, rotate
+from .pose import UP, Vector, compose, cross, dot, rotate, subtract
 from .spec import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:
@@ -18,17 +17,33 @@ def radius_of(joint: 'Joint') -> float | None:
     return collisions[0].geometry.radius
 
 
-def track_of(left: 'Joint', right: 'Joint') -> float | None:
-    """Return the distance of two wheels along their axle [m]; None if one has not one shape."""
-    if radius_of(left) is None or radius_of(right) is None:
-        return None
-    link = _link(left)
-    axle = rotate(link.pose.orientation, left.spec.axis_in_child)
-    along = [dot(axle, _middle(_link(joint))) for joint in (left, right)]
-    return math.dist(along[:1], along[1:])
+def track_of(left: 'Joint', right: 'Joint') -> float:
+    """Return the distance of two wheels along their axle [m]; below 0 if their sides are swapped.
+
+    A wheel that turns forward drives across its axle, so its axle points to the left.
+    """
+    return dot(axle_of(left), subtract(_middle(left), _middle(right)))
 
 
-def _middle(link: LinkSpec) -> tuple[float, float, float]:
+def drives_towards_x(joint: 'Joint') -> bool:
+    """Tell whether a wheel that turns forward drives the model towards its x axis, not away."""
+    return cross(axle_of(joint), UP)[0] >= 0.0
+
+
+def same_way(left: 'Joint', right: 'Joint') -> bool:
+    """Tell whether both wheels drive the same way when they turn forward."""
+    return dot(axle_of(left), axle_of(right)) > 0.0
+
+
+def axle_of(joint: 'Joint') -> Vector:
+    """Return the direction of a wheel's axis in the frame of the model as it was spawned."""
+    return rotate(_link(joint).pose.orientation, joint.spec.axis_in_child)
+
+
+def _middle(joint: 'Joint') -> Vector:
+    link = _link(joint)
+    if not link.collisions:
+        return link.pose.position
     return compose(link.pose, link.collisions[0].pose).position
 
 

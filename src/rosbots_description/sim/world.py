@@ -5,6 +5,7 @@ import logging
 import os
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import partial
 from typing import Protocol
 
 from .bullet_description import mesh_needs
@@ -103,8 +104,7 @@ class World:
                 engine.step(quiet)
             else:
                 clock.steps += 1
-                schedule.run(clock.steps)
-                engine.step(1)
+                schedule.run(clock.steps, partial(engine.step, 1))
         if begin + steps > last:
             self.paused = True
             logger.error('the simulation is paused at %d s: stamps of 32 bits end there. '

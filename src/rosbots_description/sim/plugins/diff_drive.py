@@ -12,7 +12,7 @@ from ..clock import NANOSECONDS
 from ..errors import NotFoundError, PluginError
 from ..pose import Pose, Twist, compose, from_rpy, inverse, yaw_of
 from ..readings import FrameTransform, JointStates, Odometry, Port
-from ..wheel_geometry import radius_of, track_of
+from ..wheel_geometry import drives_towards_x, radius_of, same_way, track_of
 from .base import ModelPlugin
 from .params import Params
 from .registry import register
@@ -25,6 +25,7 @@ logger = logging.getLogger(__name__)
 ENCODER, WORLD = 'encoder', 'world'
 SLOWEST_RATE = 1e-3  # [Hz] updates rarer than that are a mistake
 REACHED = 0.01  # [m/s] rim speed this close to the target ends a ramp
+DRAGGED = 0.015  # share of its speed that a robot loses that drags a caster (doc/physics.md)
 TOLERATED = 0.02  # share by which a wheel may differ from its description without a warning
 
 
@@ -127,6 +128,7 @@ class DiffDrive(ModelPlugin):
         self.wheels = (self._wheel(self.config.left_joint), self._wheel(self.config.right_joint))
         self._warn_unread()
         self._warn_geometry()
+        self._warn_sides()
         rate = self.config.update_rate
         self._period_ns = round(NANOSECONDS / rate) if rate > 0.0 else 0
         self.restart()
@@ -136,8 +138,6 @@ class DiffDrive(ModelPlugin):
         # Rim speeds [m/s], left and right, that the ramp has come to. As upstream's, they are
         # never brought in line with the wheels.
         self._setpoint = [0.0, 0.0]
-        # The first encoder step spans all of the time so far, as upstream's does.
-        self._encoder_ns = 0
         self.reset()
         for wheel in self.wheels:
             wheel.set_motor(0.0, self.config.wheel_torque)
@@ -147,6 +147,9 @@ class DiffDrive(ModelPlugin):
         self._command = (0.0, 0.0)
         self._encoder_pose = (0.0, 0.0, 0.0)  # x [m], y [m], yaw [rad]
         self._encoder_twist = (0.0, 0.0)  # forward [m/s], yaw rate [rad/s]
+        self._encoder_ways = self._ways()
+        self._encoder_ns = self.world.clock.now_ns
+        self._reports = False
         self._last_ns = self.world.clock.now_ns
         self._set_due()
 
@@ -155,16 +158,21 @@ class DiffDrive(ModelPlugin):
         self._command = (linear_x, angular_z)
 
     def update(self) -> None:
-        """Publish and steer when the period has passed; integrate the encoders at every step."""
+        """Steer when the period has passed; `observe` then publishes."""
         now_ns = self.world.clock.now_ns
-        if self.config.odometry_source == ENCODER:
-            self._integrate_encoders(now_ns)
         elapsed_ns = now_ns - self._last_ns
-        if elapsed_ns > self._period_ns:
-            self._publish()
+        self._reports = elapsed_ns > self._period_ns
+        if self._reports:
             self._steer(elapsed_ns / NANOSECONDS)
             self._last_ns = self._last_ns + self._period_ns if self._period_ns else now_ns
         self._set_due()
+
+    def observe(self) -> None:
+        """Integrate the encoders at every step; publish in those in which the robot was steered."""
+        if self.config.odometry_source == ENCODER:
+            self._integrate_encoders(self.world.clock.now_ns)
+        if self._reports:
+            self._publish()
 
     def _set_due(self) -> None:
         clock = self.world.clock
@@ -223,13 +231,16 @@ class DiffDrive(ModelPlugin):
         )
 
     def _integrate_encoders(self, now_ns: int) -> None:
-        """Add one step of wheel motion by upstream's formula; its speed is never negative."""
+        """Add one step of wheel motion by upstream's formula; its speed is never negative.
+
+        The wheels' angles are what is added up, so that odometry and joint states agree.
+        """
         elapsed = (now_ns - self._encoder_ns) / NANOSECONDS
         self._encoder_ns = now_ns
+        before, self._encoder_ways = self._encoder_ways, self._ways()
         if elapsed <= 0.0:
             return
-        radius = self.config.wheel_diameter / 2.0
-        left, right = (wheel.velocity * radius * elapsed for wheel in self.wheels)
+        left, right = (now - then for now, then in zip(self._encoder_ways, before, strict=True))
         x, y, yaw = self._encoder_pose
         difference = right - left
         forward = (left + right) / 2.0
@@ -238,6 +249,10 @@ class DiffDrive(ModelPlugin):
         turn = difference / self.config.wheel_separation
         self._encoder_pose = (x + dx, y + dy, yaw + turn)
         self._encoder_twist = (math.hypot(dx, dy) / elapsed, turn / elapsed)
+
+    def _ways(self) -> tuple[float, ...]:
+        """Return how far the rims of the wheels have turned [m]."""
+        return tuple(wheel.position * self.config.wheel_diameter / 2.0 for wheel in self.wheels)
 
     def _namespace(self) -> str:
         """Return the tag's text; the model's name where it is absent or empty."""
@@ -265,26 +280,44 @@ class DiffDrive(ModelPlugin):
     def _warn_geometry(self) -> None:
         """Say so when the numbers given contradict the wheels that touch the ground."""
         left, right = self.wheels
-        radius, track = radius_of(left), track_of(left, right)
-        if radius is None or track is None:
+        radius, track = radius_of(left), abs(track_of(left, right))
+        if radius is None or radius_of(right) is None or not track:
             return
-        diameter = 2.0 * radius
         config = self.config
-        forward = diameter / config.wheel_diameter
-        turn = forward * config.wheel_separation / track if track > 0.0 else math.inf
+        forward = 2.0 * radius / config.wheel_diameter
+        turn = forward * config.wheel_separation / track
         if abs(forward - 1.0) > TOLERATED or abs(turn / forward - 1.0) > TOLERATED:
             logger.warning(
                 '%swheelDiameter %g m and wheelSeparation %g m contradict the collision geometry '
-                '(%.3g m and %.3g m): without slip the robot drives at %.3f of the commanded '
-                'speed and turns at %.3f of the commanded rate',
+                '(%.3g m and %.3g m): expect the robot to drive at %.2f of the commanded speed and '
+                'to turn at %.2f of the commanded rate, or at %.2f and %.2f if it drags a caster',
                 self.log_prefix,
                 config.wheel_diameter,
                 config.wheel_separation,
-                diameter,
+                2.0 * radius,
                 track,
                 forward,
                 turn,
+                forward * (1.0 - DRAGGED),
+                turn * (1.0 - DRAGGED),
             )
+
+    def _warn_sides(self) -> None:
+        """Say so when the robot will not go where it is asked to, in Gazebo as here."""
+        left, right = self.wheels
+        faults = []
+        if not same_way(left, right):
+            faults.append('spin when asked to drive straight; give both joints the same axis')
+        else:
+            if track_of(left, right) < 0.0:
+                faults.append(
+                    f"turn right when asked to turn left, for '{left.name}' is on the right side; "
+                    'swap <leftJoint> and <rightJoint>'
+                )
+            if not drives_towards_x(left):
+                faults.append('drive backwards when asked to drive on; reverse the joint axes')
+        if faults:
+            logger.warning('%sthis robot will %s', self.log_prefix, '. It will '.join(faults))
 
 
 def _world_odometry(pose: Pose, twist: Twist) -> Odometry:
