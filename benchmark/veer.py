@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""Measure by how much robots of all kinds turn that are asked to drive straight on.
+"""Measure by how much robots turn that are asked to drive straight on, with a pyramid and a cone.
 
-Small and large ones, on one caster and on two, with their weight over the axle and towards the
-caster behind, at three speeds ahead and two back, with a limit to the acceleration and without;
-each at four headings. Casters have mu 1, and each motor could lift the robot by the rim of its
-wheel, so that many tip over. One that lands on its back is counted apart.
+The article's robot, whose veer was recorded in Gazebo, and robots of 0.2, 5 and 50 kg on one caster
+and on two; each at four headings, of which the worst counts.
 """
 
 from __future__ import annotations
@@ -15,74 +13,54 @@ import os
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from itertools import product
-from typing import NamedTuple
 
-from support import empty_world
-from support.scenes import castered, drive
+from support import SETTLED, SPAWN_POSE, empty_world, robot_spec
+from support.scenes import HEADINGS, castered, drive
 
-from rosbots_description.sim.pose import UP, rotate, yaw_of
+from rosbots_description.sim.pose import Pose, from_rpy, yaw_of
+from rosbots_description.sim.tuning import Tuning
 
 SIZES = {0.2: 0.12, 5.0: 0.4, 50.0: 0.9}  # [m] by mass [kg]
-ACCELERATIONS = (0.0, 1.0)  # [m/s^2]; 0: no limit
-CASTERS = (1, 2)
-REARS = (0.0, 0.2, 0.4)  # where the weight is, from the axle to the caster behind
-SPEEDS = (0.2, 0.5, 1.0, -0.5, -1.0)  # [m/s]
-HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.3)  # [rad]
-SECONDS = 20
-MOST = 0.02  # [rad] the aim
-UPRIGHT = 0.3  # cosine of the tilt beyond which a robot falls over
-STEPS = 100  # between two looks at its tilt
+ARTICLE = "the article's"
+ROBOTS = (ARTICLE, *product(SIZES, (1, 2)))
+CONES = (False, True)
+SPEED, SECONDS = 1.0, 20
+GAZEBO = {ARTICLE: 0.42}  # [rad] in Gazebo, at that speed after that time
 
 
-class Robot(NamedTuple):
-    """A robot and what it is asked for."""
-
-    mass: float  # [kg]
-    acceleration: float  # [m/s^2]
-    casters: int
-    rear: float
-    speed: float  # [m/s]
-
-    def __str__(self) -> str:
-        limit = f'{self.acceleration:g} m/s2' if self.acceleration else 'no limit'
-        return (f'{self.mass:4g} kg, casters: {self.casters}, weight at {self.rear:g}, '
-                f'{self.speed:4g} m/s, {limit}')
+def turned(case: tuple[str | tuple[float, int], bool]) -> float:
+    """Return by how much a robot turns at the worst heading [rad]."""
+    robot, cone = case
+    return max(abs(math.remainder(_yaw(robot, cone, heading) - heading, math.tau))
+               for heading in HEADINGS)
 
 
-def turned(robot: Robot) -> float | None:
-    """Return by how much a robot turns at the worst heading [rad]; None if it falls over."""
-    spec = castered(robot.mass, SIZES[robot.mass], robot.casters,
-                    acceleration=robot.acceleration, rear=robot.rear)
-    worst = 0.0
-    for heading in HEADINGS:
-        with empty_world() as world:
-            model = drive(world, spec, 0, heading, robot.speed)
-            for _ in range(1000 * SECONDS // STEPS):
-                world.run(STEPS)
-                if rotate(model.pose.orientation, UP)[2] < UPRIGHT:
-                    return None
-            yaw = yaw_of(model.pose.orientation)
-            worst = max(worst, abs(math.remainder(yaw - heading, math.tau)))
-    return worst
+def _yaw(robot: str | tuple[float, int], cone: bool, heading: float) -> float:
+    with empty_world(Tuning(friction_cone=cone)) as world:
+        if robot != ARTICLE:
+            mass, casters = robot
+            model = drive(world, castered(mass, SIZES[mass], casters), SECONDS, heading, SPEED)
+            return yaw_of(model.pose.orientation)
+        place = Pose(SPAWN_POSE.position, from_rpy(0.0, 0.0, heading))
+        model = world.spawn(robot_spec(), 'robot', place)
+        world.run(SETTLED)
+        model.plugins[0].command(SPEED, 0.0)
+        world.run(1000 * SECONDS)
+        return yaw_of(model.pose.orientation)
 
 
 def main() -> int:
-    """Print who turns by more than the aim; return the exit code."""
+    """Print the table; return the exit code."""
     logging.disable(logging.WARNING)
-    robots = [Robot(*one) for one in product(SIZES, ACCELERATIONS, CASTERS, REARS, SPEEDS)]
+    cases = list(product(ROBOTS, CONES))
     with ProcessPoolExecutor(os.cpu_count()) as pool:
-        found = dict(zip(robots, pool.map(turned, robots), strict=True))
-    stand = sorted((rad, robot) for robot, rad in found.items() if rad is not None)
-    for rad, robot in reversed(stand):
-        if rad > MOST:
-            print(f'{robot}: turns by {rad:.3f} rad in {SECONDS} s')
-    for robot, rad in found.items():
-        if rad is None:
-            print(f'{robot}: falls over')
-    good = sum(rad <= MOST for rad, _ in stand)
-    print(f'{good} of {len(stand)} robots turn by less than {MOST:g} rad in {SECONDS} s straight '
-          f'on, at any of {len(HEADINGS)} headings; half of them by less than '
-          f'{stand[len(stand) // 2][0]:.4f} rad')
+        found = dict(zip(cases, pool.map(turned, cases), strict=True))
+    print(f'veer [rad] after {SECONDS} s at {SPEED:g} m/s, the worst of {len(HEADINGS)} headings')
+    print(f'{"robot":24}{"pyramid":>10}{"cone":>10}{"Gazebo":>10}')
+    for robot in ROBOTS:
+        name = robot if robot == ARTICLE else f'{robot[0]:g} kg, casters: {robot[1]}'
+        gazebo = f'{GAZEBO[robot]:10.4f}' if robot in GAZEBO else ''
+        print(f'{name:24}' + ''.join(f'{found[robot, cone]:10.4f}' for cone in CONES) + gazebo)
     return 0
 
 

@@ -27,7 +27,7 @@ BOUNDS = {
     'skid steer straight': 0.002,
     'step of 3 cm [m]': 0.0,
     'parked on casters [m]': 1e-4,
-    'parked on wheels [m]': 0.01,
+    'parked on wheels [m]': 3e-3,
     'slides on 10 deg': 1e-3,
     'five boxes [m]': 1e-3,
     'half sunk box [m]': 0.15,
@@ -56,8 +56,8 @@ def test_two_casters_drive_on_a_floor_that_is_no_plane():
         world.delete('ground_plane')
         slab = replace(urdf_spec(box('slab', (40.0, 40.0, 1.0), 1.0)), static=True)
         world.spawn(slab, 'slab', Pose((0.0, 0.0, -0.5)))
-        model = drive(world, castered(mu=0.1), 4, 0.4)
-        assert yaw_of(model.pose.orientation) == pytest.approx(0.4, abs=0.05)
+        model = drive(world, castered(), 4, 0.4)
+        assert yaw_of(model.pose.orientation) == pytest.approx(0.4, abs=0.1)
         assert forward_speed(model) == pytest.approx(SPEED, rel=0.01)
 
 

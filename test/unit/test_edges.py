@@ -83,7 +83,7 @@ def test_the_body_that_carries_a_wheel_touches_with_both_ends_of_its_edges():
     (body, wheel), inner_first = grouped(tree, no_file)
     assert not inner_first
     assert [kinds(group) for group in body] == [[Box, Box, Sphere]]
-    assert [kinds(group) for group in wheel] == [[Cylinder, Cylinder]]  # crest and shoulders
+    assert [kinds(group) for group in wheel] == [[Cylinder] * 4]  # crests and shoulders
 
 
 def test_what_lies_inside_comes_once():

@@ -12,11 +12,14 @@ from .pose import Pose, Vector, compose, inverse
 from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
 from .surfaces import (
     Groups,
+    compliant,
     contact_spring,
     friction,
     is_floor,
     is_one_body,
     is_rigid,
+    jointed_mass,
+    parting_rate,
     rolling_arm,
     surface_groups,
     with_edges,
@@ -95,11 +98,12 @@ class BodyMaker:
             maxJointVelocity=ANY_SPEED,
             physicsClientId=self._client,
         )
+        mass = jointed_mass(tree)
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
             part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
             body.parts[link.name] = part
             self._set_inertia(part, moments[i], joint)
-            self._set_surfaces(body, tree, i, groups[i], index_of, step_size)
+            self._set_surfaces(body, tree, i, groups[i], index_of, step_size, mass)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
                 body.indices.setdefault(number, []).append(part.index)
@@ -186,8 +190,13 @@ class BodyMaker:
         groups: Groups,
         index_of: dict[str, int],
         step_size: float,
+        mass: float,
     ) -> None:
-        """Set up what link `i` touches with, itself and its riders, and note it in `body`."""
+        """Set up what link `i` touches with, itself and its riders, and note it in `body`.
+
+        Args:
+            mass: as `jointed_mass` tells it [kg].
+        """
         link, joint = tree.links[i], tree.joints[i]
         part = body.parts[link.name]
         body.surfaces[link.name] = surfaces = []
@@ -203,7 +212,8 @@ class BodyMaker:
                 )
             if group:
                 rolling = rolling_arm(group, joint)
-                self._set_surface(part.body, index, group[0].surface, rolling, step_size)
+                surface = compliant(group[0].surface, mass)
+                self._set_surface(part.body, index, surface, rolling, step_size)
                 surfaces.append(Place(part.body, index))
 
     def _set_surface(
@@ -225,7 +235,8 @@ class BodyMaker:
             physicsClientId=self._client,
         )
         if not is_rigid(surface):
-            stiffness, damping = contact_spring(surface, step_size, self._tuning.push_out)
+            rate = self._parting_rate(number, index)
+            stiffness, damping = contact_spring(surface, step_size, rate)
             pybullet.changeDynamics(
                 number,
                 index,
@@ -233,3 +244,9 @@ class BodyMaker:
                 contactDamping=damping,
                 physicsClientId=self._client,
             )
+
+    def _parting_rate(self, number: int, index: int) -> float:
+        """Return the rate at which contacts of a part take away an overlap [1/s]."""
+        low, high = pybullet.getAABB(number, index, self._client)
+        reach = max(b - a for a, b in zip(low, high, strict=True))
+        return parting_rate(reach, self._tuning.push_out)

@@ -7,12 +7,15 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
+from collections.abc import Iterator
+
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .physics import PhysicsSettings
 from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from .solver_effort import CHECK, Motor, SolverEffort
 from .spec import ModelSpec
 from .surfaces import overlap_share
 from .tuning import Tuning
@@ -46,6 +49,9 @@ class Engine:
         self._client = pybullet.connect(pybullet.DIRECT) if client is None else client
         self._maker = BodyMaker(self._client, self._tuning, mesh_file, surface_file)
         self._step = pybullet.stepSimulation
+        self._effort = SolverEffort(self._set_iterations)
+        self._until_look = CHECK  # steps
+        self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._weightless: list[Body] = []  # those with links that feel no gravity
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
@@ -72,19 +78,22 @@ class Engine:
         pybullet.setGravity(*physics.gravity, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=physics.step_size,
-            numSolverIterations=max(1, round(physics.sor_pgs_iters * self._tuning.passes)),
             numSubSteps=0,
             contactERP=overlap_share(physics.step_size, self._tuning.push_out),
             enableConeFriction=self._tuning.friction_cone,
             enableFileCaching=0,  # else a second model under a file name gets the first one's text
+            minimumSolverIslandSize=1,  # what has converged waits for nobody else
             physicsClientId=self._client,
         )
+        self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.passes)))
         self._physics = physics
 
     def reset(self) -> None:
         """Remove everything; the same bodies added again then move bit for bit as before."""
         self._maker.reset()
         self._weightless.clear()
+        self._driven.clear()
+        self._until_look = CHECK
         self._joint_readings.clear()
         self.waste = 0
         self.apply(self._physics)
@@ -92,11 +101,18 @@ class Engine:
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
         step, client = self._step, self._client
-        self._joint_readings.clear()
-        for _ in range(steps):
-            if self._weightless:
-                self._lift_weightless()
-            step(client)
+        while steps > 0:
+            run = min(steps, self._until_look)
+            for _ in range(run):
+                if self._weightless:
+                    self._lift_weightless()
+                step(client)
+            self._joint_readings.clear()
+            steps -= run
+            self._until_look -= run
+            if not self._until_look:
+                self._until_look = CHECK
+                self._effort.look(self._motors())
 
     def add(self, spec: ModelSpec, pose: Pose) -> Body:
         """Put a model into the world, its frame at `pose`, all joints at zero."""
@@ -120,6 +136,7 @@ class Engine:
         self._joint_readings.clear()
         if body in self._weightless:
             self._weightless.remove(body)
+        self._driven.pop(body, None)
         self.waste += body.size
         self._maker.remove(body)
 
@@ -254,12 +271,26 @@ class Engine:
         if body.motors.get(joint) == (velocity, effort):
             return  # it does so already
         body.motors[joint] = (velocity, effort)
+        self._driven[body] = None
         pybullet.setJointMotorControl2(
             *body.joints[joint],
             pybullet.VELOCITY_CONTROL,
             targetVelocity=velocity,
             force=effort,
             physicsClientId=self._client,
+        )
+
+    def _motors(self) -> Iterator[Motor]:
+        """Yield all motors: velocity and its target, effort and its limit."""
+        for body in self._driven:
+            for joint, (target, limit) in body.motors.items():
+                if limit > 0.0:
+                    _, velocity, _, effort = self.joint_reading(body, joint)
+                    yield velocity, target, effort, limit
+
+    def _set_iterations(self, count: int) -> None:
+        pybullet.setPhysicsEngineParameter(
+            numSolverIterations=count, physicsClientId=self._client
         )
 
     def _link_state(self, part: Part, velocity: bool) -> tuple:

@@ -12,7 +12,7 @@ from operator import not_
 from .bullet_description import MeshFile, Tree
 from .edges import leaning
 from .inner_shapes import inner_shapes
-from .pose import ALONG, UP, Vector, conjugate, dot, rotate
+from .pose import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
 from .spec import (
     FIXED,
     REVOLUTE,
@@ -33,9 +33,13 @@ _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody descri
 # enough to keep a can, a barrel and a robot on free wheels in their place.
 _ROLLING_RESISTANCE = 0.005
 
+# Deflection of one contact under all of a robot's weight [m]. Which of more than three rigid points
+# carry is undetermined; with this the load spreads as the shapes tell.
+_DEFLECTION = 1e-3
+_PARTING_SPEED = 1.0  # [m/s] at which bodies part that overlap by all of their size
+
 # Width of a wheel's crest [m]. PyBullet takes a margin of 1 mm off each end of a cylinder, so what
-# is left of this one touches exactly in the middle. Of another it would be one side, the same for
-# both wheels, by up to a millimetre, and one of them would have more load, and more grip.
+# is left of this one touches exactly in its middle.
 _CREST = 0.002
 
 # How much lower the shoulders of a wheel are, as a share of its half diagonal. What is nearer to
@@ -44,7 +48,7 @@ _CROWN = 0.022
 
 # Looking at a shape above a plane takes 1.7 % of a step of the article's robot, a rider 5 %.
 _WORTH_A_RIDER = 6
-_SINKS_IN = 5e-5  # [m] one side of a wheel may be so much lower, and both still touch the floor
+_LEVEL = 5e-6  # [m] one side of a wheel may be so much lower, and both still touch a floor
 
 
 def surface_groups(tree: Tree, i: int) -> Groups:
@@ -96,10 +100,10 @@ def is_floor(tree: Tree) -> bool:
 def crowned(
     collision: Collision, link: LinkSpec, joint: JointSpec | None
 ) -> tuple[Collision, ...]:
-    """Return what stands for a collision: of a level wheel a narrow crest and lower shoulders.
+    """Return what stands for a collision: of a level wheel three narrow crests and lower shoulders.
 
-    A cylinder touches a floor along a line, and PyBullet puts all of the force on one end of it. As
-    that is the same end for the left and the right wheel, what they push with would turn a robot.
+    A cylinder touches a floor along a line, and PyBullet finds one end of it. The crests, at both
+    ends and in the middle, share the load.
     """
     wheel = collision.geometry
     if not _is_wheel(collision, joint):
@@ -109,8 +113,11 @@ def crowned(
         return (collision,)
     reach = math.hypot(wheel.radius, wheel.radius, wheel.length / 2.0)
     shoulders = max(wheel.radius - _CROWN * reach, wheel.radius / 2.0)
+    rim = Cylinder(wheel.radius, min(_CREST, wheel.length))
+    apart = (wheel.length - rim.length) / 2.0
     return (
-        replace(collision, geometry=Cylinder(wheel.radius, min(_CREST, wheel.length))),
+        *(replace(collision, geometry=rim, pose=compose(collision.pose, Pose((0.0, 0.0, z))))
+          for z in ((-apart, 0.0, apart) if apart else (0.0,))),
         replace(collision, geometry=Cylinder(shoulders, wheel.length)),
     )
 
@@ -128,7 +135,7 @@ def touching_end(wheel: Cylinder, axis: Vector) -> float:
     One that leans does so with its lower end; one that is level with its crest, in the middle.
     """
     tilt = axis[2]
-    if abs(tilt) * wheel.length <= _SINKS_IN:
+    if abs(tilt) * wheel.length <= _LEVEL:
         return 0.0
     return -math.copysign(wheel.length / 2.0, tilt)
 
@@ -185,14 +192,37 @@ def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> flo
     return _ROLLING_RESISTANCE * max((shape.radius for shape in shapes), default=0.0)
 
 
-def overlap_share(step_size: float, push_out: float) -> float:
+def overlap_share(step_size: float, rate: float) -> float:
     """Return the share of an overlap that contacts take away in a step.
 
     Args:
         step_size: duration of the step [s].
-        push_out: rate at which bodies are pushed apart [1/s].
+        rate: at which bodies are pushed apart [1/s].
     """
-    return min(0.2, push_out * step_size)
+    return min(0.2, rate * step_size)
+
+
+def parting_rate(reach: float, push_out: float) -> float:
+    """Return the rate at which contacts take away an overlap [1/s].
+
+    Args:
+        reach: the size of what overlaps [m]; nothing can overlap by more.
+        push_out: the rate for small things [1/s].
+    """
+    return min(push_out, _PARTING_SPEED / max(reach, _LEVEL))
+
+
+def jointed_mass(tree: Tree) -> float:
+    """Return the mass [kg] of links that move on joints; 0 of single bodies and what is bolted."""
+    if tree.fixed_base or all(joint is None or joint.type == FIXED for joint in tree.joints):
+        return 0.0
+    return sum(link.inertial.mass for link in tree.links if link.inertial)
+
+
+def compliant(surface: Surface, mass: float) -> Surface:
+    """Return a surface that gives way at least as a robot of that mass [kg] does; 0 for none."""
+    stiffest = mass * _GRAVITY / _DEFLECTION
+    return replace(surface, kp=stiffest) if 0.0 < stiffest < surface.kp else surface
 
 
 def is_rigid(surface: Surface) -> bool:
@@ -200,11 +230,11 @@ def is_rigid(surface: Surface) -> bool:
     return surface.kp >= _STIFFEST
 
 
-def contact_spring(surface: Surface, step_size: float, push_out: float) -> tuple[float, float]:
+def contact_spring(surface: Surface, step_size: float, rate: float) -> tuple[float, float]:
     """Return stiffness [N/m] and damping [N s/m] of a contact of a surface that gives way.
 
     It gives way by force / kp at rest, and is damped so much that it parts bodies no faster than
-    other contacts do; a kd of a user's could shoot them away. Arguments as in `overlap_share`.
+    other contacts do; a kd of a user's could shoot them away. `rate` as in `overlap_share`.
     """
-    least = step_size * surface.kp * (1.0 / overlap_share(step_size, push_out) - 1.0)
+    least = step_size * surface.kp * (1.0 / overlap_share(step_size, rate) - 1.0)
     return surface.kp, max(surface.kd, least)

@@ -1,0 +1,413 @@
+"""Wheels are ordinary contacts: what mechanics demands of robots that drive, park, lie and ride."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from support import SETTLED, SPAWN_POSE, empty_world, robot_spec, urdf_spec
+from support.scenes import (
+    DRIVE_PLUGIN,
+    GRAVITY,
+    ball,
+    box,
+    castered,
+    forward_speed,
+    spec_height,
+    surface,
+    wheel,
+)
+
+from rosbots_description.sim.bullet import pybullet
+from rosbots_description.sim.pose import (
+    UP,
+    Pose,
+    Twist,
+    compose,
+    from_rpy,
+    inverse,
+    rotate,
+    yaw_of,
+)
+from rosbots_description.sim.readings import FrameTransform, JointStates, Odometry
+from rosbots_description.sim.spec import Cylinder, Element
+
+LIGHT = castered(1.0, 0.2, casters=1)
+MIDDLE = castered(casters=1)
+HEAVY = castered(50.0, 1.0, casters=2, mu=0.1)
+
+
+def command(model, forward, turning):
+    for plugin in model.plugins:
+        plugin.command(forward, turning)
+
+
+def tilted_floor(world, roll=0.0, pitch=0.0):
+    """Lay a large board; return the frame in its upper face."""
+    tilt = from_rpy(math.radians(roll), math.radians(pitch), 0.0)
+    board = replace(urdf_spec(box('board', (60.0, 60.0, 1.0), 1.0)), static=True)
+    world.delete('ground_plane')
+    world.spawn(board, 'board', Pose(rotate(tilt, (0.0, 0.0, -0.5)), tilt))
+    return Pose((0.0, 0.0, 0.0), tilt)
+
+
+def placed(world, spec, frame=None, yaw=0.0):
+    """Return the robot standing in a frame for half a second."""
+    pose = Pose((0.0, 0.0, spec_height(spec)), from_rpy(0.0, 0.0, yaw))
+    model = world.spawn(spec, 'robot', compose(frame or Pose(), pose))
+    world.run(500)
+    return model
+
+
+def within(frame, model):
+    return compose(inverse(frame), model.pose)
+
+
+def turned(model, world, steps):
+    """Return the angle that a model turns by within so many steps [rad]."""
+    total, before = 0.0, yaw_of(model.pose.orientation)
+    for _ in range(steps // 50):
+        world.run(50)
+        now = yaw_of(model.pose.orientation)
+        total += math.remainder(now - before, math.tau)
+        before = now
+    return total
+
+
+@pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
+    (MIDDLE, 20.0, 0.5), (LIGHT, -20.0, 0.2), (HEAVY, 15.0, 0.8), (MIDDLE, 20.0, 0.0),
+])
+def test_a_robot_that_drives_across_a_slope_does_not_slide_down(spec, degrees, speed):
+    with empty_world() as world:
+        frame = tilted_floor(world, roll=degrees)
+        model = placed(world, spec, frame)
+        before = within(frame, model).position
+        command(model, speed, 0.0)
+        world.run(3000)
+        after = within(frame, model).position
+        assert abs(after[1] - before[1]) < 0.01 * 3.0
+        assert after[0] - before[0] > 0.7 * 3.0 * speed - 0.01
+
+
+@pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
+    (LIGHT, 15.0, 0.02), (LIGHT, 20.0, 0.22), (LIGHT, 12.0, 0.03), (MIDDLE, 10.0, 0.05),
+])
+def test_a_robot_creeps_up_a_ramp_as_asked_and_never_rolls_back(spec, degrees, speed):
+    with empty_world() as world:
+        frame = tilted_floor(world, pitch=-degrees)
+        model = placed(world, spec, frame)
+        command(model, speed, 0.0)
+        world.run(2000)
+        ways = []
+        for _ in range(40):
+            ways.append(within(frame, model).position[0])
+            world.run(100)
+        assert min(b - a for a, b in zip(ways, ways[1:], strict=False)) > 0.0
+        assert (ways[-1] - ways[0]) / 3.9 == pytest.approx(speed, rel=0.05)
+
+
+@pytest.mark.parametrize('spec', [LIGHT, MIDDLE, HEAVY], ids=['1 kg', '5 kg', '50 kg'])
+def test_slow_commands_are_obeyed_on_the_flat(spec):
+    with empty_world() as world:
+        model = placed(world, spec)
+        command(model, 0.01, 0.0)
+        world.run(2000)
+        before = model.pose.position
+        world.run(4000)
+        assert math.dist(model.pose.position, before) / 4.0 == pytest.approx(0.01, rel=0.05)
+
+
+@pytest.mark.parametrize('rate', [0.1, -0.1])
+def test_slow_turns_are_obeyed(rate):
+    with empty_world() as world:
+        model = placed(world, MIDDLE)
+        command(model, 0.0, rate)
+        world.run(3000)
+        assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.05)
+
+
+def tall(mass=4.0, size=0.4):
+    """Return a robot whose body reaches far above its wheels: on its roof they turn in the air."""
+    body = box('base', (size, 0.7 * size, size), 0.9 * mass)
+    for side, y in (('left', 0.4 * size), ('right', -0.4 * size)):
+        body += wheel(f'{side}_wheel', f'{side}_joint', 0.15 * size, 0.1 * size, 0.05 * mass,
+                      f'0 {y} {-0.4 * size}')
+    return urdf_spec(body + DRIVE_PLUGIN.format(
+        separation=0.8 * size, diameter=0.3 * size, torque=mass, acceleration=0.0))
+
+
+@pytest.mark.parametrize(('mass', 'size', 'forward', 'turning'), [
+    (4.0, 0.4, 0.5, 0.0), (1.0, 0.2, 0.2, 1.0), (40.0, 0.8, -1.0, 0.0),
+])
+@pytest.mark.parametrize('degrees', [0.0, 5.0])
+def test_a_robot_on_its_roof_stays_there_though_its_wheels_turn(
+    mass, size, forward, turning, degrees
+):
+    with empty_world() as world:
+        frame = tilted_floor(world, roll=degrees)
+        pose = Pose((0.0, 0.0, size / 2.0 + 0.001), from_rpy(math.pi, 0.0, 0.0))
+        model = world.spawn(tall(mass, size), 'robot', compose(frame, pose))
+        command(model, forward, turning)
+        world.run(500)
+        before = model.pose.position
+        for _ in range(2000):
+            if not degrees:
+                push = (0.0, 0.3 * mass * GRAVITY, 0.0)
+                x, y, z = model.pose.position
+                world.engine.push(model.body, 'base', push, (0.0, 0.0, 0.0),
+                                  (x, y, z - 0.4 * size))
+            world.run(1)
+        assert math.dist(model.pose.position, before) < 0.01
+
+
+BED = ('<joint name="j" type="prismatic"><parent link="world"/><child link="bed"/>'
+       '<axis xyz="1 0 0"/><limit lower="-99" upper="99" effort="1e6" velocity="99"/></joint>')
+TURNTABLE = ('<joint name="j" type="continuous"><parent link="world"/><child link="bed"/>'
+             '<axis xyz="0 0 1"/></joint>')
+
+
+@pytest.mark.parametrize(('spec', 'joint', 'moves', 'speed'), [
+    (MIDDLE, BED, 0.2, 0.05), (LIGHT, BED, -0.5, 0.02), (MIDDLE, TURNTABLE, 0.2, 0.02),
+    (LIGHT, TURNTABLE, -0.3, 0.05),
+])
+def test_a_robot_rides_along_on_what_moves(spec, joint, moves, speed):
+    with empty_world() as world:
+        bed = world.spawn(urdf_spec('<link name="world"/>' + box('bed', (6.0, 6.0, 0.1), 500.0)
+                                    + joint), 'bed', Pose((0.0, 0.0, 0.5)))
+        carrier = bed.links['bed']
+        model = placed(world, spec, Pose((0.5, 0.0, 0.55)), yaw=0.7)
+        command(model, speed, 0.0)
+        world.run(500)
+        before = within(carrier.pose, model)
+        for i in range(100):
+            bed.joint('j').set_motor(moves * (i + 1) / 100.0, 1e6)
+            world.run(10)
+        world.run(4000)
+        expected = compose(before, Pose((5.0 * speed, 0.0, 0.0)))
+        after = within(carrier.pose, model)
+        assert math.dist(after.position[:2], expected.position[:2]) < 0.01
+
+
+@pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])
+def test_in_no_step_friction_exceeds_mu_times_the_load_or_speeds_a_robot_up(spec, heading):
+    with empty_world() as world:
+        model = placed(world, spec, yaw=heading)
+        model.set_twist(Twist((0.3 * math.cos(heading) - 0.4 * math.sin(heading),
+                               0.3 * math.sin(heading) + 0.4 * math.cos(heading), 0.0)))
+        (number,) = model.body.bodies
+        fastest = math.hypot(*model.twist.linear[:2])
+        for _ in range(200):
+            world.run(1)
+            points = pybullet.getContactPoints(number, physicsClientId=world.engine._client)
+            for point in points:
+                load, *held = point[9], point[10], point[12]
+                if not load:
+                    continue  # PyBullet goes on telling what a point held before it lifted off
+                assert max(map(abs, held)) <= load * (1.0 + 1e-6) + 1e-9  # mu is 1 at most
+            assert math.hypot(*model.twist.linear[:2]) <= fastest
+
+
+def soft(spec, kp):
+    """Return a robot whose wheels have that stiffness [N/m]."""
+    return replace(spec, links=tuple(
+        replace(one, collisions=tuple(
+            replace(shape, surface=replace(shape.surface, kp=kp))
+            if isinstance(shape.geometry, Cylinder) else shape for shape in one.collisions))
+        for one in spec.links))
+
+
+@pytest.mark.parametrize(('spec', 'kp', 'heading'), [
+    (LIGHT, 1e3, 0.0), (LIGHT, 1e3, 0.6), (MIDDLE, 5e3, 0.4), (LIGHT, 1e5, 1.0),
+])
+def test_a_robot_on_soft_wheels_drives_straight(spec, kp, heading):
+    with empty_world() as world:
+        model = placed(world, soft(spec, kp), yaw=heading)
+        world.run(500)
+        before = yaw_of(model.pose.orientation)
+        command(model, 0.3, 0.0)
+        world.run(6500)
+        assert yaw_of(model.pose.orientation) == pytest.approx(before, abs=0.02)
+
+
+def on_light_wheels(mass, wheel_mass, size):
+    spec = castered(mass, size, casters=1)
+    return replace(spec, links=tuple(
+        replace(one, inertial=replace(one.inertial, mass=wheel_mass, **{
+            key: getattr(one.inertial, key) * wheel_mass / one.inertial.mass
+            for key in ('ixx', 'iyy', 'izz')
+        })) if 'wheel' in one.name else one for one in spec.links))
+
+
+@pytest.mark.parametrize(('mass', 'wheel_mass', 'size', 'speed'), [
+    (100.0, 0.03, 1.0, 0.22), (50.0, 0.05, 0.8, 0.4), (20.0, 0.02, 0.5, 0.1),
+])
+def test_a_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, speed):
+    with empty_world() as world:
+        model = placed(world, on_light_wheels(mass, wheel_mass, size))
+        command(model, speed, 0.0)
+        world.run(3000)
+        for _ in range(300):
+            world.run(7)
+            assert forward_speed(model) == pytest.approx(speed, rel=0.03)
+
+
+@pytest.mark.parametrize('plugins', [True, False], ids=['driven', 'bare'])
+@pytest.mark.parametrize(('spec', 'sunk'), [
+    (MIDDLE, 0.1), (MIDDLE, 0.2), (LIGHT, 0.03), (LIGHT, 0.1), (HEAVY, 0.05), (HEAVY, 0.5),
+])
+def test_a_robot_spawned_in_the_floor_rises_calmly(spec, sunk, plugins):
+    rest = spec_height(spec) - 0.001
+    with empty_world() as world:
+        model = world.spawn(spec if plugins else replace(spec, plugins=()), 'robot',
+                            Pose((0.0, 0.0, rest - sunk)))
+        for _ in range(2000):
+            world.run(2)
+            pose, twist = model.state()
+            assert twist.linear[2] <= 1.0
+            assert pose.position[2] <= rest + 0.02
+            assert rotate(pose.orientation, UP)[2] > 0.9
+        assert model.pose.position[2] == pytest.approx(rest, abs=0.01)
+
+
+@pytest.mark.parametrize(('spec', 'turning'), [
+    (robot_spec(), 1.0), (robot_spec(), -0.6), (MIDDLE, 1.5), (LIGHT, -1.0),
+])
+def test_a_robot_that_turned_and_is_told_to_stand_is_at_rest_at_once(spec, turning):
+    with empty_world() as world:
+        model = world.spawn(spec, 'robot', SPAWN_POSE)
+        world.run(SETTLED)
+        command(model, 0.0, turning)
+        world.run(3210)
+        command(model, 0.0, 0.0)
+        plugin = model.plugins[0]
+        ramp = abs(turning) * plugin.config.wheel_separation / 2.0  # at 1 m/s^2
+        world.run(round(1000 * ramp) + 500)
+        for _ in range(100):
+            world.run(7)
+            twist = model.twist
+            assert math.hypot(*twist.linear) < 5e-5
+            assert max(map(abs, twist.angular)) < 5e-4
+
+
+def burger(mu, lean):
+    """Return a small robot on two wheels and a caster of one friction; wheels lean by `lean`."""
+    body = box('base', (0.14, 0.14, 0.05), 0.8) + ball('caster', 0.005, 0.005)
+    body += ('<joint name="caster_joint" type="fixed"><parent link="base"/><child link="caster"/>'
+             '<origin xyz="-0.06 0 -0.028"/></joint>') + surface('caster', mu)
+    for side, y in (('left', 0.08), ('right', -0.08)):
+        name = f'{side}_wheel'
+        body += wheel(name, f'{side}_joint', 0.033, 0.018, 0.03, f'0 {y} 0').replace(
+            f'rpy="{-math.pi / 2} 0 0"', f'rpy="{-math.pi / 2 + lean} 0 0"')
+        body += surface(name, mu)
+    return urdf_spec(body + DRIVE_PLUGIN.format(
+        separation=0.16, diameter=0.066, torque=10.0, acceleration=1.0))
+
+
+@pytest.mark.parametrize(('mu', 'lean', 'turning'), [
+    (0.1, 8e-4, 0.314), (0.1, 0.0, -0.314), (0.3, 8e-4, 1.0),
+])
+def test_slippery_wheels_turn_a_robot_on_the_spot_as_asked(mu, lean, turning):
+    with empty_world() as world:
+        model = placed(world, burger(mu, lean))
+        command(model, 0.0, turning)
+        world.run(1500)
+        assert turned(model, world, 3000) / 3.0 == pytest.approx(turning, rel=0.02)
+
+
+def skid_steer(kp, flipped=False):
+    """Return a robot of 12 kg on four wheels with a drive for each pair."""
+    body = box('base', (0.5, 0.35, 0.15), 10.0)
+    drives = ''
+    for end, x in (('front', 0.18), ('rear', -0.18)):
+        names = {}
+        for side, y in (('left', 0.22), ('right', -0.22)):
+            name = f'{side}_{end}'
+            names[side] = f'{name}_joint'
+            body += wheel(name, names[side], 0.1, 0.05, 0.5, f'{x} {y} -0.03')
+            body += f'<gazebo reference="{name}"><kp>{kp}</kp></gazebo>'
+        drives += (
+            '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+            f'<leftJoint>{names["left"]}</leftJoint><rightJoint>{names["right"]}</rightJoint>'
+            '<wheelSeparation>0.44</wheelSeparation><wheelDiameter>0.2</wheelDiameter>'
+            '<wheelTorque>20</wheelTorque><wheelAcceleration>1.8</wheelAcceleration>'
+            '<updateRate>50</updateRate></plugin></gazebo>')
+    return urdf_spec(body + drives)
+
+
+@pytest.mark.parametrize(('kp', 'turning'), [(1e6, 1.0), (1e6, -1.0), (1e12, 1.0)])
+def test_four_wheels_turn_a_robot_as_in_gazebo(kp, turning):
+    with empty_world() as world:
+        model = world.spawn(skid_steer(kp), 'robot', Pose((0.0, 0.0, 0.131)))
+        world.run(2000)
+        command(model, 0.0, turning)
+        world.run(1000)
+        assert turned(model, world, 4000) / 4.0 == pytest.approx(0.684 * turning, rel=0.05)
+
+
+def test_four_wheels_drive_an_arc_as_in_gazebo():
+    with empty_world() as world:
+        model = world.spawn(skid_steer(1e6), 'robot', Pose((0.0, 0.0, 0.131)))
+        world.run(2000)
+        command(model, 0.5, 0.5)
+        assert turned(model, world, 5000) == pytest.approx(1.600, rel=0.06)  # Gazebo's at 5 s
+        assert forward_speed(model) == pytest.approx(0.501, rel=0.03)
+
+
+@pytest.mark.parametrize('spec', [LIGHT, MIDDLE, robot_spec()], ids=['1 kg', '5 kg', 'article'])
+def test_a_left_joint_on_the_right_side_drives_as_straight(spec):
+    """Swap left and right in the tags: the robot turns the other way, and drives the same."""
+    (plugin,) = spec.plugins
+    children = []
+    sides = {'leftJoint': 'rightJoint', 'rightJoint': 'leftJoint'}
+    for child in plugin.element.children:
+        children.append(replace(child, tag=sides.get(child.tag, child.tag)))
+    swapped = replace(spec, plugins=(replace(
+        plugin, element=replace(plugin.element, children=tuple(children))),))
+    yaws = []
+    for one in (spec, swapped):
+        with empty_world() as world:
+            model = world.spawn(one, 'robot', SPAWN_POSE)
+            world.run(SETTLED)
+            command(model, 0.3, 0.0)
+            world.run(4000)
+            yaws.append(yaw_of(model.pose.orientation))
+    assert yaws[0] == pytest.approx(yaws[1], abs=1e-3)
+
+
+def angle_told_by(transform):
+    """Return how far a wheel's transform turns it about its axle [rad], within half a turn."""
+    x, y, z, w = transform.pose.orientation
+    back = from_rpy(math.pi / 2.0, 0.0, 0.0)
+    x, y, z, w = compose(Pose(orientation=back), Pose(orientation=(x, y, z, w))).orientation
+    return 2.0 * math.atan2(z, w)
+
+
+@pytest.mark.parametrize('spec', [LIGHT, MIDDLE])
+@pytest.mark.parametrize('driven', [(0.3, 0.0), (0.2, -0.7)])
+def test_one_wheel_has_one_angle(spec, driven):
+    tags = {'odometrySource': 'encoder', 'publishWheelTF': 'true', 'publishWheelJointState': 'true'}
+    (plugin,) = spec.plugins
+    children = (*plugin.element.children, *(Element(tag, text) for tag, text in tags.items()))
+    spec = replace(spec, plugins=(replace(
+        plugin, element=replace(plugin.element, children=children)),))
+    with empty_world() as world:
+        model = placed(world, spec)
+        drive = model.plugins[0]
+        told = {}
+        for port in (drive.joint_states, drive.wheel_transform, drive.odometry):
+            port.connect(lambda reading: told.setdefault(type(reading), []).append(reading),
+                         lambda: True)
+        start = [wheel.position for wheel in drive.wheels]
+        drive.reset()
+        command(model, *driven)
+        world.run(drive.due - world.clock.steps + 3000)
+        left, right = (wheel.position for wheel in drive.wheels)
+        states = told[JointStates][-1]
+        assert states.positions == pytest.approx((right, left), abs=1e-9)
+        for transform, angle in zip(told[FrameTransform][-2:], (left, right), strict=True):
+            apart = math.remainder(angle_told_by(transform) - angle, math.tau)
+            assert abs(apart) < 1e-9
+        ways = [(now - then) * drive.config.wheel_diameter / 2.0
+                for now, then in zip((left, right), start, strict=True)]
+        turn = (ways[1] - ways[0]) / drive.config.wheel_separation
+        yaw = yaw_of(told[Odometry][-1].pose.orientation)
+        assert math.remainder(yaw - turn, math.tau) == pytest.approx(0.0, abs=1e-9)
