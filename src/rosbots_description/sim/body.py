@@ -10,13 +10,14 @@ from .pose import Pose, Twist
 class Part:
     """Where a link lives in PyBullet, and the way from its centre of mass to its frame.
 
-    An index of -1 is the base of the body.
+    An index of -1 is the base of the body. What stands may be several bodies in one place.
     """
 
     body: int
     index: int
     origin_in_com: Pose
     com_in_origin: Pose
+    also: tuple[int, ...] = ()  # the other bodies
 
 
 class Place(NamedTuple):

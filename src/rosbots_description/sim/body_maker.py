@@ -7,6 +7,8 @@ from .body import Body, Part, Place
 from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
+from .faces import Face, faces, is_one_body, slab
+from .friction_filter import FrictionFilter, Side
 from .inertia import principal_axes
 from .pose import Pose, Vector, compose, inverse
 from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
@@ -14,9 +16,6 @@ from .surfaces import (
     Groups,
     compliant,
     contact_spring,
-    friction,
-    is_floor,
-    is_one_body,
     is_rigid,
     jointed_mass,
     parting_rate,
@@ -30,9 +29,6 @@ from .untouching import Untouching
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 _MASSLESS = Inertial(0.0)
-# Groups of bodies. Two collide if the group of either is in the mask of the other.
-_STANDING = 2  # PyBullet's own for what never moves; its mask is all but these
-_INNER = 8  # what no plane can touch
 
 
 def grouped(tree: Tree, mesh_file: MeshFile) -> tuple[list[Groups], bool]:
@@ -62,6 +58,8 @@ class BodyMaker:
         self._mesh_file = mesh_file
         self._surface_file = surface_file
         self._untouching = Untouching(client)
+        self._friction_filter = FrictionFilter()
+        self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
 
     def add_tree(self, body: Body, tree: Tree, model_pose: Pose, step_size: float) -> None:
         """Put links that joints connect into the world, and note in `body` where they are.
@@ -78,13 +76,22 @@ class BodyMaker:
         ]
         mesh_file = self._surface_file if tree.stands else self._mesh_file
         groups, inner_first = grouped(tree, mesh_file)
-        text = describe_tree(tree, coms, groups, mesh_file)
+        found = faces(tree, groups, inner_first, MAX_JOINTS + 1)
+        weighs = is_one_body(tree, found) and not tree.stands
         place = compose(model_pose, tree.links[0].pose)
-        number = self._load_urdf(text, tree, place, is_one_body(tree, groups))
-        body.bodies.append(number)
+        # What stands is a rigid body for each of its faces; the first is the one that is asked.
+        own, *others = [[[face]] for face in (*found[0], *slab(tree))] if tree.stands else [found]
+        numbers = []
+        for one in (own, *others):
+            shapes = [[face.shapes for face in of_link] for of_link in one]
+            text = describe_tree(tree, coms, moments, shapes, mesh_file)
+            numbers.append(self._load_urdf(text, tree, place, is_one_body(tree, found)))
+            body.bodies.append(numbers[-1])
+            body.size += len(text)
+        number, *also = numbers
         shapes = [collision.geometry for link in tree.links for collision in link.collisions]
         meshes = [mesh_file(shape) for shape in shapes if isinstance(shape, Mesh)]
-        body.size += len(text) + sum(map(os.path.getsize, meshes))
+        body.size += sum(map(os.path.getsize, meshes))
         body.roots.append(tree.links[0].name)
         if tree.fixed_base:
             body.bolted.add(tree.links[0].name)
@@ -100,23 +107,20 @@ class BodyMaker:
         )
         mass = jointed_mass(tree)
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
-            part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i])
+            part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i], tuple(also))
             body.parts[link.name] = part
-            self._set_inertia(part, moments[i], joint)
-            self._set_surfaces(body, tree, i, groups[i], index_of, step_size, mass)
+            weight = inertials[i].mass if weighs else None
+            self._set_inertia(part, weight, moments[i], joint)
+            self._set_surfaces(body, tree, i, own[i], index_of, step_size, mass)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
                 body.indices.setdefault(number, []).append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
                 body.weightless.append((number, part.index, inertials[i].mass))
-        if inner_first:
-            self._set_filter(number, _INNER, ~_STANDING)
-        elif is_floor(tree):
-            self._set_filter(number, _STANDING, ~(_STANDING | _INNER))
-
-    def _set_filter(self, number: int, group: int, mask: int) -> None:
-        """Put the base of a body into a group, and let it meet those of the mask."""
-        pybullet.setCollisionFilterGroupMask(number, -1, group, mask, self._client)
+        for other, ((face,),) in zip(also, others, strict=True):
+            place = Place(other, -1)
+            self._set_surface(place, face, face.shapes[0].surface, None, step_size)
+            body.surfaces[tree.links[0].name].append(place)
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Let those links of a model pass through each other that do so in Gazebo."""
@@ -138,11 +142,15 @@ class BodyMaker:
             pybullet.removeBody(number, self._client)
         for number in body.bodies:
             self._untouching.forget(number)
+        for place in [place for place in self._sides if place.body in body.bodies]:
+            del self._sides[place]
 
     def reset(self) -> None:
         """Remove everything."""
         pybullet.resetSimulation(physicsClientId=self._client)
         self._untouching.clear()
+        self._friction_filter.clear()
+        self._sides.clear()
 
     def _load_urdf(self, text: str, tree: Tree, pose: Pose, one_body: bool) -> int:
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
@@ -173,12 +181,16 @@ class BodyMaker:
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
         return indices
 
-    def _set_inertia(self, part: Part, inertia: Vector, joint: JointSpec | None) -> None:
+    def _set_inertia(
+        self, part: Part, mass: float | None, inertia: Vector, joint: JointSpec | None
+    ) -> None:
+        """Set the principal moments of a part; of a rigid body the mass [kg] belongs to them."""
         pybullet.changeDynamics(
             part.body,
             part.index,
             localInertiaDiagonal=inertia,
             jointDamping=joint.damping if joint else 0.0,
+            **({} if mass is None else {'mass': mass}),
             physicsClientId=self._client,
         )
 
@@ -187,7 +199,7 @@ class BodyMaker:
         body: Body,
         tree: Tree,
         i: int,
-        groups: Groups,
+        found: list[Face],
         index_of: dict[str, int],
         step_size: float,
         mass: float,
@@ -200,7 +212,7 @@ class BodyMaker:
         link, joint = tree.links[i], tree.joints[i]
         part = body.parts[link.name]
         body.surfaces[link.name] = surfaces = []
-        for k, group in enumerate(groups):
+        for k, face in enumerate(found):
             index = part.index
             if k:
                 index = index_of[f'l{i}r{k}']
@@ -210,43 +222,58 @@ class BodyMaker:
                     localInertiaDiagonal=(RIDER_MASS,) * 3,
                     physicsClientId=self._client,
                 )
-            if group:
-                rolling = rolling_arm(group, joint)
-                surface = compliant(group[0].surface, mass)
-                self._set_surface(part.body, index, surface, rolling, step_size)
-                surfaces.append(Place(part.body, index))
+            if face.shapes:
+                place = Place(part.body, index)
+                surface = compliant(face.shapes[0].surface, mass)
+                self._set_surface(place, face, surface, joint, step_size)
+                surfaces.append(place)
 
     def _set_surface(
-        self, number: int, index: int, surface: Surface, rolling: float, step_size: float
+        self,
+        place: Place,
+        face: Face,
+        surface: Surface,
+        joint: JointSpec | None,
+        step_size: float,
     ) -> None:
-        """Set up what a body touches with.
+        """Set up a part of a body that touches with a face.
 
         Args:
-            rolling: PyBullet's rolling friction [m].
+            joint: what turns it, if anything does.
             step_size: of the simulation [s].
         """
         pybullet.changeDynamics(
-            number,
-            index,
-            lateralFriction=friction(surface),
+            *place,
+            lateralFriction=face.friction,
             spinningFriction=0.0,
-            rollingFriction=rolling,
+            rollingFriction=rolling_arm(face.shapes, joint),
             restitution=0.0,
             physicsClientId=self._client,
         )
+        self._set_filter(place, face.side)
         if not is_rigid(surface):
-            rate = self._parting_rate(number, index)
+            rate = self._parting_rate(place)
             stiffness, damping = contact_spring(surface, step_size, rate)
             pybullet.changeDynamics(
-                number,
-                index,
+                *place,
                 contactStiffness=stiffness,
                 contactDamping=damping,
                 physicsClientId=self._client,
             )
 
-    def _parting_rate(self, number: int, index: int) -> float:
+    def _parting_rate(self, place: Place) -> float:
         """Return the rate at which contacts of a part take away an overlap [1/s]."""
-        low, high = pybullet.getAABB(number, index, self._client)
+        low, high = pybullet.getAABB(*place, self._client)
         reach = max(b - a for a, b in zip(low, high, strict=True))
         return parting_rate(reach, self._tuning.push_out)
+
+    def _set_filter(self, place: Place, side: Side) -> None:
+        """Let a part meet those it is to meet; a new mu changes whom others meet."""
+        self._sides[place] = side, (0, 0)
+        changed = list(self._sides) if self._friction_filter.add(side.mu) else [place]
+        for one in changed:
+            of_one, before = self._sides[one]
+            now = self._friction_filter.group_and_mask(of_one)
+            if now != before:
+                self._sides[one] = of_one, now
+                pybullet.setCollisionFilterGroupMask(*one, *now, self._client)

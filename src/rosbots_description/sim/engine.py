@@ -81,6 +81,7 @@ class Engine:
             numSubSteps=0,
             contactERP=overlap_share(physics.step_size, self._tuning.push_out),
             enableConeFriction=self._tuning.friction_cone,
+            collisionFilterMode=0,  # each of a pair must be willing to meet the other
             enableFileCaching=0,  # else a second model under a file name gets the first one's text
             minimumSolverIslandSize=1,  # what has converged waits for nobody else
             physicsClientId=self._client,
@@ -197,8 +198,9 @@ class Engine:
             near = Pose(_at_most(pose.position, _ANYWHERE), pose.orientation)
             com = compose(near, part.com_in_origin)
             velocity = pybullet.getBaseVelocity(part.body, self._client)
-            pybullet.resetBasePositionAndOrientation(part.body, *com, self._client)
-            pybullet.resetBaseVelocity(part.body, *velocity, physicsClientId=self._client)
+            for number in (part.body, *part.also):
+                pybullet.resetBasePositionAndOrientation(number, *com, self._client)
+                pybullet.resetBaseVelocity(number, *velocity, physicsClientId=self._client)
 
     def set_twist(self, body: Body, twist: Twist) -> None:
         """Let all links move with this velocity of their root's origin, in world axes."""

@@ -82,15 +82,6 @@ def with_edges(tree: Tree, groups: Groups) -> Groups:
     return [leaning(group, axle, up) for group in groups]
 
 
-def is_one_body(tree: Tree, groups: Sequence[Groups]) -> bool:
-    """Tell whether a tree with these groups of surfaces is to be a rigid body, not a multibody.
-
-    What stands is: in a contact with a multibody, even one without joints, PyBullet solves for six
-    unknowns more. A step of the article's robot is 12 % cheaper on a floor that is a rigid body.
-    """
-    return tree.stands and len(groups[0]) == 1
-
-
 def is_floor(tree: Tree) -> bool:
     """Tell whether a tree stands and is planes and nothing else."""
     shapes = [collision.geometry for collision in tree.links[0].collisions]
@@ -165,16 +156,6 @@ def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
         surface = collision.surface
         groups.setdefault((surface.mu, surface.kp, surface.kd), []).append(collision)
     return [tuple(group) for group in groups.values()]
-
-
-def friction(surface: Surface) -> float:
-    """Return the friction PyBullet is to use for a surface.
-
-    Gazebo's engine lets a pair slide at the lesser mu, PyBullet at the product. A surface with
-    mu >= 1 gets 1, so that against it the other's own mu counts, as in Gazebo; only a pair of two
-    slippery surfaces (both below 1) slides more easily here.
-    """
-    return min(1.0, max(0.0, surface.mu))
 
 
 def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> float:

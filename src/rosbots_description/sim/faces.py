@@ -1,0 +1,97 @@
+"""What a link touches with in PyBullet: its groups of shapes, each in the roles it is needed in."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from .bullet_description import Tree
+from .friction_filter import Kind, Role, Side, coefficient, roles
+from .pose import Pose, compose, normalise
+from .spec import Box, Collision
+from .surfaces import Groups, is_floor
+
+# The box below a plane, 1000 km to each side [m].
+_SLAB = Box((2e6, 2e6, 1e6))
+
+
+class Face(NamedTuple):
+    """Shapes of equal surface, whom they meet, and the friction that PyBullet is to use there."""
+
+    shapes: tuple[Collision, ...]
+    side: Side
+    friction: float
+
+
+def faces(
+    tree: Tree, groups: Sequence[Groups], inner_first: bool, most: int
+) -> list[list[Face]]:
+    """Return what each link of a tree touches with; the first face is the link's own.
+
+    Args:
+        groups: of each link, from surfaces.py.
+        inner_first: whether the first group of the root lies between the others.
+        most: parts that the tree may have. If it would have more, every surface is there once, and
+            two of them, both smoother than 1, hold with the product of their mu.
+    """
+    kind = _kind(tree)
+    found = []
+    for i, of_link in enumerate(groups):
+        kinds = [Kind.INNER if inner_first and not i and not k else kind
+                 for k in range(len(of_link))]
+        found.append([face for group, one in zip(of_link, kinds, strict=True)
+                      for face in _in_roles(group, one, tree.stands)])
+    if sum(map(len, found)) <= most:
+        return found
+    return [[*{face.shapes: _in_both(face) for face in of_link}.values()] for of_link in found]
+
+
+def slab(tree: Tree) -> list[Face]:
+    """Return what boxes meet instead of a floor of planes, in the roles it is needed in.
+
+    Of a box above a plane PyBullet finds one corner in a step, and a box that falls flat would be
+    tipped by it; of a box above a box it finds four.
+    """
+    if not is_floor(tree):
+        return []
+    below = Pose((0.0, 0.0, -_SLAB.size[2] / 2.0))
+    shapes = tuple(
+        replace(plane, geometry=_SLAB, pose=compose(compose(plane.pose, _tilt(plane)), below))
+        for plane in tree.links[0].collisions
+    )
+    return _in_roles(shapes, Kind.SLAB, stands=True)
+
+
+def is_one_body(tree: Tree, found: Sequence[Sequence[Face]]) -> bool:
+    """Tell whether a tree with these faces is to be a rigid body to PyBullet, not a multibody.
+
+    PyBullet turns a rigid body without gaining energy, and solves for six unknowns less where it is
+    touched. What stands is a rigid body for each of its faces.
+    """
+    return tree.stands or (len(tree.links) == 1 and len(found[0]) == 1 and not tree.fixed_base)
+
+
+def _kind(tree: Tree) -> Kind:
+    if is_floor(tree):
+        return Kind.PLANE
+    if tree.stands:
+        return Kind.STANDING
+    shapes = [collision.geometry for link in tree.links for collision in link.collisions]
+    only_boxes = len(tree.links) == 1 and all(isinstance(shape, Box) for shape in shapes)
+    return Kind.BOXES if only_boxes else Kind.MOVING
+
+
+def _in_roles(group: tuple[Collision, ...], kind: Kind, stands: bool) -> list[Face]:
+    mu = coefficient(group[0].surface.mu) if group else 1.0
+    return [Face(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
+            for role in roles(mu, stands)]
+
+
+def _in_both(face: Face) -> Face:
+    kind, _, mu = face.side
+    return Face(face.shapes, Side(kind, Role.BOTH, 1.0), min(1.0, mu))
+
+
+def _tilt(plane: Collision) -> Pose:
+    """Return the rotation that brings z to the normal of a plane."""
+    x, y, z = plane.geometry.normal
+    return Pose(orientation=normalise((-y, x, 0.0, 1.0 + z)) if z > -1.0 else (1.0, 0.0, 0.0, 0.0))

@@ -1,0 +1,150 @@
+"""A pair of surfaces holds with the lesser of its friction coefficients, whatever they are."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from support import box_urdf, empty_world, urdf_spec
+from support.scenes import ball
+
+from rosbots_description.sim.bullet import pybullet
+from rosbots_description.sim.friction_filter import FrictionFilter, Kind, Role, Side
+from rosbots_description.sim.pose import Pose, compose, from_rpy
+
+SECOND = 1000  # steps
+GRAVITY = 9.8
+
+
+def rough(mu, size='0.4 0.4 0.1', mass=1.0, static=False):
+    """Return a box with a friction coefficient."""
+    surface = f'<gazebo reference="box"><mu1>{mu}</mu1><mu2>{mu}</mu2></gazebo>'
+    inertia = f'<inertia ixx="{mass / 70}" iyy="{mass / 70}" izz="{mass / 40}" '
+    text = box_urdf(size, mass, surface).replace('<inertia ixx="0.1" iyy="0.1" izz="0.1" ', inertia)
+    return replace(urdf_spec(text), static=static)
+
+
+def acceleration_down(slope, mu_box, mu_ramp, steps=SECOND):
+    """Return how fast a box gets faster down a ramp [m/s^2], which slopes by an angle [rad]."""
+    turn = Pose((0.0, 0.0, 30.0), from_rpy(0.0, slope, 0.0))
+    with empty_world() as world:
+        world.spawn(rough(mu_ramp, '40 4 0.2', static=True), 'ramp', turn)
+        box = world.spawn(rough(mu_box), 'box', compose(turn, Pose((0.0, 0.0, 0.1502))))
+        world.run(200)
+        before = math.hypot(*box.twist.linear)
+        world.run(steps)
+        return (math.hypot(*box.twist.linear) - before) / (steps / SECOND)
+
+
+@pytest.mark.parametrize(('mu_box', 'mu_ramp', 'mu'), [
+    (0.5, 0.5, 0.5), (0.3, 0.3, 0.3), (0.3, 0.8, 0.3), (0.9, 0.4, 0.4), (1.0, 0.4, 0.4),
+    (0.4, 1.0, 0.4), (100.0, 0.4, 0.4), (0.4, 100.0, 0.4), (0.0, 0.7, 0.0),
+    (1.2, 1.2, 1.2), (1.2, 2.0, 1.2), (1.0, 1.0, 1.0), (1e6, 1.3, 1.3), (1.0, 1e6, 1.0),
+])
+def test_what_slides_is_held_back_by_the_lesser_mu(mu_box, mu_ramp, mu):
+    holds, slides = math.atan(mu) - 0.02, math.atan(mu) + 0.1
+    if mu:
+        assert abs(acceleration_down(holds, mu_box, mu_ramp)) < 1e-3
+    expected = GRAVITY * (math.sin(slides) - mu * math.cos(slides))
+    assert acceleration_down(slides, mu_box, mu_ramp) == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize('mu', [2.0, 10.0, 100.0, 1e6])
+def test_rough_surfaces_hold_what_is_pushed_hard(mu):
+    with empty_world() as world:
+        box = world.spawn(rough(mu, '0.6 0.6 0.05', 2.0), 'box', Pose((0.0, 0.0, 0.025)))
+        world.run(200)
+        start = box.pose.position
+        for _ in range(SECOND):
+            box.links['box'].push((1.4 * 2.0 * GRAVITY, 0.0, 0.0), (0.0, 0.0, 0.0))
+            world.run(1)
+        assert math.dist(box.pose.position, start) < 1e-3
+        assert abs(acceleration_down(math.radians(55.0), mu, mu)) < 1e-3
+
+
+@pytest.mark.parametrize(('mu_low', 'mu_high', 'mu'), [
+    (0.5, 0.5, 0.5), (0.3, 0.6, 0.3), (0.6, 0.3, 0.3), (1.0, 0.4, 0.4), (0.4, 1.0, 0.4),
+    (100.0, 0.5, 0.5), (100.0, 1.0, 1.0),
+])
+def test_a_box_slides_on_a_heavy_one_that_moves_by_the_lesser_mu(mu_low, mu_high, mu):
+    with empty_world() as world:
+        low = world.spawn(rough(mu_low, '8 2 0.1', 1e4), 'low', Pose((0.0, 0.0, 0.05)))
+        high = world.spawn(rough(mu_high), 'high', Pose((0.0, 0.0, 0.15)))
+        world.run(300)
+        for force, steps in ((0.9 * mu * GRAVITY, 300), (1.5 * mu * GRAVITY, 500)):
+            before = high.twist.linear[0] - low.twist.linear[0]
+            for _ in range(steps):
+                high.links['box'].push((force, 0.0, 0.0), (0.0, 0.0, 0.0))
+                world.run(1)
+            gained = high.twist.linear[0] - low.twist.linear[0] - before
+            slides = max(0.0, force - mu * GRAVITY) * steps / SECOND
+            assert gained == pytest.approx(slides, rel=0.05, abs=2e-3)
+
+
+def test_a_floor_can_be_slippery_and_what_comes_later_knows_it():
+    with empty_world() as world:
+        ground = world.models['ground_plane'].spec
+        (link,) = ground.links
+        (collision,) = link.collisions
+        surface = replace(collision.surface, mu=0.2, mu2=0.2)
+        link = replace(link, collisions=(replace(collision, surface=surface),))
+        world.delete('ground_plane')
+        boxes = [world.spawn(rough(0.3), 'early', Pose((0.0, 0.0, 0.05)))]
+        world.spawn(replace(ground, links=(link,)), 'ground_plane', Pose())
+        boxes += [world.spawn(rough(mu), f'box{mu}', Pose((0.0, 2.0 + mu, 0.05)))
+                  for mu in (1.0, 5.0)]
+        boxes.append(world.spawn(urdf_spec(ball('ball', 0.05, 1.0)), 'ball', Pose((0, -2, 0.05))))
+        for _ in range(SECOND):
+            for box in boxes[:3]:
+                box.links['box'].push((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            world.run(1)
+        for box in boxes[:3]:
+            assert box.twist.linear[0] == pytest.approx(3.0 - 0.2 * GRAVITY, rel=0.02)
+        assert boxes[3].pose.position[2] == pytest.approx(0.05, abs=1e-3)
+
+
+def test_a_slippery_floor_can_be_moved():
+    with empty_world() as world:
+        bed = world.spawn(rough(0.4, '2 2 0.2', static=True), 'bed', Pose((9.0, 0.0, 1.0)))
+        bed.set_pose(Pose((0.0, 0.0, 3.0)))
+        for mu, x in ((0.2, -0.6), (1.0, 0.6)):
+            box = world.spawn(rough(mu), f'box{mu}', Pose((x, 0.0, 3.2)))
+            world.run(500)
+            assert box.pose.position[2] == pytest.approx(3.15, abs=1e-3)
+
+
+def test_a_robot_of_very_many_slippery_links_moves_all_the_same():
+    link = """<link name="l{0}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0"
+      ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.1"/></geometry></collision>
+      </link><gazebo reference="l{0}"><mu1>0.5</mu1></gazebo>"""
+    joint = """<joint name="j{0}" type="continuous"><parent link="l0"/><child link="l{0}"/>
+      <origin xyz="0 {0} 0"/></joint>"""
+    text = ''.join(link.format(i) for i in range(80))
+    text += ''.join(joint.format(i) for i in range(1, 80))
+    with empty_world() as world:
+        model = world.spawn(urdf_spec(text), 'rake', Pose((0.0, 0.0, 0.1)))
+        world.run(200)
+        assert model.pose.position[2] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_more_surfaces_than_can_be_told_apart_still_meet():
+    filters = FrictionFilter()
+    coefficients = [0.01 * k for k in range(60)]
+    for mu in coefficients:
+        filters.add(mu)
+    floor = filters.group_and_mask(Side(Kind.PLANE, Role.ONE, 10.0))
+    for mu in coefficients:
+        group, mask = filters.group_and_mask(Side(Kind.MOVING, Role.OWN, mu))
+        assert group & floor[1] and floor[0] & mask
+        assert max(group, mask) < 1 << 31
+
+
+def test_a_surface_of_mu_1_is_one_part_and_others_are_two():
+    with empty_world() as world:
+        for mu, parts in ((1.0, 1), (0.5, 2), (3.0, 2)):
+            box = world.spawn(rough(mu), f'box{mu}', Pose((0.0, mu, 0.05)))
+            assert len(box.body.surfaces['box']) == parts
+        world.run(100)
+        client = world.engine._client
+        touching = [len(pybullet.getContactPoints(model.body.bodies[0], physicsClientId=client))
+                    for name, model in world.models.items() if name != 'ground_plane']
+        assert touching == [4, 4, 4]
