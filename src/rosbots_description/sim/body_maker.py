@@ -60,13 +60,22 @@ class BodyMaker:
         self._untouching = Untouching(client)
         self._friction_filter = FrictionFilter()
         self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
+        # What gives way, how, and the rate at which its overlaps are taken away [1/s].
+        self._soft: dict[Place, tuple[Surface, float]] = {}
+        self._step_size = 0.001
 
-    def add_tree(self, body: Body, tree: Tree, model_pose: Pose, step_size: float) -> None:
+    def set_step_size(self, step_size: float) -> None:
+        """Simulate in steps of that size [s] from now on; what soft contacts do depends on it."""
+        if step_size != self._step_size:
+            self._step_size = step_size
+            for place in self._soft:
+                self._set_spring(place)
+
+    def add_tree(self, body: Body, tree: Tree, model_pose: Pose) -> None:
         """Put links that joints connect into the world, and note in `body` where they are.
 
         Args:
             model_pose: where the model's frame is.
-            step_size: of the simulation [s]; the contacts of soft surfaces depend on it.
         """
         inertials = [link.inertial or _MASSLESS for link in tree.links]
         moments, axes = zip(*(principal_axes(inertial) for inertial in inertials), strict=True)
@@ -111,7 +120,7 @@ class BodyMaker:
             body.parts[link.name] = part
             weight = inertials[i].mass if weighs else None
             self._set_inertia(part, weight, moments[i], joint)
-            self._set_surfaces(body, tree, i, own[i], index_of, step_size, mass)
+            self._set_surfaces(body, tree, i, own[i], index_of, mass)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
                 body.indices.setdefault(number, []).append(part.index)
@@ -119,7 +128,7 @@ class BodyMaker:
                 body.weightless.append((number, part.index, inertials[i].mass))
         for other, ((face,),) in zip(also, others, strict=True):
             place = Place(other, -1)
-            self._set_surface(place, face, face.shapes[0].surface, None, step_size)
+            self._set_surface(place, face, face.shapes[0].surface, None)
             body.surfaces[tree.links[0].name].append(place)
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
@@ -144,6 +153,7 @@ class BodyMaker:
             self._untouching.forget(number)
         for place in [place for place in self._sides if place.body in body.bodies]:
             del self._sides[place]
+            self._soft.pop(place, None)
 
     def reset(self) -> None:
         """Remove everything."""
@@ -151,6 +161,7 @@ class BodyMaker:
         self._untouching.clear()
         self._friction_filter.clear()
         self._sides.clear()
+        self._soft.clear()
 
     def _load_urdf(self, text: str, tree: Tree, pose: Pose, one_body: bool) -> int:
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
@@ -201,7 +212,6 @@ class BodyMaker:
         i: int,
         found: list[Face],
         index_of: dict[str, int],
-        step_size: float,
         mass: float,
     ) -> None:
         """Set up what link `i` touches with, itself and its riders, and note it in `body`.
@@ -225,22 +235,17 @@ class BodyMaker:
             if face.shapes:
                 place = Place(part.body, index)
                 surface = compliant(face.shapes[0].surface, mass)
-                self._set_surface(place, face, surface, joint, step_size)
+                self._set_surface(place, face, surface, joint)
                 surfaces.append(place)
 
     def _set_surface(
-        self,
-        place: Place,
-        face: Face,
-        surface: Surface,
-        joint: JointSpec | None,
-        step_size: float,
+        self, place: Place, face: Face, surface: Surface, joint: JointSpec | None
     ) -> None:
         """Set up a part of a body that touches with a face.
 
         Args:
-            joint: what turns it, if anything does.
-            step_size: of the simulation [s].
+            surface: that of the face, as compliant as it is to be.
+            joint: what turns the part, if anything does.
         """
         pybullet.changeDynamics(
             *place,
@@ -252,14 +257,19 @@ class BodyMaker:
         )
         self._set_filter(place, face.side)
         if not is_rigid(surface):
-            rate = self._parting_rate(place)
-            stiffness, damping = contact_spring(surface, step_size, rate)
-            pybullet.changeDynamics(
-                *place,
-                contactStiffness=stiffness,
-                contactDamping=damping,
-                physicsClientId=self._client,
-            )
+            self._soft[place] = surface, self._parting_rate(place)
+            self._set_spring(place)
+
+    def _set_spring(self, place: Place) -> None:
+        """Let a part give way as its surface does in steps of the present size."""
+        surface, rate = self._soft[place]
+        stiffness, damping = contact_spring(surface, self._step_size, rate)
+        pybullet.changeDynamics(
+            *place,
+            contactStiffness=stiffness,
+            contactDamping=damping,
+            physicsClientId=self._client,
+        )
 
     def _parting_rate(self, place: Place) -> float:
         """Return the rate at which contacts of a part take away an overlap [1/s]."""

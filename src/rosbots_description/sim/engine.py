@@ -75,6 +75,7 @@ class Engine:
     def apply(self, physics: PhysicsSettings) -> None:
         """Use these settings from the next step on."""
         self._gravity = physics.gravity
+        self._maker.set_step_size(physics.step_size)
         pybullet.setGravity(*physics.gravity, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=physics.step_size,
@@ -120,7 +121,7 @@ class Engine:
         body = Body()
         try:
             for tree in kinematic_trees(spec):
-                self._maker.add_tree(body, tree, pose, self._physics.step_size)
+                self._maker.add_tree(body, tree, pose)
             self._maker.exclude_collisions_within(body, spec)
         except BaseException:
             self.remove(body)  # nothing half made stays behind unseen
@@ -165,6 +166,18 @@ class Engine:
         for name, state in motion.joints.items():
             pybullet.resetJointState(*body.joints[name], *state, self._client)
             self.set_joint_motor(body, name, *motion.motors[name])
+
+    def coordinates(self, body: Body) -> Iterator[float]:
+        """Yield all that says where the links of a model are and how fast: of roots, and joints."""
+        for number in body.bodies:
+            for numbers in pybullet.getBasePositionAndOrientation(number, self._client):
+                yield from numbers
+            for numbers in pybullet.getBaseVelocity(number, self._client):
+                yield from numbers
+            indices = body.indices.get(number)
+            if indices:
+                for state in pybullet.getJointStates(number, indices, self._client):
+                    yield from state[:2]
 
     def link_pose(self, body: Body, link: str) -> Pose:
         """Return where the link's frame stands in the world."""

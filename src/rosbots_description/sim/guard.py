@@ -27,26 +27,22 @@ class Guard(Hook):
 
     def __init__(self, world: 'World') -> None:
         self._world = world
-        self._set_due()
+        self.look_soon()
 
     def update(self) -> None:
         """Mend the world if a model is lost."""
         lost = [model for model in self._world.models.values() if is_lost(model)]
         if lost or self._world.engine.waste > MOST_WASTE:
             self._world.mend(lost)
-        self._set_due()
-
-    def restart(self) -> None:
-        """Count from the present step on; time has jumped."""
-        self._set_due()
-
-    def _set_due(self) -> None:
         self.due = self._world.clock.steps + PERIOD
+
+    def look_soon(self) -> None:
+        """Look in the next step; time or the size of steps has jumped."""
+        self.due = self._world.clock.steps + 1
 
 
 def is_lost(model: 'Model') -> bool:
-    """Tell whether a model's motion is by numbers that are not finite, or of no world."""
+    """Tell whether any link of a model moves by numbers that are not finite, or of no world."""
     # Also one that stands: what hits it with endless speed leaves it with a velocity of NaN.
-    (position, orientation), (linear, angular) = model.state()
-    numbers = (*position, *orientation, *linear, *angular)
+    numbers = model.engine.coordinates(model.body)
     return not all(math.isfinite(number) and abs(number) < LARGEST for number in numbers)

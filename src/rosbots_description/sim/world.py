@@ -119,6 +119,7 @@ class World:
         if self.clock.step_ns != step_ns:
             ratio = Fraction(self.clock.step_ns, step_ns)
             self.schedule.change_step(self.clock.steps, ratio)
+            self._guard.look_soon()
         self.engine.apply(physics)
 
     def spawn(self, spec: ModelSpec, name: str, pose: Pose) -> Model:
@@ -208,7 +209,7 @@ class World:
         Properties that were set meanwhile, such as masses and joint limits, stay.
         """
         self.clock.reset()
-        self._guard.restart()
+        self._guard.look_soon()
         self.jobs.cancel(lambda target: True)
         self.engine.reset()
         for model in self.models.values():

@@ -13,7 +13,7 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Point
 
 from ...sim.inertia import in_link_axes, is_positive, turnable
-from ...sim.markup_values import HEAVIEST, LIGHTEST, MOST_INERT
+from ...sim.markup_values import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
 from ...sim.model import Link
 from ...sim.pose import Pose
 from ...sim.spec import Inertial
@@ -64,6 +64,11 @@ def set_link_properties(
         Pose(read_vector(request.com.position)),
         **{name: getattr(request, name) for name in _MOMENTS},
     )
+    if max(map(abs, inertial.pose.position)) > LONGEST:
+        raise RequestError(
+            f"com.position of link '{link.scoped_name}' is {max(inertial.pose.position, key=abs):g} "
+            f'm from its frame; at most {LONGEST:g} m are accepted'
+        )
     if not link.model.static:
         inertial = _movable(link, inertial)
     model = link.model
