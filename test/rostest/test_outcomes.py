@@ -97,6 +97,10 @@ OUTCOMES = [
     ('set_link_properties', {'link_name': 'box::body', 'mass': 1.0, 'ixx': -1.0}, False,
      "SetLinkProperties: Failure - the inertia tensor for link 'box::body' has a negative "
      'principal moment; give the tensor about the centre of mass [kg m^2]'),
+    ('set_link_properties', {'link_name': 'box::body', 'mass': 1.0,
+                             'com': {'position': {'y': -1e308}}}, False,
+     "SetLinkProperties: Failure - com.position of link 'box::body' is -1e+308 m from its frame; "
+     'at most 1e+07 m are accepted'),
     ('set_link_properties',
      {'link_name': 'box::body', 'mass': 2.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0}, True,
      'SetLinkProperties: properties set'),

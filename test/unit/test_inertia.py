@@ -8,6 +8,7 @@ import pytest
 from rosbots_description.sim import inertia
 from rosbots_description.sim.inertia import (
     STAND_IN_RADIUS,
+    is_balanced,
     is_positive,
     merge,
     possible,
@@ -16,7 +17,7 @@ from rosbots_description.sim.inertia import (
     turnable,
 )
 from rosbots_description.sim.pose import IDENTITY, Pose, from_rpy, rotate
-from rosbots_description.sim.spec import Inertial
+from rosbots_description.sim.spec import PRISMATIC, REVOLUTE, Inertial, JointSpec
 
 
 def in_link_axes(moments, axes):
@@ -146,3 +147,16 @@ def test_in_link_axes_the_tensor_is_turned_and_the_centre_stays():
     assert (flat.ixx, flat.iyy, flat.izz) == pytest.approx((2.0, 1.0, 3.0))
     assert (flat.mass, flat.pose) == (2.0, Pose((0.1, 0.2, 0.3)))
     assert (flat.ixy, flat.ixz, flat.iyz) == pytest.approx((0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(('inertial', 'joint_type', 'balanced'), [
+    (Inertial(1.0, Pose((0.0, 0.0, 0.3)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE, True),
+    (Inertial(1.0, Pose((0.0, 0.0, 0.3)), ixx=1.0, iyy=1.0, izz=2.0), PRISMATIC, False),
+    (Inertial(1.0, Pose((0.3, 0.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE, False),
+    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.2, izz=2.0), REVOLUTE, False),
+    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, ixz=0.1), REVOLUTE, False),
+    (Inertial(1.0, Pose(orientation=from_rpy(0.0, 1.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE,
+     False),
+])
+def test_a_wheel_is_balanced_and_a_lever_is_not(inertial, joint_type, balanced):
+    assert is_balanced(inertial, JointSpec('j', joint_type, 'a', 'b')) == balanced

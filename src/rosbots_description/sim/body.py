@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .pose import Pose, Twist
+from .pose import Pose, Twist, Vector
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,26 @@ class Place(NamedTuple):
     index: int
 
 
+class Mass(NamedTuple):
+    """A part of a body that weighs: PyBullet's index, mass [kg], principal moments [kg m^2]."""
+
+    index: int
+    mass: float
+    moments: Vector
+    has_weight: bool
+
+
+class Masses(NamedTuple):
+    """A body that moves: the parts that weigh, and the joints that move masses as they turn."""
+
+    parts: tuple[Mass, ...]
+    joints: tuple[int, ...]  # all of them
+    damping: tuple[float, ...]  # of each joint [N m s/rad or N s/m]
+    unbalanced: tuple[int, ...]
+    is_rigid: bool  # to PyBullet, not a multibody
+    is_fixed: bool
+
+
 class Body:
     """A model in the engine. Links and joints are addressed by their names."""
 
@@ -41,6 +61,7 @@ class Body:
         self.weightless: list[tuple[int, int, float]] = []
         self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
+        self.masses: dict[int, Masses] = {}  # what moves, by body
         self.surfaces: dict[str, list[Place]] = {}  # what each link touches with
 
 

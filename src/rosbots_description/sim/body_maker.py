@@ -1,15 +1,16 @@
 """Makes PyBullet's bodies of links and joints; their text is that of bullet_description.py."""
 
 import os
+from collections.abc import Sequence
 from itertools import combinations, product
 
-from .body import Body, Part, Place
+from .body import Body, Mass, Masses, Part, Place
 from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .faces import Face, faces, is_one_body, slab
 from .friction_filter import FrictionFilter, Side
-from .inertia import principal_axes
+from .inertia import is_balanced, principal_axes
 from .pose import Pose, Vector, compose, inverse
 from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
 from .surfaces import (
@@ -44,6 +45,23 @@ def grouped(tree: Tree, mesh_file: MeshFile) -> tuple[list[Groups], bool]:
         inner, *outer = inner_first
         return [[inner, *with_edges(tree, outer)], *groups[1:]], True
     return [with_edges(tree, groups[0]), *groups[1:]], False
+
+
+def _masses(tree: Tree, body: Body, moments: Sequence[Vector], rigid: bool) -> Masses:
+    """Return what of a tree weighs, and which of its joints move masses as they turn."""
+    parts = tuple(
+        Mass(body.parts[link.name].index, link.inertial.mass, of_link, link.gravity)
+        for link, of_link in zip(tree.links, moments, strict=True)
+        if link.inertial and not (tree.fixed_base and link is tree.links[0])
+    )
+    movable = [(joint, link) for link, joint in zip(tree.links, tree.joints, strict=True)
+               if joint is not None and joint.type != FIXED]
+    parents = {joint.parent for joint in tree.joints if joint}
+    joints = tuple(body.joints[joint.name][1] for joint, _ in movable)
+    unbalanced = tuple(body.joints[joint.name][1] for joint, link in movable
+                       if link.name in parents or not is_balanced(link.inertial, joint))
+    damping = tuple(joint.damping for joint, _ in movable)
+    return Masses(parts, joints, damping, unbalanced, rigid, tree.fixed_base)
 
 
 class BodyMaker:
@@ -86,7 +104,7 @@ class BodyMaker:
         mesh_file = self._surface_file if tree.stands else self._mesh_file
         groups, inner_first = grouped(tree, mesh_file)
         found = faces(tree, groups, inner_first, MAX_JOINTS + 1)
-        weighs = is_one_body(tree, found) and not tree.stands
+        rigid = is_one_body(tree, found)
         place = compose(model_pose, tree.links[0].pose)
         # What stands is a rigid body for each of its faces; the first is the one that is asked.
         own, *others = [[[face]] for face in (*found[0], *slab(tree))] if tree.stands else [found]
@@ -94,7 +112,7 @@ class BodyMaker:
         for one in (own, *others):
             shapes = [[face.shapes for face in of_link] for of_link in one]
             text = describe_tree(tree, coms, moments, shapes, mesh_file)
-            numbers.append(self._load_urdf(text, tree, place, is_one_body(tree, found)))
+            numbers.append(self._load_urdf(text, tree, place, rigid))
             body.bodies.append(numbers[-1])
             body.size += len(text)
         number, *also = numbers
@@ -118,7 +136,7 @@ class BodyMaker:
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
             part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i], tuple(also))
             body.parts[link.name] = part
-            weight = inertials[i].mass if weighs else None
+            weight = inertials[i].mass if rigid and not tree.stands else None
             self._set_inertia(part, weight, moments[i], joint)
             self._set_surfaces(body, tree, i, own[i], index_of, mass)
             if joint is not None and joint.type != FIXED:
@@ -126,6 +144,8 @@ class BodyMaker:
                 body.indices.setdefault(number, []).append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
                 body.weightless.append((number, part.index, inertials[i].mass))
+        if not tree.stands:
+            body.masses[number] = _masses(tree, body, moments, rigid)
         for other, ((face,),) in zip(also, others, strict=True):
             place = Place(other, -1)
             self._set_surface(place, face, face.shapes[0].surface, None)

@@ -1,6 +1,6 @@
 """The physics engine: specs and names in, plain values out.
 
-This module, body_maker.py, untouching.py and canvas.py alone know PyBullet.
+This module, body_maker.py, fast_bodies.py, untouching.py and canvas.py alone know PyBullet.
 
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
 frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a
@@ -13,6 +13,7 @@ from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
+from .fast_bodies import FastBodies
 from .physics import PhysicsSettings
 from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from .solver_effort import CHECK, Motor, SolverEffort
@@ -52,6 +53,7 @@ class Engine:
         self._effort = SolverEffort(self._set_iterations)
         self._until_look = CHECK  # steps
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
+        self._fast = FastBodies(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
@@ -76,6 +78,7 @@ class Engine:
         """Use these settings from the next step on."""
         self._gravity = physics.gravity
         self._maker.set_step_size(physics.step_size)
+        self._fast.set(physics.step_size, physics.gravity)
         pybullet.setGravity(*physics.gravity, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=physics.step_size,
@@ -93,6 +96,7 @@ class Engine:
     def reset(self) -> None:
         """Remove everything; the same bodies added again then move bit for bit as before."""
         self._maker.reset()
+        self._fast.clear()
         self._weightless.clear()
         self._driven.clear()
         self._until_look = CHECK
@@ -102,19 +106,33 @@ class Engine:
 
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
-        step, client = self._step, self._client
+        fast = self._fast
         while steps > 0:
-            run = min(steps, self._until_look)
-            for _ in range(run):
-                if self._weightless:
-                    self._lift_weightless()
-                step(client)
+            if not fast.rest:
+                fast.look()
+            run = min(steps, self._until_look, fast.rest)
+            self._step_alike(run)
             self._joint_readings.clear()
             steps -= run
+            fast.rest -= run
             self._until_look -= run
             if not self._until_look:
                 self._until_look = CHECK
                 self._effort.look(self._motors())
+
+    def _step_alike(self, steps: int) -> None:
+        """Make steps in which the same bodies are fast."""
+        step, client, fast = self._step, self._client, self._fast
+        plain = not fast
+        for _ in range(steps):
+            if self._weightless:
+                self._lift_weightless()
+            if plain:
+                step(client)
+            else:
+                fast.before_step()
+                step(client)
+                fast.after_step()
 
     def add(self, spec: ModelSpec, pose: Pose) -> Body:
         """Put a model into the world, its frame at `pose`, all joints at zero."""
@@ -131,6 +149,7 @@ class Engine:
                 self.set_joint_motor(body, joint.name, 0.0, joint.friction)
         if body.weightless:
             self._weightless.append(body)
+        self._fast.add(body.masses)
         return body
 
     def remove(self, body: Body) -> None:
@@ -139,6 +158,7 @@ class Engine:
         if body in self._weightless:
             self._weightless.remove(body)
         self._driven.pop(body, None)
+        self._fast.forget(body.bodies)
         self.waste += body.size
         self._maker.remove(body)
 
@@ -214,6 +234,7 @@ class Engine:
             for number in (part.body, *part.also):
                 pybullet.resetBasePositionAndOrientation(number, *com, self._client)
                 pybullet.resetBaseVelocity(number, *velocity, physicsClientId=self._client)
+            self._fast.disturb(part.body)
 
     def set_twist(self, body: Body, twist: Twist) -> None:
         """Let all links move with this velocity of their root's origin, in world axes."""
@@ -236,6 +257,7 @@ class Engine:
         angular = _at_most(twist.angular, ANY_SPEED)
         linear = add(_at_most(twist.linear, ANY_SPEED), cross(angular, com))
         pybullet.resetBaseVelocity(part.body, linear, angular, physicsClientId=self._client)
+        self._fast.set_in_motion(part.body)
 
     def push(
         self, body: Body, link: str, force: Vector, torque: Vector, place: Vector | None = None
@@ -252,6 +274,7 @@ class Engine:
         force, torque = _at_most(force, _ANY_FORCE), _at_most(torque, _ANY_FORCE)
         pybullet.applyExternalForce(part.body, part.index, force, place, world, client)
         pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
+        self._fast.disturb(part.body)
 
     def push_joint(self, body: Body, joint: str, effort: float) -> None:
         """Push a joint during the next step by `effort` [N m or N], beside its motor."""
@@ -259,6 +282,7 @@ class Engine:
         pybullet.setJointMotorControl2(
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
         )
+        self._fast.disturb(body.joints[joint][0])
 
     def joint_reading(self, body: Body, joint: str) -> tuple:
         """Return PyBullet's state of a joint; all joints of a body are read in one call.
@@ -279,6 +303,7 @@ class Engine:
         self._joint_readings.clear()
         number, index = body.joints[joint]
         pybullet.resetJointState(number, index, position, 0.0, self._client)
+        self._fast.disturb(number)
 
     def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""

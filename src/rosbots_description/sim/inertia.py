@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .pose import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
-from .spec import Inertial
+from .spec import REVOLUTE, Inertial, JointSpec
 
 # A body without any resistance to turning cannot be simulated. It gets that of a solid ball of
 # this radius [m] about the axes in question.
@@ -22,6 +22,8 @@ _DIGITS = 12
 
 # A moment smaller than this, in parts of the greatest, is zero but for rounding.
 _NEARLY_ZERO = 1e-9
+# Share of its moment about an axis, by which a wheel may be out of balance.
+_UNEVEN = 0.02
 
 # Principal moments below this [m^2], times the mass, count as zero.
 _ZERO_RADIUS_SQUARED = 1e-12
@@ -181,6 +183,21 @@ def is_positive(inertial: Inertial) -> bool:
     """Tell whether no principal moment is negative (rounding apart)."""
     moments, _ = principal_axes(inertial)
     return min(moments) >= -_NEARLY_ZERO * max(abs(moment) for moment in moments)
+
+
+def is_balanced(inertial: Inertial, joint: JointSpec) -> bool:
+    """Tell whether a link has its mass evenly about the axis of a joint, as a wheel has."""
+    if joint.type != REVOLUTE:
+        return False
+    axis = np.array(joint.axis_in_child)
+    arm = np.cross(np.array(inertial.pose.position) - joint.pose.position, axis)
+    turn = _matrix(inertial.pose.orientation)
+    whole = turn @ tensor(inertial) @ turn.T
+    along = axis @ whole @ axis
+    # Seen along the axis a balanced tensor is a circle, and does not lean to the axis.
+    flat = whole - along * np.outer(axis, axis)
+    uneven = flat - 0.5 * np.trace(flat) * (np.eye(3) - np.outer(axis, axis))
+    return float(inertial.mass * arm @ arm + np.linalg.norm(uneven)) <= _UNEVEN * float(along)
 
 
 def _nearest_order(axes: np.ndarray) -> list[int]:

@@ -64,10 +64,11 @@ def set_link_properties(
         Pose(read_vector(request.com.position)),
         **{name: getattr(request, name) for name in _MOMENTS},
     )
-    if max(map(abs, inertial.pose.position)) > LONGEST:
+    farthest = max(inertial.pose.position, key=abs)
+    if abs(farthest) > LONGEST:
         raise RequestError(
-            f"com.position of link '{link.scoped_name}' is {max(inertial.pose.position, key=abs):g} "
-            f'm from its frame; at most {LONGEST:g} m are accepted'
+            f"com.position of link '{link.scoped_name}' is {farthest:g} m from its frame; "
+            f'at most {LONGEST:g} m are accepted'
         )
     if not link.model.static:
         inertial = _movable(link, inertial)

@@ -1,0 +1,242 @@
+"""Keeps the energy of what turns fast, where PyBullet's time steps do not.
+
+PyBullet turns a rigid body by implicit Euler, which loses energy, and the links of a multibody by
+explicit Euler, which gains it without bound: by some dt w^2 of it per second at an angular speed w.
+So all bodies are looked at now and then, and those that turn fast are put right in each step.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from .body import Masses
+from .bullet import pybullet
+from .gyration import lost_share, missing_torque
+from .pose import Vector, conjugate, rotate
+
+LOOK = 10  # steps between two looks at all bodies
+# dt w^2 [1/s], from which on the links of a multibody are put right: while it touches nothing, and
+# also where something holds it, as a floor does a robot that turns on the spot.
+_FAST, _WILD = 0.01, 0.1
+_LOSES = 1e-3  # [1/s] share of its energy, from which on a rigid body is put right
+_CALM = 200  # looks without speed, after which a multibody is left alone again
+# Share of the most kinetic energy a multibody had, by which its energy may grow. As velocities and
+# places are not of the same moment, it seems to change by less.
+_GROWS = 0.01
+
+
+class FastBodies:
+    """Those bodies of a PyBullet world that turn fast."""
+
+    def __init__(self, client: int) -> None:
+        """Work in the world of that PyBullet client, which is empty."""
+        self._client = client
+        self._bodies: dict[int, Masses] = {}
+        self._spinning: list[int] = []  # rigid bodies
+        self._swinging: dict[int, _Swinging] = {}  # multibodies
+        self.rest = 0  # steps until the next look
+        self.set(0.001, (0.0, 0.0, 0.0))
+
+    def set(self, step_size: float, gravity: Vector) -> None:
+        """Simulate with that step size [s] and gravity [m/s^2] from now on."""
+        self._step_size, self._gravity = step_size, gravity
+        self._swinging.clear()
+        self.rest = 0
+
+    def add(self, bodies: dict[int, Masses]) -> None:
+        """Look at these bodies from now on, by PyBullet's numbers."""
+        self._bodies.update(bodies)
+
+    def forget(self, numbers: Iterable[int]) -> None:
+        """Look at these bodies no more."""
+        for number in numbers:
+            self._bodies.pop(number, None)
+            self._swinging.pop(number, None)
+            if number in self._spinning:
+                self._spinning.remove(number)
+
+    def clear(self) -> None:
+        """Forget all bodies."""
+        self.forget(list(self._bodies))
+        self.rest = 0
+
+    def disturb(self, number: int) -> None:
+        """Tell that something from outside does work on a body in the next step."""
+        swinging = self._swinging.get(number)
+        if swinging:
+            swinging.ceiling = None
+
+    def set_in_motion(self, number: int) -> None:
+        """Tell that a body has another velocity now."""
+        self.disturb(number)
+        self.rest = 0
+
+    def __bool__(self) -> bool:
+        """Tell whether there is anything to put right in the next step."""
+        return bool(self._spinning or self._swinging)
+
+    def look(self) -> None:
+        """Find what turns fast."""
+        self.rest = LOOK
+        self._spinning.clear()
+        for number, masses in self._bodies.items():
+            velocity = pybullet.getBaseVelocity(number, self._client)[1]
+            speed = sum(w * w for w in velocity) * self._step_size
+            if masses.is_rigid:
+                if speed > _LOSES and self._loses(number, velocity):
+                    self._spinning.append(number)
+                continue
+            if masses.unbalanced:
+                states = pybullet.getJointStates(number, masses.unbalanced, self._client)
+                speed += sum(state[1] * state[1] for state in states) * self._step_size
+            self._note(number, masses, speed)
+
+    def _note(self, number: int, masses: Masses, speed: float) -> None:
+        """Note that a multibody has a certain dt w^2 [1/s]."""
+        swinging = self._swinging.get(number)
+        if swinging is not None:
+            swinging.calm = 0 if speed > _FAST else swinging.calm + 1
+            if swinging.calm > _CALM:
+                del self._swinging[number]
+        elif speed > _FAST:
+            swinging = _Swinging(self._client, number, masses)
+            if speed > _WILD or not swinging.touched():
+                self._swinging[number] = swinging
+
+    def before_step(self) -> None:
+        """Give to rigid bodies what PyBullet is about to take from them."""
+        for number in self._spinning:
+            (mass,) = self._bodies[number].parts
+            velocity = pybullet.getBaseVelocity(number, self._client)[1]
+            place, turn = pybullet.getBasePositionAndOrientation(number, self._client)
+            own = rotate(conjugate(turn), velocity)
+            torque = missing_torque(mass.moments, own, self._step_size)
+            if torque is not None:
+                pybullet.applyExternalTorque(
+                    number, -1, rotate(turn, torque), pybullet.WORLD_FRAME, self._client
+                )
+
+    def after_step(self) -> None:
+        """Take from multibodies what PyBullet has given to them."""
+        with np.errstate(all='ignore'):  # a model may be lost
+            for swinging in self._swinging.values():
+                swinging.hold(self._step_size, self._gravity, self._bodies)
+
+    def _loses(self, number: int, velocity: Vector) -> bool:
+        _, turn = pybullet.getBasePositionAndOrientation(number, self._client)
+        (mass,) = self._bodies[number].parts
+        own = rotate(conjugate(turn), velocity)
+        return lost_share(mass.moments, own, self._step_size) > _LOSES
+
+
+class _Swinging:
+    """A multibody that turns fast. Its energy grows by the work that is done on it, or not at all.
+
+    Work is that of its motors and dampers; what stands does none. What pushes do, and other bodies
+    that move, is not known: the energy after that is taken as it is. While a body flies, only the
+    energy about its centre of mass is looked at, which gravity does not change.
+    """
+
+    def __init__(self, client: int, number: int, masses: Masses) -> None:
+        self._client, self._number, self._all = client, number, masses
+        base = [part for part in masses.parts if part.index < 0]
+        links = [part for part in masses.parts if part.index >= 0]
+        self._base = bool(base) and not masses.is_fixed
+        parts = (base if self._base else []) + links
+        self._indices = [part.index for part in links]
+        self._mass = np.array([part.mass for part in parts])
+        self._weight = np.array([part.mass * part.has_weight for part in parts])
+        self._moments = np.array([part.moments for part in parts])
+        self._most = 0.0  # the most kinetic energy seen [J]
+        self.ceiling: float | None = None  # of the energy [J]; None: as it is after the next step
+        self._flies, self._total = False, 0.0  # after the last step
+        self.calm = 0
+
+    def hold(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
+        """See that the last step did not add to the energy."""
+        touched = self.touched()
+        total, kinetic, drift = self._energy(step_size, gravity)
+        self._most = max(self._most, kinetic)
+        slack = _GROWS * self._most
+        flew, self._flies = self._flies, not (touched or self._all.is_fixed)
+        flies_on = flew and self._flies
+        if self.ceiling is None or not touched.isdisjoint(moving):
+            self.ceiling = slack + (kinetic if self._flies else total)
+        else:
+            if flew and touched:
+                self.ceiling = self._total
+            self.ceiling += self._work(step_size)
+            excess = min(kinetic, (kinetic if flies_on else total) - self.ceiling)
+            if excess > 0.0:
+                self._slow_down((1.0 - excess / kinetic) ** 0.5, drift)
+                total, kinetic = total - excess, kinetic - excess
+            if touched:
+                self.ceiling = min(self.ceiling, total + slack)
+            elif self._flies and not flew:
+                self.ceiling = kinetic
+        self._total = total
+
+    def _energy(self, step_size: float, gravity: Vector) -> tuple[float, float, np.ndarray]:
+        """Return all energy, its kinetic part [J], and how the centre of mass drifts [m/s].
+
+        The kinetic energy is that about a centre of mass that is free to move. Heights are taken in
+        the middle of the last step, where its velocities belong.
+        """
+        states = pybullet.getLinkStates(self._number, self._indices, 1, 1, self._client)
+        rows = [(state[0], state[1], state[6], state[7]) for state in states]
+        if self._base:
+            pose = pybullet.getBasePositionAndOrientation(self._number, self._client)
+            rows.insert(0, (*pose, *pybullet.getBaseVelocity(self._number, self._client)))
+        places, turns, linear, angular = (np.array(column) for column in zip(*rows, strict=True))
+        own = _turned_back(turns, angular)
+        middle = places - 0.5 * step_size * linear
+        energy = -float((self._weight[:, None] * middle * gravity).sum())
+        drift = np.zeros(3)
+        if not self._all.is_fixed:
+            whole = self._mass.sum()
+            drift = (self._mass[:, None] * linear).sum(axis=0) / whole
+            energy += 0.5 * whole * float((drift * drift).sum())
+        linear = linear - drift
+        kinetic = 0.5 * float((self._mass[:, None] * linear * linear).sum()
+                              + (self._moments * own * own).sum())
+        return energy + kinetic, kinetic, drift
+
+    def _work(self, step_size: float) -> float:
+        """Return what motors and dampers gave in the last step [J], less than 0 if they took it."""
+        if not self._all.joints:
+            return 0.0
+        states = pybullet.getJointStates(self._number, self._all.joints, self._client)
+        pairs = zip(states, self._all.damping, strict=True)
+        return step_size * sum(speed * (effort - damping * speed)
+                               for (_, speed, _, effort), damping in pairs)
+
+    def touched(self) -> set[int]:
+        """Return what else the body touches."""
+        points = pybullet.getContactPoints(self._number, physicsClientId=self._client)
+        return {number for point in points for number in point[1:3]} - {self._number}
+
+    def _slow_down(self, share: float, drift: np.ndarray) -> None:
+        """Let all parts move with a share of their velocity about the centre of mass."""
+        if self._base:
+            linear, angular = pybullet.getBaseVelocity(self._number, self._client)
+            linear = drift + share * (np.array(linear) - drift)
+            angular = share * np.array(angular)
+            pybullet.resetBaseVelocity(
+                self._number, linear.tolist(), angular.tolist(), physicsClientId=self._client
+            )
+        if self._all.joints:
+            states = pybullet.getJointStates(self._number, self._all.joints, self._client)
+            pybullet.resetJointStatesMultiDof(
+                self._number,
+                self._all.joints,
+                [[state[0]] for state in states],
+                [[share * state[1]] for state in states],
+                physicsClientId=self._client,
+            )
+
+
+def _turned_back(turns: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 3) turned by the inverse of quaternions (n, 4)."""
+    own, w = -turns[:, :3], turns[:, 3:]
+    twice = 2.0 * np.cross(own, vectors)
+    return vectors + w * twice + np.cross(own, twice)

@@ -1,0 +1,69 @@
+"""A model of which any link is lost is noticed soon, also after steps of another size."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from support import box_urdf, empty_world, urdf_spec
+
+from rosbots_description.sim.bullet import pybullet
+from rosbots_description.sim.guard import PERIOD
+from rosbots_description.sim.pose import Pose, Twist
+
+CRANE = """<link name="world"/>
+  <link name="arm"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="hook"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="slew" type="continuous"><parent link="world"/><child link="arm"/></joint>
+  <joint name="swing" type="continuous"><parent link="arm"/><child link="hook"/>
+  <origin xyz="1 0 0"/></joint>"""
+
+
+def lost(caplog):
+    return [r.getMessage() for r in caplog.records if 'was lost' in r.getMessage()]
+
+
+@pytest.mark.parametrize('joint', ['slew', 'swing'])
+@pytest.mark.parametrize('position', [math.nan, math.inf, 1e10])
+def test_a_link_that_is_lost_is_noticed_though_the_first_one_is_not(caplog, joint, position):
+    with empty_world() as world:
+        crane = world.spawn(urdf_spec(CRANE), 'crane', Pose((0.0, 0.0, 5.0)))
+        world.run(10)
+        crane.joint(joint).set_position(position)
+        world.run(PERIOD)
+        assert len(lost(caplog)) == 1
+        assert abs(crane.joint(joint).position) < 1.0
+
+
+@pytest.mark.parametrize('step_size', [10.0, 0.5])
+def test_models_are_looked_at_at_once_after_steps_of_another_size(caplog, step_size):
+    with empty_world() as world:
+        usual = world.physics
+        world.run(PERIOD // 2)
+        world.set_physics(replace(usual, step_size=step_size))
+        box = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0.0, 0.0, 0.5)))
+        world.run(5)
+        world.set_physics(usual)
+        box.set_twist(Twist((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        world.run(2)
+        assert len(lost(caplog)) == 1
+        world.run(2 * PERIOD)
+        assert box.pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
+
+
+@pytest.mark.parametrize(('first', 'then'), [(0.001, 0.004), (0.004, 0.0005)])
+def test_soft_contacts_are_the_same_whenever_the_step_size_was_set(first, then):
+    surface = '<gazebo reference="box"><kp>20000</kp><kd>10</kd></gazebo>'
+    spec = urdf_spec(box_urdf('0.2 0.2 0.2', 1.0, surface))
+
+    def dropped(early):
+        with empty_world() as world:
+            world.set_physics(replace(world.physics, step_size=then if early else first))
+            box = world.spawn(spec, 'box', Pose((0.0, 0.0, 0.3)))
+            world.set_physics(replace(world.physics, step_size=then))
+            info = pybullet.getDynamicsInfo(box.body.bodies[0], -1, world.engine._client)
+            world.run(round(0.5 / then))
+            return info, box.state()
+
+    assert dropped(early=True) == dropped(early=False)
