@@ -14,7 +14,8 @@ from support.isolation import isolated
 from support.requests import messages
 
 from rosbots_description.ros_api import state_commands
-from rosbots_description.ros_api.adapters import diff_drive, registry
+from rosbots_description.ros_api.adapters import drive as drive_adapter
+from rosbots_description.ros_api.adapters import drives, registry
 from rosbots_description.sim.guard import PERIOD
 
 NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood
@@ -48,10 +49,10 @@ def listeners(bench, monkeypatch):
     )
     monkeypatch.setattr(state_commands, 'rospy', wire)
     monkeypatch.setattr(registry, 'rospy', wire)
-    monkeypatch.setattr(diff_drive, 'find_tf_prefix', lambda _: '')
+    monkeypatch.setattr(drive_adapter, 'find_tf_prefix', lambda _: '')
     state_commands.subscribe_states(bench.server)
     (drive,) = bench.world.models['rosbots'].plugins
-    diff_drive.DiffDriveAdapter(bench.server, drive).open()
+    drives.DiffDriveAdapter(bench.server, drive).open()
     assert sorted(heard) == sorted(KINDS)
     return heard
 

@@ -1,4 +1,4 @@
-"""A diff drive without an engine: a model of two wheel joints that obey at once, or as told."""
+"""Drives without an engine: a model of joints that obey at once, or as told."""
 
 import math
 from types import SimpleNamespace
@@ -41,15 +41,21 @@ class Wheel:
     def set_motor(self, velocity, effort):
         self.velocity, self.effort = velocity, effort
 
+    def set_position(self, position):
+        self.position, self.velocity = position, 0.0
+
+    def state(self):
+        return self.position, self.velocity
+
 
 class FakeModel:
-    """A model with two wheels and a pose that a test can set."""
+    """A model with wheels and a pose that a test can set."""
 
-    def __init__(self, wheel_collisions=()):
+    def __init__(self, wheel_collisions=(), names=('left', 'right')):
         self.name = 'robot'
-        self.wheels = {'left': Wheel('left', self), 'right': Wheel('right', self)}
+        self.wheels = {name: Wheel(name, self) for name in names}
         self.now = (Pose(), Twist())
-        y = {'left': 0.4, 'right': -0.4}
+        y = {name: -0.4 if 'right' in name else 0.4 for name in names}
         side = from_rpy(-math.pi / 2, 0.0, 0.0)
         wheel_links = [
             LinkSpec(f'{name}_link', Pose((0.0, y[name], 0.2), side), collisions=wheel_collisions)
@@ -64,18 +70,30 @@ class FakeModel:
     def state(self):
         return self.now
 
+    @property
+    def pose(self):
+        return self.now[0]
+
+    def set_twist(self, twist):
+        self.now = (self.pose, twist)
+
     def joint(self, name):
         if name not in self.wheels:
-            raise NotFoundError(f"model 'robot' has no joint '{name}'; its joints: left, right")
+            known = ', '.join(self.wheels)
+            raise NotFoundError(f"model 'robot' has no joint '{name}'; its joints: {known}")
         return self.wheels[name]
 
 
 def make(wheel_collisions=(), **tags):
-    """Return a loaded plugin with these tags beside TAGS; one that is None is left out."""
-    children = tuple(Element(tag, text) for tag, text in (TAGS | tags).items() if text is not None)
-    spec = PluginSpec('drive', 'libgazebo_ros_diff_drive.so', Element('plugin', children=children))
-    world = SimpleNamespace(clock=SimClock(STEP))
-    plugin = DiffDrive(world, FakeModel(wheel_collisions), spec)
+    """Return a loaded diff drive with these tags beside TAGS; one that is None is left out."""
+    return make_drive(DiffDrive, FakeModel(wheel_collisions), **(TAGS | tags))
+
+
+def make_drive(plugin_class, model, **tags):
+    """Return a loaded plugin of that model with these tags; one that is None is left out."""
+    children = tuple(Element(tag, text) for tag, text in tags.items() if text is not None)
+    spec = PluginSpec('drive', 'libgazebo_ros_drive.so', Element('plugin', children=children))
+    plugin = plugin_class(SimpleNamespace(clock=SimClock(STEP)), model, spec)
     plugin.load()
     return plugin
 

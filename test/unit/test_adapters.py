@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from support.fake_drive import make
 
-from rosbots_description.ros_api.adapters.diff_drive import DiffDriveAdapter
+from rosbots_description.ros_api.adapters.drives import DiffDriveAdapter
 from rosbots_description.ros_api.adapters.registry import Adapters
 
 

@@ -8,6 +8,7 @@ from support.fake_drive import PERIOD_STEPS, STEP, collect, make, rim_speeds, ru
 
 from rosbots_description.sim.errors import PluginError
 from rosbots_description.sim.pose import Pose, Twist, from_rpy
+from rosbots_description.sim.readings import JointStates
 
 
 def test_the_first_update_comes_one_step_late_and_the_mean_rate_is_exact():
@@ -139,7 +140,7 @@ def test_joint_states_are_right_then_left():
     states = collect(plugin.joint_states)
     plugin.model.wheels['left'].position = 1.5
     run(plugin, PERIOD_STEPS + 1)
-    assert states == [(('right', 'left'), (0.0, 1.5))]
+    assert states == [JointStates(('right', 'left'), (0.0, 1.5))]
 
 
 def test_wheel_transforms_are_relative_to_the_model_whatever_the_parent():

@@ -20,7 +20,7 @@ from rosbots_description.ros_api.layouts import (
 )
 from rosbots_description.ros_api.sending import next_number
 from rosbots_description.sim.pose import Pose, Twist
-from rosbots_description.sim.readings import Odometry
+from rosbots_description.sim.readings import JointStates, Odometry
 
 SEQ, NOW_NS = 258, 12_000_000_345
 STAMP = Time(12, 345)
@@ -62,7 +62,26 @@ def test_joint_states_have_positions_only(names):
     positions = [0.5 + i for i in range(len(names))]
     message = JointState(name=names, position=positions)
     message.header.stamp = STAMP
-    assert JointStatesLayout(names).pack(SEQ, NOW_NS, positions) == on_the_wire(message)
+    reading = JointStates(names, positions)
+    assert JointStatesLayout(reading).pack(SEQ, NOW_NS, reading) == on_the_wire(message)
+
+
+def test_joint_states_have_velocities_and_efforts_where_they_are_told():
+    told = ('steering', 'left'), (0.5, 1.5), (0.1, 0.2), (0.0, 3.0)
+    message = JointState(None, *told)
+    message.header.stamp = STAMP
+    reading = JointStates(*told)
+    assert JointStatesLayout(reading).pack(SEQ, NOW_NS, reading) == on_the_wire(message)
+
+
+def test_odometry_has_the_covariance_of_its_twist():
+    message = OdometryMessage(child_frame_id='b')
+    message.header.frame_id, message.header.stamp = 'a', STAMP
+    message.twist.covariance[::7] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+    fill_pose(message.pose.pose, POSE)
+    fill_twist(message.twist.twist, TWIST)
+    layout = OdometryLayout('a', 'b', (0.0,) * 6, (1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
+    assert layout.pack(SEQ, NOW_NS, Odometry(POSE, TWIST)) == on_the_wire(message)
 
 
 def test_numbers_follow_those_that_rospy_gave_and_begin_again_when_there_is_no_room():

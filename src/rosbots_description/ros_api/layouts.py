@@ -10,26 +10,33 @@ from collections.abc import Sequence
 
 from ..sim.clock import NANOSECONDS
 from ..sim.pose import Pose
-from ..sim.readings import Odometry
+from ..sim.readings import JointStates, Odometry
 
 _SIZE = 4  # of the number at the beginning, which does not count itself [bytes]
 _COVARIANCE = struct.Struct('<36d')  # row-major 6x6: x, y, z, then rotations about x, y, z
-_NO_COVARIANCE = bytes(_COVARIANCE.size)
 
 
 class OdometryLayout:
     """nav_msgs/Odometry between two frames."""
 
-    def __init__(self, frame: str, child: str, pose_variances: Sequence[float]) -> None:
+    def __init__(
+        self,
+        frame: str,
+        child: str,
+        pose_variances: Sequence[float],
+        twist_variances: Sequence[float] = (0.0,) * 6,
+    ) -> None:
         """Note what stays the same.
 
         Args:
             frame: in which the pose is given.
             child: the frame that moves, in which the twist is given.
             pose_variances: six, the diagonal of the pose's covariance.
+            twist_variances: the same of the twist.
         """
         self._frames = _text(frame) + _text(child)
         self._pose_covariance = _diagonal(pose_variances)
+        self._twist_covariance = _diagonal(twist_variances)
         covariance = f'{_COVARIANCE.size}s'
         self._layout = struct.Struct(f'<4I{len(self._frames)}s7d{covariance}6d{covariance}')
         self._size = self._layout.size - _SIZE
@@ -40,7 +47,7 @@ class OdometryLayout:
         return self._layout.pack(
             self._size, seq, *divmod(now_ns, NANOSECONDS), self._frames,
             *pose.position, *pose.orientation, self._pose_covariance,
-            *twist.linear, *twist.angular, _NO_COVARIANCE,
+            *twist.linear, *twist.angular, self._twist_covariance,
         )
 
 
@@ -62,19 +69,21 @@ class TransformLayout:
 
 
 class JointStatesLayout:
-    """sensor_msgs/JointState with positions; velocity and effort are empty, as in Gazebo."""
+    """sensor_msgs/JointState with positions; velocity and effort are empty where none are told."""
 
-    def __init__(self, names: Sequence[str]) -> None:
-        """Note the names of the joints."""
-        frame, count = _text(''), struct.pack('<I', len(names))
-        self._names = frame + count + b''.join(map(_text, names)) + count
-        self._layout = struct.Struct(f'<4I{len(self._names)}s{len(names)}d2I')
+    def __init__(self, reading: JointStates) -> None:
+        """Note the names of the joints, and what is told of them."""
+        names, *told = reading
+        self._names = _text('') + struct.pack('<I', len(names)) + b''.join(map(_text, names))
+        lists = ''.join(f'I{len(values)}d' for values in told)
+        self._layout = struct.Struct(f'<4I{len(self._names)}s{lists}')
         self._size = self._layout.size - _SIZE
 
-    def pack(self, seq: int, now_ns: int, positions: Sequence[float]) -> bytes:
+    def pack(self, seq: int, now_ns: int, reading: JointStates) -> bytes:
         """Return the message with the number `seq`, stamped `now_ns` [ns]."""
+        numbers = (number for values in reading[1:] for number in (len(values), *values))
         return self._layout.pack(
-            self._size, seq, *divmod(now_ns, NANOSECONDS), self._names, *positions, 0, 0
+            self._size, seq, *divmod(now_ns, NANOSECONDS), self._names, *numbers
         )
 
 

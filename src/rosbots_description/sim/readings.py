@@ -22,10 +22,12 @@ class FrameTransform(NamedTuple):
 
 
 class JointStates(NamedTuple):
-    """Joint names with their positions [rad or m]."""
+    """Joint names with their positions [rad or m], and velocities and efforts if they are told."""
 
     names: tuple[str, ...]
     positions: tuple[float, ...]
+    velocities: tuple[float, ...] = ()  # [rad/s or m/s]
+    efforts: tuple[float, ...] = ()  # [N m or N]
 
 
 class Port:

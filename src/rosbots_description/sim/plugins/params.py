@@ -2,6 +2,7 @@
 
 import logging
 import math
+from collections.abc import Callable
 from typing import TypeVar
 
 from ..errors import PluginError
@@ -10,6 +11,7 @@ from ..spec import Element
 logger = logging.getLogger(__name__)
 
 Value = TypeVar('Value', str, float, bool)
+Missing = Callable[[str, str | float | bool], str]  # a tag and its default -> a warning
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 
 
@@ -19,9 +21,13 @@ class Params:
     `prefix` begins every message, e.g. 'DiffDrive(ns = //): '.
     """
 
-    def __init__(self, element: Element, prefix: str = '') -> None:
+    def __init__(
+        self, element: Element, prefix: str = '', missing: Missing | None = None
+    ) -> None:
+        """Read the tags of `element`; `missing` words the warning about one that is not there."""
         self.prefix = prefix
         self._element = element
+        self._missing = missing or says_default
         self._read: set[str] = set()
 
     def text(self, tag: str) -> str | None:
@@ -40,8 +46,7 @@ class Params:
         """
         text = self.text(tag)
         if text is None:
-            shown = shown or _show(default)
-            logger.warning('%smissing <%s> default is %s', self.prefix, tag, shown)
+            logger.warning('%s%s', self.prefix, self._missing(tag, shown or default))
             return default
         if isinstance(default, bool):
             return self._boolean(tag, text, default)
@@ -78,6 +83,19 @@ class Params:
         if not math.isfinite(value):
             raise PluginError(f"{self.prefix}<{tag}> is '{text}'; it takes a finite number")
         return value
+
+
+def says_default(tag: str, default: str | float | bool) -> str:
+    """Word a warning as diff_drive and tricycle_drive do."""
+    return f'missing <{tag}> default is {_show(default)}'
+
+
+def says_defaults_to(tag: str, default: str | float | bool) -> str:
+    """Word a warning as skid_steer_drive and planar_move do."""
+    shown = f'"{default}"' if isinstance(default, str) else _show(default)
+    if isinstance(default, float):
+        shown = f'{default:.6f}'
+    return f'missing <{tag}>, defaults to {shown}'
 
 
 def _show(value: str | float | bool) -> str:

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Skid steer, planar and tricycle drives on the wire: topics, frames, covariances, joint states."""
+
+import sys
+from pathlib import Path
+
+import rospy
+import rostest
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from simulator import SimulatorTest, pose, topics_of, wait_until
+from tf2_msgs.msg import TFMessage
+
+ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
+STEERED = ['steer_joint', 'front_joint', 'left_joint', 'right_joint']
+
+
+class DriveTest(SimulatorTest):
+
+    def bring(self, name, topics):
+        """Spawn a robot, and return its odometry and a function that commands it."""
+        before = topics_of()
+        xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
+        self.assertTrue(self.spawn(name, xml, pose(z=0.02)).success)
+        self.assertEqual(topics_of() - before, topics)
+        publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=1)
+        self._connections.append(publisher)
+        wait_until(publisher.get_num_connections, 'a subscriber of /cmd_vel')
+
+        def command(x=0.0, y=0.0, turn=0.0):
+            twist = Twist()
+            twist.linear.x, twist.linear.y, twist.angular.z = x, y, turn
+            publisher.publish(twist)
+
+        return self.collect('/odom', Odometry), command
+
+    def edges(self, messages):
+        return {(edge.header.frame_id, edge.child_frame_id)
+                for message in messages for edge in message.transforms}
+
+    def test_a_skid_steer_tells_flat_odometry_with_its_own_covariances(self):
+        odometry, command = self.bring('skid4', {'/cmd_vel', '/odom', '/tf'})
+        transforms = self.collect('/tf', TFMessage)
+        command(0.5)
+        wait_until(lambda: odometry and odometry[-1].twist.twist.linear.x > 0.45, 'it drives')
+        message = odometry[-1]
+        self.assertEqual(message.pose.pose.position.z, 0.0)
+        variances = [1e-4, 1e-4, 1e12, 1e12, 1e12, 1e-2]
+        for covariance in (message.pose.covariance, message.twist.covariance):
+            self.assertEqual([covariance[7 * i] for i in range(6)], variances)
+        wait_until(transforms.__len__, 'transforms')
+        self.assertEqual(self.edges(transforms), {('odom', 'base_footprint')})
+
+    def test_a_planar_robot_moves_sideways(self):
+        odometry, command = self.bring('planar', {'/cmd_vel', '/odom', '/tf'})
+        command(y=0.3)
+        wait_until(lambda: odometry and odometry[-1].twist.twist.linear.y > 0.25, 'it moves')
+        self.assertLess(abs(odometry[-1].twist.twist.linear.x), 0.05)
+
+    def test_a_tricycle_tells_of_all_of_its_joints(self):
+        topics = {'/cmd_vel', '/odom', '/tf', '/joint_states'}
+        odometry, command = self.bring('tricycle', topics)
+        states = self.collect('/joint_states', JointState)
+        transforms = self.collect('/tf', TFMessage)
+        command(0.3, turn=0.2)
+        wait_until(lambda: states and states[-1].position[0] > 0.1, 'it steers')
+        self.assertEqual(states[-1].name, STEERED)
+        self.assertEqual(len(states[-1].velocity), 4)
+        self.assertEqual(list(states[-1].effort), [0.0] * 4)
+        wait_until(odometry.__len__, 'odometry')
+        wait_until(lambda: len(self.edges(transforms)) >= 5, 'five edges')
+        children = {child for _, child in self.edges(transforms)}
+        self.assertEqual(children, {'base_footprint', *STEERED})
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_drives', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'drives', DriveTest, sys.argv)

@@ -1,0 +1,91 @@
+"""The skid steer drive's tags, timing, wheels and odometry, with joints that obey at once."""
+
+import pytest
+from support.fake_drive import FakeModel, collect, make_drive, run
+
+from rosbots_description.sim.errors import PluginError
+from rosbots_description.sim.plugins.skid_steer_drive import SkidSteerDrive
+from rosbots_description.sim.pose import Pose, Twist, from_rpy
+
+JOINTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_rear_joint')
+
+
+def make(joints=JOINTS, **tags):
+    return make_drive(SkidSteerDrive, FakeModel(names=joints), **tags)
+
+
+def speeds(plugin):
+    return [wheel.velocity for wheel in plugin.model.wheels.values()]
+
+
+def test_all_tags_have_upstreams_defaults_and_its_warnings(caplog):
+    plugin = make()
+    config = plugin.config
+    assert config.joints == JOINTS
+    assert (config.wheel_separation, config.wheel_diameter, config.torque) == (0.4, 0.15, 5.0)
+    assert (config.command_topic, config.odometry_topic) == ('cmd_vel', 'odom')
+    assert (config.odometry_frame, config.robot_base_frame) == ('odom', 'base_footprint')
+    assert (config.update_rate, config.broadcast_tf, plugin.namespace) == (100.0, False, '')
+    assert plugin.pose_variances == plugin.twist_variances == (1e-4, 1e-4, 1e12, 1e12, 1e12, 0.01)
+    prefix = 'GazeboRosSkidSteerDrive Plugin (ns = /) missing '
+    assert f'{prefix}<commandTopic>, defaults to "cmd_vel"' in caplog.messages
+    assert f'{prefix}<covariance_yaw>, defaults to 0.010000' in caplog.messages
+    assert f'{prefix}<broadcastTF>, defaults to false' in caplog.messages
+
+
+def test_what_others_call_a_topic_is_named_as_not_read(caplog):
+    make(topicName='cmd_vel')
+    assert 'not read by this plugin: <topicName>' in caplog.text
+
+
+@pytest.mark.parametrize('joint', JOINTS)
+def test_each_of_the_four_wheels_must_be_there(joint):
+    with pytest.raises(PluginError, match=joint):
+        make([name for name in JOINTS if name != joint])
+
+
+@pytest.mark.parametrize(('tag', 'value'), [
+    ('wheelDiameter', '0'), ('wheelSeparation', '-1'), ('updateRate', '1e-9'), ('torque', 'much'),
+])
+def test_a_tag_that_makes_no_sense_is_refused(tag, value):
+    with pytest.raises(PluginError, match=tag):
+        make(**{tag: value})
+
+
+def test_front_and_rear_wheels_turn_alike_and_at_once():
+    plugin = make(wheelSeparation='0.5', wheelDiameter='0.2', torque='7')
+    plugin.command(1.0, 2.0)
+    run(plugin, 10)
+    assert speeds(plugin) == [0.0] * 4
+    run(plugin, 1)
+    assert speeds(plugin) == pytest.approx([5.0, 15.0] * 2)
+    assert {wheel.effort for wheel in plugin.model.wheels.values()} == {7.0}
+
+
+def test_odometry_comes_one_step_late_and_is_where_the_robot_truly_is():
+    plugin = make()
+    odometry = collect(plugin.odometry)
+    place = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.5707963267948966))
+    plugin.model.now = (place, Twist((0.0, 0.5, 0.1), (0.0, 0.0, 0.2)))
+    run(plugin, 31)
+    assert len(odometry) == 3
+    pose, twist = odometry[-1]
+    assert pose == place  # the message is flat, the transform is not
+    assert twist.linear == pytest.approx((0.5, 0.0, 0.0))
+    assert plugin.flat_odometry
+
+
+def test_a_reset_leaves_the_command():
+    plugin = make()
+    plugin.command(0.3, 0.0)
+    plugin.reset()
+    run(plugin, 11)
+    assert speeds(plugin) == pytest.approx([4.0] * 4)
+
+
+def test_a_restart_stops_the_wheels():
+    plugin = make()
+    plugin.command(0.3, 0.0)
+    run(plugin, 11)
+    plugin.restart()
+    assert speeds(plugin) == [0.0] * 4

@@ -1,0 +1,112 @@
+"""The tricycle drive's tags, ramps, steering and odometry, with joints that obey at once."""
+
+import math
+
+import pytest
+from support.fake_drive import FakeModel, collect, make_drive, run
+
+from rosbots_description.sim.errors import PluginError
+from rosbots_description.sim.plugins.tricycle_drive import TricycleDrive
+
+JOINTS = ('front_steering_joint', 'front_wheel_joint', 'left_wheel_joint', 'right_wheel_joint')
+
+
+def make(joints=JOINTS, **tags):
+    return make_drive(TricycleDrive, FakeModel(names=joints), **tags)
+
+
+def test_all_tags_have_upstreams_defaults(caplog):
+    config = make(wheelAcceleration='2.5').config
+    assert (config.driven_diameter, config.encoder_diameter) == (0.15, 0.15)
+    assert (config.encoder_separation, config.torque) == (0.5, 5.0)
+    assert (config.acceleration, config.deceleration) == (2.5, 2.5)
+    assert (config.speed_tolerance, config.angle_tolerance) == (0.01, 0.01)
+    assert config.steering_speed == 0.0
+    assert (config.odometry_source, config.robot_base_frame) == ('world', 'base_link')
+    assert (config.publish_wheel_tf, config.publish_wheel_joint_state) == (False, False)
+    assert 'TricycleDrive(ns = robot/): missing <wheelTorque> default is 5' in caplog.messages
+
+
+@pytest.mark.parametrize('joint', JOINTS)
+def test_each_of_the_four_joints_must_be_there(joint):
+    with pytest.raises(PluginError, match=joint):
+        make([name for name in JOINTS if name != joint])
+
+
+def test_the_same_joint_cannot_serve_twice():
+    with pytest.raises(PluginError, match='two of its joints are one'):
+        make(steeringJoint='front_wheel_joint')
+
+
+def test_forward_is_the_speed_of_the_driven_wheels_rim():
+    plugin = make(actuatedWheelDiameter='0.5')
+    plugin.command(1.0, 0.0)
+    run(plugin, 11)
+    assert plugin.model.wheels['front_wheel_joint'].velocity == pytest.approx(4.0)
+
+
+def test_it_speeds_up_by_the_deceleration_and_slows_down_by_the_acceleration():
+    plugin = make(wheelAcceleration='1', wheelDeceleration='5', actuatedWheelDiameter='0.2')
+    wheel = plugin.model.wheels['front_wheel_joint']
+    plugin.command(1.0, 0.0)
+    run(plugin, 11)
+    assert wheel.velocity == pytest.approx(5 * 0.011)
+    wheel.velocity = 9.0
+    plugin.command(0.0, 0.0)
+    run(plugin, 10)
+    assert wheel.velocity == pytest.approx(9.0 - 1 * 0.011)
+
+
+def test_a_wheel_within_the_tolerance_goes_on_as_it_does():
+    plugin = make(wheelAcceleration='1', wheelSpeedTolerance='0.5', actuatedWheelDiameter='2')
+    plugin.model.wheels['front_wheel_joint'].velocity = 0.6
+    plugin.command(1.0, 0.0)
+    run(plugin, 11)
+    assert plugin.model.wheels['front_wheel_joint'].velocity == 0.6
+
+
+@pytest.mark.parametrize(('angle', 'speed'), [(0.3, 0.4), (-0.3, -0.4), (0.01, 0.0)])
+@pytest.mark.parametrize('forward', [1.0, -1.0, 0.0])
+def test_steering_turns_towards_the_angle_at_its_speed(angle, speed, forward):
+    plugin = make(steeringSpeed='0.4', steeringAngleTolerance='0.02')
+    plugin.command(forward, angle)
+    run(plugin, 11)
+    assert plugin.model.wheels['front_steering_joint'].velocity == speed
+
+
+def test_steering_without_speed_is_at_its_angle_at_once_and_not_beyond_straight_across():
+    plugin = make()
+    plugin.command(0.0, 3.0)
+    run(plugin, 11)
+    assert plugin.model.wheels['front_steering_joint'].position == pytest.approx(math.pi / 2)
+
+
+def test_encoder_odometry_turns_the_wrong_way_round_and_has_speeds_in_its_own_frame():
+    plugin = make(odometrySource='encoder', encoderWheelDiameter='0.2')
+    odometry = collect(plugin.odometry)
+    plugin.model.wheels['left_wheel_joint'].velocity = -5.0
+    plugin.model.wheels['right_wheel_joint'].velocity = -3.0
+    run(plugin, 1001)
+    pose, twist = odometry[-1]
+    assert twist.angular[2] == pytest.approx(-(5.0 - 3.0) * 0.1 / 0.5, rel=1e-6)
+    yaw = 2.0 * math.asin(pose.orientation[2])
+    assert yaw == pytest.approx(-0.4, rel=2e-2)
+    assert twist.linear[:2] == pytest.approx(
+        (-0.4 * math.cos(yaw), -0.4 * math.sin(yaw)), rel=2e-2)
+
+
+def test_joint_states_are_steering_driven_left_right_with_velocities_and_efforts():
+    plugin = make(publishWheelJointState='true')
+    states = collect(plugin.joint_states)
+    plugin.model.wheels['left_wheel_joint'].velocity = 2.0
+    run(plugin, 11)
+    assert states[0].names == JOINTS
+    assert states[0].velocities == (0.0, 0.0, 2.0, 0.0)
+    assert states[0].efforts == (0.0,) * 4
+
+
+def test_wheel_transforms_are_named_after_joints():
+    plugin = make(publishWheelTF='true')
+    edges = collect(plugin.wheel_transform)
+    run(plugin, 11)
+    assert [edge.child for edge in edges] == list(JOINTS)
