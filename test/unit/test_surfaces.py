@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from rosbots_description.sim.pose import Pose, from_rpy
+from rosbots_description.sim.pose import NO_ROTATION, Pose, from_rpy
 from rosbots_description.sim.spec import (
     FIXED,
     REVOLUTE,
@@ -14,8 +14,15 @@ from rosbots_description.sim.spec import (
     Cylinder,
     JointSpec,
     LinkSpec,
+    Surface,
 )
-from rosbots_description.sim.surfaces import crowned, rolling_arm
+from rosbots_description.sim.surfaces import (
+    EVENLY,
+    crowned,
+    friction_scales,
+    restitution,
+    rolling_arm,
+)
 
 TYRE = Collision('tyre', Cylinder(0.1, 0.05))
 AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')
@@ -58,3 +65,40 @@ def test_a_crown_has_a_size_whatever_the_wheels(length):
 @pytest.mark.parametrize(('joint', 'arm'), [(None, 5e-4), (AXLE, 0.0)])
 def test_a_loose_cylinder_resists_rolling_and_a_wheel_does_not(joint, arm):
     assert rolling_arm([TYRE], joint) == pytest.approx(arm)
+
+
+def scales(link=None, turn=NO_ROTATION, friction=1.0, **surface):
+    link = link or LinkSpec('l')
+    collision = Collision('c', Box((1, 1, 1)), surface=Surface(**surface))
+    return friction_scales(collision, link, turn, friction)
+
+
+@pytest.mark.parametrize(('surface', 'expected'), [
+    ({'mu': 0.4, 'mu2': 0.4, 'fdir1': (1.0, 0.0, 0.0)}, EVENLY),
+    ({'mu': 100.0, 'mu2': 50.0}, EVENLY),  # as the ground's: the other of a pair has the lesser one
+    ({'mu': 0.5, 'mu2': 0.1}, (0.2, 1.0, 0.2)),
+    ({'mu': 0.1, 'mu2': 0.5}, (1.0, 0.2, 1.0)),
+    ({'mu': 5.0, 'mu2': 0.5}, (0.5, 1.0, 0.5)),
+    ({'mu': 5.0, 'mu2': 0.5, 'friction': 5.0}, (0.1, 1.0, 0.1)),
+    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (0.0, 0.0, 3.0)}, (0.2, 0.2, 1.0)),
+    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, EVENLY),  # none of its axes
+])
+def test_friction_is_weaker_along_the_direction_of_the_lesser_mu(surface, expected):
+    assert scales(**surface) == pytest.approx(expected)
+
+
+def test_without_a_direction_the_first_mu_acts_along_the_models_y_axis():
+    side = LinkSpec('wheel', Pose((0.0, 0.0, 0.0), from_rpy(-math.pi / 2.0, 0.0, 0.0)))
+    assert scales(side, mu=0.5, mu2=0.1) == pytest.approx((0.2, 0.2, 1.0))
+    turned = from_rpy(0.0, 0.0, math.pi / 2.0)  # the part's y axis is the link's -x
+    assert scales(turn=turned, mu=0.5, mu2=0.1) == pytest.approx((1.0, 0.2, 0.2))
+
+
+@pytest.mark.parametrize(('surface', 'expected'), [
+    ({'restitution': 0.64}, 0.0),  # the usual max_vel holds it
+    ({'restitution': 0.64, 'max_vel': 10.0}, 0.0),  # and so does the usual threshold
+    ({'restitution': 0.64, 'max_vel': 10.0, 'threshold': 0.1}, 0.8),
+    ({'restitution': 9.0, 'max_vel': 10.0, 'threshold': 0.1}, 1.0),
+])
+def test_a_pair_of_equal_surfaces_gives_back_their_restitution(surface, expected):
+    assert restitution(Surface(**surface)) == pytest.approx(expected)

@@ -11,6 +11,7 @@ Parameters:
 
 import contextlib
 import logging
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -76,7 +77,7 @@ class PhysicsReconfigure(ReconfigureServer):
 
     def __init__(self, server: Server) -> None:
         self._server = server
-        super().__init__(_description(), self._reconfigure)
+        super().__init__(description(PARAMETERS), self._reconfigure)
 
     def follow(self) -> None:
         """Show settings that a service has changed."""
@@ -158,12 +159,12 @@ def _set_request(wanted: dict[str, float | int | bool]) -> SetPhysicsPropertiesR
     )
 
 
-def _description() -> SimpleNamespace:
+def description(parameters: Sequence[Parameter]) -> SimpleNamespace:
     """Return what dynamic_reconfigure's generator would write into a module."""
     return SimpleNamespace(
-        defaults={p.name: p.default for p in PARAMETERS},
-        min={p.name: p.least for p in PARAMETERS},
-        max={p.name: p.most for p in PARAMETERS},
+        defaults={p.name: p.default for p in parameters},
+        min={p.name: p.least for p in parameters},
+        max={p.name: p.most for p in parameters},
         config_description={
             'name': 'Default', 'type': '', 'id': 0, 'parent': 0, 'state': True, 'groups': [],
             'parameters': [
@@ -171,7 +172,7 @@ def _description() -> SimpleNamespace:
                     'name': p.name, 'type': _TYPES[type(p.default)], 'level': _EVERYTHING,
                     'description': p.description, 'edit_method': '',
                 }
-                for p in PARAMETERS
+                for p in parameters
             ],
         },
     )

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .pose import Pose, Twist, Vector
+from .pose import Pose, Quaternion, Twist, Vector
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,17 @@ class Masses(NamedTuple):
     is_fixed: bool
 
 
+class FrictionAxes(NamedTuple):
+    """Which way the axes stand along which PyBullet can weaken a part's friction, and by how much.
+
+    `turn` turns the part's own axes into those of the link; each of `scales` is a share of the
+    friction, along one axis of the part.
+    """
+
+    turn: Quaternion
+    scales: tuple[float, float, float]
+
+
 class Body:
     """A model in the engine. Links and joints are addressed by their names."""
 
@@ -63,6 +74,7 @@ class Body:
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
         self.masses: dict[int, Masses] = {}  # what moves, by body
         self.surfaces: dict[str, list[Place]] = {}  # what each link touches with
+        self.friction_axes: dict[Place, FrictionAxes] = {}  # of each of these
 
 
 @dataclass(frozen=True)

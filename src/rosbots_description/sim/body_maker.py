@@ -4,22 +4,25 @@ import os
 from collections.abc import Sequence
 from itertools import combinations, product
 
-from .body import Body, Mass, Masses, Part, Place
+from .body import Body, FrictionAxes, Mass, Masses, Part, Place
 from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .faces import Face, faces, is_one_body, slab
 from .friction_filter import FrictionFilter, Side
 from .inertia import is_balanced, principal_axes
-from .pose import Pose, Vector, compose, inverse
-from .spec import FIXED, Inertial, JointSpec, Mesh, ModelSpec, Surface
+from .pose import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
+from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from .surfaces import (
+    EVENLY,
     Groups,
     compliant,
     contact_spring,
+    friction_scales,
     is_rigid,
     jointed_mass,
     parting_rate,
+    restitution,
     rolling_arm,
     surface_groups,
     with_edges,
@@ -149,7 +152,10 @@ class BodyMaker:
         for other, ((face,),) in zip(also, others, strict=True):
             place = Place(other, -1)
             self._set_surface(place, face, face.shapes[0].surface, None)
-            body.surfaces[tree.links[0].name].append(place)
+            link = tree.links[0]
+            turn = body.parts[link.name].com_in_origin.orientation
+            self._set_directions(body, place, face, link, turn)
+            body.surfaces[link.name].append(place)
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Let those links of a model pass through each other that do so in Gazebo."""
@@ -243,9 +249,10 @@ class BodyMaker:
         part = body.parts[link.name]
         body.surfaces[link.name] = surfaces = []
         for k, face in enumerate(found):
-            index = part.index
-            if k:
+            index, turn = part.index, part.com_in_origin.orientation
+            if k:  # a rider stands in the frame of the joint above its link
                 index = index_of[f'l{i}r{k}']
+                turn = joint.pose.orientation if joint else NO_ROTATION
                 pybullet.changeDynamics(
                     part.body,
                     index,
@@ -256,6 +263,7 @@ class BodyMaker:
                 place = Place(part.body, index)
                 surface = compliant(face.shapes[0].surface, mass)
                 self._set_surface(place, face, surface, joint)
+                self._set_directions(body, place, face, link, turn)
                 surfaces.append(place)
 
     def _set_surface(
@@ -272,9 +280,14 @@ class BodyMaker:
             lateralFriction=face.friction,
             spinningFriction=0.0,
             rollingFriction=rolling_arm(face.shapes, joint),
-            restitution=0.0,
+            restitution=restitution(surface),
             physicsClientId=self._client,
         )
+        if restitution(surface):
+            # Else PyBullet brakes what is about to touch, and nothing is left to be given back.
+            pybullet.changeDynamics(
+                *place, contactProcessingThreshold=0.0, physicsClientId=self._client
+            )
         self._set_filter(place, face.side)
         if not is_rigid(surface):
             self._soft[place] = surface, self._parting_rate(place)
@@ -307,3 +320,16 @@ class BodyMaker:
             if now != before:
                 self._sides[one] = of_one, now
                 pybullet.setCollisionFilterGroupMask(*one, *now, self._client)
+
+    def _set_directions(
+        self, body: Body, place: Place, face: Face, link: LinkSpec, turn: Quaternion
+    ) -> None:
+        """Let a part hold less along some of its axes; `turn` turns them into those of its link."""
+        scales = friction_scales(face.shapes[0], link, turn, face.friction)
+        body.friction_axes[place] = FrictionAxes(turn, scales)
+        if scales != EVENLY:
+            self.scale_friction(place, scales)
+
+    def scale_friction(self, place: Place, scales: Sequence[float]) -> None:
+        """Let a part hold these shares of its friction along its own axes."""
+        pybullet.changeDynamics(*place, anisotropicFriction=scales, physicsClientId=self._client)

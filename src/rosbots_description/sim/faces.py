@@ -81,7 +81,7 @@ def _kind(tree: Tree) -> Kind:
 
 
 def _in_roles(group: tuple[Collision, ...], kind: Kind, stands: bool) -> list[Face]:
-    mu = coefficient(group[0].surface.mu) if group else 1.0
+    mu = coefficient(group[0].surface.greatest_mu) if group else 1.0
     return [Face(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
             for role in roles(mu, stands)]
 

@@ -51,9 +51,9 @@ _NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor'}
 _LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
 _PARTS = ('sensor', 'light', 'projector')
 # Read and kept for whoever asks, but nothing here acts on it.
-_KEPT = {'mu2', 'fdir1', 'maxVel', 'minDepth', 'maxContacts', 'laserRetro'}
-_KEPT_PATHS = {'surface/friction/ode/mu2', 'surface/friction/ode/fdir1', 'laser_retro',
-               'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'max_contacts'}
+_KEPT = {'maxVel', 'minDepth', 'maxContacts', 'laserRetro'}
+_KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'laser_retro',
+               'max_contacts'}
 # Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
 _SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
                 'fudgeFactor', 'springReference', 'canonicalBody'}

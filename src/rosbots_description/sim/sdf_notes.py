@@ -14,8 +14,8 @@ logger = logging.getLogger(__name__)
 
 # A leaf that says only what is so here anyway is not worth a word.
 _NEUTRAL: dict[str, tuple[float, ...]] = {
-    'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0), 'restitution_coefficient': (0.0,),
-    'threshold': (100000.0,), 'slip': (0.0,), 'slip1': (0.0,), 'slip2': (0.0,),
+    'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0),
+    'slip': (0.0,), 'slip1': (0.0,), 'slip2': (0.0,),
     'soft_cfm': (0.0,), 'soft_erp': (0.2,), 'collide_without_contact': (0.0,),
     'collide_without_contact_bitmask': (1.0,), 'collide_bitmask': (65535.0,),
     'category_bitmask': (65535.0,), 'spring_reference': (0.0,), 'spring_stiffness': (0.0,),
@@ -25,7 +25,7 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
 
 # Read and kept for whoever asks, but nothing here acts on it: parent -> children.
 _KEPT = {
-    'ode': ('mu2', 'fdir1', 'max_vel', 'min_depth'), 'collision': ('max_contacts', 'laser_retro'),
+    'ode': ('max_vel', 'min_depth'), 'collision': ('max_contacts', 'laser_retro'),
     'limit': ('velocity',), 'scene': ('ambient', 'background', 'shadows'),
 }
 # The same, but the model is not what its author expects.

@@ -158,10 +158,11 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
     if surface is None:
         return Surface(**extra)
     for path, read in (
-        ('.', ('friction', 'contact')),
+        ('.', ('friction', 'contact', 'bounce')),
         ('friction', ('ode',)),
         ('friction/ode', ('mu', 'mu2', 'fdir1')),
         ('contact', ('ode',)),
+        ('bounce', ('restitution_coefficient', 'threshold')),
         ('contact/ode', ('kp', 'kd', 'max_vel', 'min_depth')),
     ):
         part = surface.find(path)
@@ -181,6 +182,8 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         kd=not_negative_of(surface, f'{contact}/kd', default.kd),
         max_vel=not_negative_of(surface, f'{contact}/max_vel', default.max_vel),
         min_depth=not_negative_of(surface, f'{contact}/min_depth', default.min_depth),
+        restitution=not_negative_of(surface, 'bounce/restitution_coefficient', 0.0),
+        threshold=not_negative_of(surface, 'bounce/threshold', default.threshold),
         **extra,
     )
 

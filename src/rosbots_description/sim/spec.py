@@ -69,6 +69,13 @@ class Surface:
     min_depth: float = 0.0  # penetration that is left uncorrected [m]
     max_contacts: int = 10
     laser_retro: float = 0.0
+    restitution: float = 0.0  # share of the speed of an impact that is given back
+    threshold: float = 1e5  # speed of an impact from which on it is [m/s]
+
+    @property
+    def greatest_mu(self) -> float:
+        """Return the friction coefficient along the direction in which it is greatest."""
+        return max(self.mu, self.mu2)
 
 
 @dataclass(frozen=True)

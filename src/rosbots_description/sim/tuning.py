@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from .pose import Vector
+
 
 @dataclass(frozen=True)
 class Tuning:
@@ -19,3 +21,7 @@ class Tuning:
     friction_cone: bool = False
     exact_cylinders: bool = True
     push_out: float = 10.0
+
+    def reach(self, direction: Vector) -> float:
+        """Return how many times its limit friction can hold in a level direction, a unit vector."""
+        return 1.0 if self.friction_cone else max(1.0, abs(direction[0]) + abs(direction[1]))

@@ -1,3 +1,3 @@
 """Which topics stand for which plugin; importing registers the adapters."""
 
-from . import drives  # noqa: F401
+from . import drives, wheel_slip  # noqa: F401

@@ -1,0 +1,120 @@
+"""Wheel slip: tyres that give way by a share of the speed at which they roll.
+
+Tags and meaning are those of libgazebo_ros_wheel_slip.so in gazebo_ros_pkgs 2.9.2: with slip
+compliance C a tyre of rim speed v that is held by friction F under the normal force N slides by
+v C F / N, along its axle by the lateral compliance and ahead by the longitudinal one.
+"""
+
+import logging
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ..errors import PluginError
+from ..spec import Element
+from ..wheel_geometry import radius_of
+from .base import ModelPlugin
+from .registry import register
+
+if TYPE_CHECKING:
+    from ..model import Joint
+
+logger = logging.getLogger(__name__)
+
+NUMBERS = ('slip_compliance_lateral', 'slip_compliance_longitudinal', 'wheel_normal_force',
+           'wheel_radius')
+
+
+@dataclass(frozen=True)
+class SlippingWheel:
+    """A wheel whose tyre gives way."""
+
+    joint: 'Joint'
+    lateral: float  # slip compliance, of the speed at the rim
+    longitudinal: float
+    normal_force: float  # [N]
+    radius: float  # [m]
+
+
+@register('libgazebo_ros_wheel_slip.so')
+class WheelSlip(ModelPlugin):
+    """Sets how easily the tyres of a model slip, at every step."""
+
+    def load(self) -> None:
+        """Read the wheels; one that cannot slip is left out with a sentence.
+
+        Raises:
+            PluginError: there is none.
+        """
+        child = self.spec.element.child('robotNamespace')
+        given = child.text.strip('/ ') if child is not None else ''
+        self.namespace = f'{self.model.name}/{given or "wheel_slip"}'
+        self.wheels: list[SlippingWheel] = []
+        for element in self.spec.element.children:
+            if element.tag != 'wheel':
+                continue
+            try:
+                self.wheels.append(self._wheel(element))
+            except PluginError as error:
+                logger.error('wheel_slip: %s; this wheel does not slip', error)
+        if not self.wheels:
+            raise PluginError('wheel_slip: there is no <wheel> that can slip')
+        self.reset()
+
+    def reset(self) -> None:
+        """Go on at the next step."""
+        self.due = self.world.clock.steps + 1
+
+    def set_compliance(
+        self, lateral: float | None = None, longitudinal: float | None = None
+    ) -> None:
+        """Give all wheels these slip compliances; what is None or negative stays."""
+        if lateral is not None and lateral >= 0.0:
+            self.wheels = [replace(wheel, lateral=lateral) for wheel in self.wheels]
+        if longitudinal is not None and longitudinal >= 0.0:
+            self.wheels = [replace(wheel, longitudinal=longitudinal) for wheel in self.wheels]
+
+    def update(self) -> None:
+        """Let each tyre slip by its speed."""
+        model = self.model
+        for wheel in self.wheels:
+            spec = wheel.joint.spec
+            slip = abs(wheel.joint.velocity) * wheel.radius / wheel.normal_force
+            slips = slip * wheel.lateral, slip * wheel.longitudinal
+            model.engine.let_slip(model.body, spec.child, spec.axis_in_child, slips)
+        self.due = self.world.clock.steps + 1
+
+    def _wheel(self, element: Element) -> SlippingWheel:
+        name = element.attributes.get('link_name', '')
+        link = self.model.links.get(name)
+        if link is None:
+            known = ', '.join(self.model.links)
+            raise PluginError(f"line {element.line}: <wheel link_name='{name}'> is no link of "
+                              f"'{self.model.name}'; its links: {known}")
+        joint = next((one for one in self.model.joints.values() if one.spec.child == name), None)
+        if joint is None:
+            raise PluginError(f"<wheel link_name='{name}'>: no joint turns this link")
+        numbers = {tag: _number(element, name, tag) for tag in NUMBERS}
+        radius = numbers['wheel_radius'] or radius_of(joint) or 0.0
+        for tag, value in (('wheel_radius', radius), ('wheel_normal_force', numbers[NUMBERS[2]])):
+            if value <= 0.0:
+                raise PluginError(f"<wheel link_name='{name}'>: <{tag}> must be above 0")
+        if not self.model.engine.can_slip(self.model.body, name, joint.spec.axis_in_child):
+            raise PluginError(f"<wheel link_name='{name}'>: its axle is no principal axis of its "
+                              'inertia, and the engine can weaken friction along these alone')
+        lateral, longitudinal = (max(0.0, numbers[tag]) for tag in NUMBERS[:2])
+        return SlippingWheel(joint, lateral, longitudinal, numbers['wheel_normal_force'], radius)
+
+
+def _number(element: Element, name: str, tag: str) -> float:
+    child = element.child(tag)
+    if child is None:
+        return 0.0
+    try:
+        value = float(child.text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise PluginError(
+            f"<wheel link_name='{name}'>: <{tag}> is '{child.text}'; it takes a finite number")
+    return value

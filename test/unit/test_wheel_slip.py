@@ -1,0 +1,139 @@
+"""Which tyres slip by how much, and what is left of their friction for it."""
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from dynamic_reconfigure.encoding import Config
+from support.fake_drive import STEP, FakeModel, wheel_of
+
+from rosbots_description.ros_api import slip_reconfigure
+from rosbots_description.sim.clock import SimClock
+from rosbots_description.sim.errors import PluginError
+from rosbots_description.sim.plugins.wheel_slip import WheelSlip
+from rosbots_description.sim.slip import LEAST, Touch, shares
+from rosbots_description.sim.spec import Element, PluginSpec
+
+AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
+LOAD, LIMIT = 10.0, 8.0  # [N]
+
+
+class Model(FakeModel):
+    """Wheels of radius 0.1 m, and an engine that remembers how they were to slip."""
+
+    def __init__(self):
+        super().__init__(wheel_of(0.1))
+        self.joints = self.wheels
+        self.body, self.slips, self.can_slip = None, {}, True
+        self.engine = SimpleNamespace(
+            can_slip=lambda *_: self.can_slip,
+            let_slip=lambda _, link, axle, slips: self.slips.__setitem__(link, slips),
+        )
+
+
+def wheel(name='left_link', **numbers):
+    numbers = {'slip_compliance_lateral': '0.5', 'slip_compliance_longitudinal': '0.25',
+               'wheel_normal_force': '50'} | numbers
+    children = tuple(Element(tag, text) for tag, text in numbers.items() if text is not None)
+    return Element('wheel', '', {'link_name': name}, children)
+
+
+def load(*wheels, model=None, namespace=None):
+    named = (Element('robotNamespace', namespace),) if namespace is not None else ()
+    spec = PluginSpec('slip', 'libgazebo_ros_wheel_slip.so',
+                      Element('plugin', children=(*named, *wheels)))
+    plugin = WheelSlip(SimpleNamespace(clock=SimClock(STEP)), model or Model(), spec)
+    plugin.load()
+    return plugin
+
+
+def touch(force=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), load=LOAD):
+    return Touch((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), load, force, velocity, LIMIT)
+
+
+def held(*touches, slips=(0.01, 0.0)):
+    return shares(touches, AXLE, slips, STEP, lambda _: 1.0)
+
+
+def test_slip_grows_with_the_speed_of_the_rim_and_shrinks_with_the_normal_force():
+    plugin = load(wheel())
+    plugin.model.wheels['left'].velocity = -4.0
+    plugin.update()
+    assert plugin.model.slips == {'left_link': pytest.approx((0.4 / 50 * 0.5, 0.4 / 50 * 0.25))}
+    assert plugin.due == plugin.world.clock.steps + 1
+
+
+def test_a_radius_that_is_given_counts_and_a_negative_compliance_is_none():
+    plugin = load(wheel(wheel_radius='0.2', slip_compliance_lateral='-3'))
+    plugin.model.wheels['left'].velocity = 1.0
+    plugin.update()
+    assert plugin.model.slips['left_link'] == pytest.approx((0.0, 0.2 / 50 * 0.25))
+
+
+@pytest.mark.parametrize(('bad', 'told'), [
+    (wheel('nowhere'), 'is no link'),
+    (wheel('base'), 'no joint turns this link'),
+    (wheel(wheel_normal_force=None), '<wheel_normal_force> must be above 0'),
+    (wheel(slip_compliance_lateral='lots'), 'takes a finite number'),
+])
+def test_a_wheel_that_makes_no_sense_is_left_out_with_a_sentence(bad, told, caplog):
+    plugin = load(bad, wheel('right_link'))
+    assert told in caplog.text
+    assert [one.joint.name for one in plugin.wheels] == ['right']
+
+
+def test_a_wheel_whose_axle_the_engine_does_not_know_is_left_out(caplog):
+    model = Model()
+    model.can_slip = False
+    with pytest.raises(PluginError, match='no <wheel> that can slip'):
+        load(wheel(), model=model)
+    assert 'no principal axis' in caplog.text
+
+
+@pytest.mark.parametrize(('given', 'used'), [
+    (None, 'robot/wheel_slip'), ('', 'robot/wheel_slip'), ('/', 'robot/wheel_slip'),
+    ('rear', 'robot/rear'),
+])
+def test_its_namespace_is_within_that_of_the_model(given, used):
+    assert load(wheel(), namespace=given).namespace == used
+
+
+def test_compliances_can_be_changed_for_all_wheels_and_negative_ones_leave_them():
+    plugin = load(wheel(), wheel('right_link'))
+    plugin.set_compliance(lateral=2.0, longitudinal=-1.0)
+    assert {(one.lateral, one.longitudinal) for one in plugin.wheels} == {(2.0, 0.25)}
+
+
+def test_dynamic_reconfigure_hands_its_numbers_to_the_plugin(monkeypatch):
+    monkeypatch.setattr(slip_reconfigure.ReconfigureServer, '__init__',
+                        lambda self, *_: setattr(self, 'mutex', threading.Lock()))
+    plugin = load(wheel())
+    server = slip_reconfigure.SlipReconfigure(plugin, lambda command: command())
+    server._reconfigure(
+        Config({slip_reconfigure.LATERAL: 3.0, slip_reconfigure.LONGITUDINAL: -1.0}), 0)
+    assert (plugin.wheels[0].lateral, plugin.wheels[0].longitudinal) == (3.0, 0.25)
+
+
+def test_a_tyre_in_the_air_is_left_alone():
+    assert held() is None
+    assert held(touch(load=0.0)) is None
+
+
+def test_friction_that_is_left_is_the_force_that_belongs_to_the_slip():
+    lateral, _ = held(touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.04, 0.0)))
+    assert lateral == pytest.approx(4.0 / LIMIT)  # v = s F already
+
+
+def test_a_tyre_that_holds_without_slip_lets_go_and_one_that_slides_too_fast_is_held():
+    assert held(touch(force=(0.0, -4.0, 0.0)))[0] < 4.0 / LIMIT
+    assert held(touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.06, 0.0)))[0] > 4.0 / LIMIT
+
+
+def test_friction_is_never_more_than_there_is_nor_nothing():
+    assert held(touch(velocity=(0.0, 100.0, 0.0)))[0] == 1.0
+    assert held(touch())[0] == LEAST
+
+
+def test_without_compliance_all_of_the_friction_is_held():
+    _, ahead = held(touch(force=(4.0, 0.0, 0.0), velocity=(-0.5, 0.0, 0.0)))
+    assert ahead == 1.0
