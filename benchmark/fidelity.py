@@ -1,167 +1,131 @@
 #!/usr/bin/env python3
-"""Compare the motion of the article's robot with the real Gazebo's.
+"""Compare motion with the real Gazebo's, the quantity in which we differ most first.
 
-Without arguments the three commands of test/data/gazebo_motion.json are driven, through the real
-plugin and headless, and what was measured in Gazebo is set beside what is measured here, with the
-aim for those quantities that have one. Each argument is a recorded trace to be replayed, of any
-commands: CSV with the columns t_since_cmd [s], cmd_v [m/s], cmd_w [rad/s], gt_x, gt_y [m],
-gt_yaw, gt_v_body_x, gt_v_body_y [m/s], gt_wz, jl_vel, jr_vel [rad/s], as Gazebo's ground truth
-has them.
+Everything that was recorded (test/data/gazebo) is done again, headless and through the real
+plugins: drives of six robots, robots that nobody commands, and passive scenes. Nothing is left out
+for being small. Arguments choose robots and scenes by name, or are traces to be replayed: CSV with
+the columns t_since_cmd [s], cmd_v or cmd_vx, cmd_vy [m/s], cmd_w [rad/s], gt_x, gt_y [m], gt_yaw,
+gt_v_body_x, gt_v_body_y [m/s], gt_wz, as Gazebo's ground truth has them, of the robot whose name
+the file's begins with, else of the article's.
 """
 
-import bisect
 import csv
 import logging
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from support.motion import (
-    COMMANDS,
-    RECORDED,
+    PLACE_SHARE,
+    ROBOTS,
+    SPEED_SHARE,
     STEADY_FROM,
     Command,
-    Sample,
-    angle_between,
+    compare_drive,
+    compare_idle,
     drive,
-    drive_as_recorded,
-    measure,
-    ramp_delays,
+    robot,
 )
+from support.passive import SCENES, compare_scene
+from support.recorded import HEADER, Difference, line, load, worst_first
 
-UNITS = {
-    'v': 'm/s', 'w': 'rad/s', 'lateral': 'm/s', 'left': 'rad/s', 'right': 'rad/s', 't90': 's',
-    'stop': 's', 'end_x': 'm', 'end_y': 'm', 'end_yaw': 'rad', 'x': 'm', 'y': 'm', 'yaw': 'rad',
-}
-SMALL = 0.2  # of a quantity below this no share is told: it would say nothing
-# Aims: share of Gazebo's mean, or distance in the quantity's unit.
-SPEED_SHARE, REST_SHARE, T90_SHARE, RAMP = 0.03, 0.04, 0.05, 0.015
-IDLE = 30.0  # [s]
+COLUMNS = ('gt_x', 'gt_y', 'gt_yaw', 'gt_v_body_x', 'gt_v_body_y', 'gt_wz')
+STEADY = (('forward', 'm/s', 4), ('lateral', 'm/s', 5), ('turning', 'rad/s', 6))  # column of a row
+FLOOR = 0.01  # [m, rad, m/s or rad/s] of a tolerance
 
 
-def compare_recorded(name: str) -> list[str]:
-    """Return table rows: what Gazebo did, what we do, by how much they differ."""
-    gazebo = RECORDED[name]
-    turns = not gazebo['command'][0]
-    samples = drive_as_recorded(name)
-    ours = measure(samples, gazebo['seconds'], turns)
-    rows = [_row(name, key, gazebo[key], ours[key]) for key in UNITS]
-    way = math.hypot(gazebo['x'], gazebo['y'])
-    apart = math.dist((ours['x'], ours['y']), (gazebo['x'], gazebo['y']))
-    if turns:
-        share = abs(angle_between(ours['yaw'], gazebo['yaw']) / gazebo['yaw'])
-        rows.append(_verdict(name, 'heading at rest', f'{share:.2%} off', share <= REST_SHARE))
-    else:
-        share = apart / way
-        rows.append(_verdict(name, 'place at rest', f'{share:.2%} off', share <= REST_SHARE))
-    for key, share in (('v', SPEED_SHARE), ('w', SPEED_SHARE), ('t90', T90_SHARE)):
-        if abs(gazebo[key]) > SMALL:
-            off = ours[key] / gazebo[key] - 1.0
-            rows.append(_verdict(name, key, f'{off:+.2%}', abs(off) <= share))
-    if name == 'straight':
-        ramp = RECORDED['ramp']
-        delays = ramp_delays(samples, ramp['start'], 0.0, rising=True)
-        delays += ramp_delays(samples, ramp['stop'], gazebo['seconds'], rising=False)
-        worst = max(delays, key=abs)
-        rows.append(_verdict(name, 'ramp', f'{1000 * worst:+.1f} ms', abs(worst) <= RAMP))
-    return rows
+def compare_all(names: Iterable[str]) -> list[Difference]:
+    """Return every quantity that was recorded of robots and scenes."""
+    found = []
+    for name in names:
+        if name in SCENES:
+            found += compare_scene(name)
+            continue
+        for command in load(name)['drives']:
+            found += compare_drive(name, command)
+        found += compare_idle(name)
+    return found
 
 
-def _row(name: str, key: str, theirs: float, ours: float) -> str:
-    off = angle_between(ours, theirs) if UNITS[key] == 'rad' else ours - theirs
-    if UNITS[key] == 'rad':
-        ours = theirs + off  # the same number of turns
-    share = f'{100 * off / abs(theirs):+7.2f} %' if abs(theirs) > SMALL else ''
-    return f'{name:9} {key:8} {UNITS[key]:6} {theirs:9.4f} {ours:9.4f} {off:+9.4f} {share}'
-
-
-def _verdict(name: str, what: str, value: str, met: bool) -> str:
-    return f'{name:9} {what:15} {value:>12}   aim {"met" if met else "MISSED"}'
-
-
-def read_trace(path: Path) -> tuple[list[Command], list[Sample]]:
-    """Return commands and motion of a recorded trace, in the robot's frame at the first command.
+def read_trace(path: Path) -> tuple[list[Command], list[tuple[float, ...]]]:
+    """Return commands of a recorded trace, and its rows: time, then `COLUMNS`.
 
     Raises:
         ValueError: nothing is commanded in it, or a column is missing.
     """
-    with path.open(encoding='utf-8') as file:
-        rows = [row for row in csv.DictReader(file) if row.get('t_since_cmd')]
-    try:
-        table = [
-            [float(row[key]) for key in (
-                't_since_cmd', 'gt_x', 'gt_y', 'gt_yaw', 'gt_v_body_x', 'gt_v_body_y', 'gt_wz',
-                'jl_vel', 'jr_vel', 'cmd_v', 'cmd_w',
-            )]
-            for row in rows if float(row['t_since_cmd']) >= 0.0
-        ]
-    except KeyError as error:
-        raise ValueError(f'{path}: there is no column {error}') from None
-    if not table:
-        raise ValueError(f'{path}: no row has a t_since_cmd of 0 or later; nothing was commanded')
-    _, x0, y0, yaw0, *_ = table[0]
     commands: list[Command] = []
-    samples = []
-    for time, x, y, yaw, *speeds, v, w in table:
-        if not commands or commands[-1][1:] != (v, w):
-            commands.append((time if commands else 0.0, v, w))
-        dx, dy = x - x0, y - y0
-        cos, sin = math.cos(yaw0), math.sin(yaw0)
-        samples.append(Sample(
-            time, cos * dx + sin * dy, cos * dy - sin * dx, angle_between(yaw, yaw0), *speeds
-        ))
-    return commands, samples
+    rows = []
+    with path.open(encoding='utf-8') as file:
+        for row in csv.DictReader(file):
+            if not row.get('t_since_cmd') or float(row['t_since_cmd']) < 0.0:
+                continue
+            try:
+                forward = row['cmd_v'] if 'cmd_v' in row else row['cmd_vx']
+                command = tuple(map(float, (forward, row.get('cmd_vy') or 0.0, row['cmd_w'])))
+                time, *values = (float(row[key]) for key in ('t_since_cmd', *COLUMNS))
+            except KeyError as error:
+                raise ValueError(f'{path}: there is no column {error}') from None
+            if not commands or commands[-1][1:] != command:
+                commands.append((time if commands else 0.0, *command))
+            rows.append((time, *values))
+    if not rows:
+        raise ValueError(f'{path}: no row has a t_since_cmd of 0 or later; nothing was commanded')
+    return commands, rows
 
 
-def compare_trace(path: Path) -> list[str]:
-    """Return table rows: how far our path is from a recorded one, and the steady speeds of both."""
-    commands, theirs = read_trace(path)
-    ours = drive(commands, theirs[-1].time + 0.002)
-    times = [sample.time for sample in ours]
-    apart = turned = 0.0
-    for sample in theirs:
-        near = ours[min(bisect.bisect_left(times, sample.time), len(ours) - 1)]
-        apart = max(apart, math.dist((near.x, near.y), (sample.x, sample.y)))
-        turned = max(turned, abs(angle_between(near.yaw, sample.yaw)))
-    rest = math.dist((ours[-1].x, ours[-1].y), (theirs[-1].x, theirs[-1].y))
-    rows = [f'{path.name}: largest distance {apart:.4f} m, in heading {turned:.4f} rad; '
-            f'{rest:.4f} m apart at the end']
-    ends = [command[0] for command in commands[1:]] + [theirs[-1].time]
-    for (begin, v, w), end in zip(commands, ends, strict=True):
-        if end - begin < 2.0 * STEADY_FROM or not (v or w):
+def compare_trace(path: Path) -> list[Difference]:
+    """Return how far our path is from a recorded one, and the steady speeds of both."""
+    commands, rows = read_trace(path)
+    name = path.name.partition('_')[0]
+    ours = drive(robot(name if name in ROBOTS else 'article'), commands, rows[-1][0])
+    _, x0, y0, yaw0, *_ = rows[0]
+    cos, sin = math.cos(yaw0), math.sin(yaw0)
+    apart = turned = reach = 0.0
+    for time, x, y, yaw, *_ in rows:
+        sample = ours[round(1000.0 * time)]
+        place = cos * (x - x0) + sin * (y - y0), cos * (y - y0) - sin * (x - x0)
+        reach = max(reach, math.hypot(*place))
+        apart = max(apart, math.dist(place, (sample.x, sample.y)))
+        turned = max(turned, abs(math.remainder(sample.yaw - yaw + yaw0, math.tau)))
+    found = [
+        Difference(path.name, 'path', 'm', 0.0, apart, max(PLACE_SHARE * reach, FLOOR)),
+        Difference(path.name, 'heading', 'rad', 0.0, turned, FLOOR),
+    ]
+    ends = [command[0] for command in commands[1:]] + [rows[-1][0]]
+    for (begin, *command), end in zip(commands, ends, strict=True):
+        if end - begin < 2.0 * STEADY_FROM or not any(command):
             continue
-        for field in ('forward', 'turning', 'left', 'right'):
-            a, b = (_steady(samples, field, begin, end) for samples in (theirs, ours))
-            share = f'{100 * (b / a - 1.0):+7.2f} %' if abs(a) > SMALL / 4.0 else ''
-            rows.append(f'  {v:+.2f} m/s {w:+.2f} rad/s  {field:8} {a:9.4f} {b:9.4f} '
-                        f'{b - a:+9.4f} {share}')
-    return rows
+        for field, unit, column in STEADY:
+            first = begin + STEADY_FROM
+            theirs = _mean(row[column] for row in rows if first <= row[0] < end)
+            own = _mean(getattr(one, field) for one in ours if first <= one.time < end)
+            tolerance = max(SPEED_SHARE * abs(theirs), FLOOR)
+            quantity = f'{field} from {begin:g} s'
+            found.append(Difference(path.name, quantity, unit, theirs, own, tolerance))
+    return found
 
 
-def _steady(samples: Sequence[Sample], field: str, begin: float, end: float) -> float:
-    values = [getattr(s, field) for s in samples if begin + STEADY_FROM <= s.time < end]
+def _mean(values: Iterable[float]) -> float:
+    values = list(values)
     return sum(values) / len(values)
-
-
-def idle_creep() -> str:
-    """Return how far the standing robot moves by itself."""
-    samples = drive([], IDLE)
-    way = math.dist((samples[0].x, samples[0].y), (samples[-1].x, samples[-1].y))
-    return _verdict('idle', f'way in {IDLE:.0f} s', f'{1000 * way:.4f} mm', way < 1e-4)
 
 
 def main(arguments: Sequence[str]) -> int:
     """Print the comparison; return the exit code."""
     logging.disable(logging.WARNING)
-    print('command   what     unit      Gazebo      ours  difference')
-    if arguments:
-        for argument in arguments:
-            print('\n'.join(compare_trace(Path(argument))))
-        return 0
-    for name in COMMANDS:
-        print('\n'.join(compare_recorded(name)))
-    print(idle_creep())
+    known = (*ROBOTS, *SCENES)
+    names = [name for name in arguments if name in known]
+    found = compare_all(names if arguments else known)
+    for argument in arguments:
+        if argument not in known:
+            found += compare_trace(Path(argument))
+    print(HEADER)
+    for one in worst_first(found):
+        print(line(one))
+    beyond = [one for one in found if one.share > 1.0]
+    print(f'{len(found)} quantities, {len(beyond)} beyond their tolerance, '
+          f'{sum(bool(one.why) for one in beyond)} of these on purpose')
     return 0
 
 

@@ -12,7 +12,8 @@ import time
 from dataclasses import replace
 
 from support import SETTLED, SPAWN_POSE, empty_world, robot_spec, urdf_spec
-from support.motion import COMMANDS, RECORDED, drive_as_recorded, measure
+from support.motion import compare_drive
+from support.recorded import load
 from support.scenes import SCENES, SPEED, box, forward_speed
 
 from rosbots_description.sim.model import Model
@@ -40,12 +41,12 @@ TURNS = 3
 def gazebo_errors(tuning: Tuning) -> tuple[float, float]:
     """Return the largest shares by which steady speeds and times to 90 % differ from Gazebo's."""
     speeds, times = [], []
-    for name in COMMANDS:
-        gazebo = RECORDED[name]
-        turns = not gazebo['command'][0]
-        ours = measure(drive_as_recorded(name, tuning), gazebo['seconds'], turns)
-        speeds += [abs(ours[k] / gazebo[k] - 1.0) for k in 'vw' if abs(gazebo[k]) > SMALL]
-        times.append(abs(ours['t90'] / gazebo['t90'] - 1.0))
+    for command in load('article')['drives']:
+        for one in compare_drive('article', command, tuning):
+            if one.quantity in ('v', 'w') and abs(one.gazebo) > SMALL:
+                speeds.append(abs(one.ours / one.gazebo - 1.0))
+            elif one.quantity.startswith('t90'):
+                times.append(abs(one.ours / one.gazebo - 1.0))
     return max(speeds), max(times)
 
 

@@ -1,4 +1,4 @@
-"""The article's robot falls, stands and drives as it does in the real Gazebo."""
+"""Robots fall, stand and drive as they do in the real Gazebo."""
 
 import math
 from functools import cache
@@ -6,76 +6,59 @@ from functools import cache
 import pytest
 from support import SETTLED, SPAWN_POSE, empty_world, robot_spec
 from support.motion import (
-    COMMANDS,
-    RECORDED,
-    angle_between,
+    ROBOTS,
+    compare_drive,
+    compare_idle,
     drive_as_recorded,
-    measure,
     ramp_delays,
 )
+from support.recorded import exceeded, load
 
-SPEED_SHARE = 0.03  # of Gazebo's steady speed
-WHEEL_SHARE = 0.015  # of the speed of Gazebo's wheels
-T90_SHARE = 0.05  # of the time to 90 % of the steady speed
-DISPLACEMENT_SHARE = 0.04  # of the way Gazebo's robot has gone at rest
-TURN_SHARE = 0.04  # of the angle Gazebo's robot has turned at rest
 RAMP_TOLERANCE = 0.015  # [s] by which a speed is reached earlier or later
 REST_HEIGHT = (-0.120, 0.002)  # [m] of base_footprint: the wheels reach 0.12 m below it
 IDLE_CREEP = 1e-4  # [m] in thirty seconds
 TREMBLING = 1e-3  # [m/s or rad/s] of a robot at rest; in Gazebo it is 0.004 and 0.016
+DRIVES = [(name, command) for name in ROBOTS for command in load(name)['drives']]
+
+# What is further from Gazebo than the tolerances of support/motion.py: how far, and why.
+HAIR = '5 % of the speed lie between what is left of it there and here'
+FOUR = 'four wheels in an arc turn by 7 % less'
+TREMBLES = 'its ramps begin at the measured speed, which trembles in Gazebo'
+KNOWN = (
+    ('box4 arc_v0.5_w0.5', 'stop_w', 8.0, HAIR),
+    ('box4 arc_v0.5_w0.5', '', 2.8, FOUR),
+    ('skid4 arc_v0.5_w0.5', '', 2.8, FOUR),
+    ('box4 turn_w1.0', 'odom', 1.7, 'its front wheels slip by 2 mm/s'),
+    ('article turn_w1.0', 'lateral', 2.4, 'it turns about a point 1.1 cm further ahead'),
+    ('article turn_w1.0', 'path', 2.2, 'the same'),
+    ('article arc_v0.5_w0.5', '', 1.3, 'it turns by 3 % more'),
+    ('tricycle back_v-0.3_a-0.3', '', 2.8, TREMBLES),
+    ('tricycle straight_v0.5', '', 1.7, TREMBLES),
+    ('tricycle steer_v0.5_a0.5', 'odom', 2.5, 'speeds in the odometry frame turn with its heading'),
+    ('tricycle steer_v0.5_a0.5', 't90', 1.6, TREMBLES),
+    ('skid4 idle', 'way', 7.5, 'with few iterations motors leave wheels 1.5 mrad/s'),
+    ('tricycle idle', 'way', 7.5, 'the same'),
+)  # fmt: skip
+
+samples = cache(drive_as_recorded)
 
 
-@cache
-def samples(name):
-    """Return the motion for a recorded command."""
-    return drive_as_recorded(name)
+@pytest.mark.parametrize(('name', 'command'), DRIVES)
+def test_a_drive_is_gazebos_in_each_quantity(name, command):
+    differences = compare_drive(name, command, samples=samples(name, command))
+    assert exceeded(differences, KNOWN) == []
 
 
-@cache
-def ours(name):
-    """Return what gazebo_motion.json tells, for our robot."""
-    return measure(samples(name), RECORDED[name]['seconds'], turns=name == 'turn')
-
-
-@pytest.mark.parametrize(
-    ('name', 'quantity'), [('straight', 'v'), ('turn', 'w'), ('arc', 'v'), ('arc', 'w')]
-)
-def test_steady_speeds_are_gazebos(name, quantity):
-    assert ours(name)[quantity] == pytest.approx(RECORDED[name][quantity], rel=SPEED_SHARE)
-
-
-@pytest.mark.parametrize('name', COMMANDS)
-def test_full_speed_is_reached_when_gazebo_reaches_it(name):
-    assert ours(name)['t90'] == pytest.approx(RECORDED[name]['t90'], rel=T90_SHARE)
-
-
-@pytest.mark.parametrize('name', COMMANDS)
-@pytest.mark.parametrize('side', ['left', 'right'])
-def test_the_wheels_turn_as_gazebos(name, side):
-    assert ours(name)[side] == pytest.approx(RECORDED[name][side], rel=WHEEL_SHARE)
-
-
-@pytest.mark.parametrize('name', ['straight', 'arc'])
-def test_the_robot_comes_to_rest_where_gazebos_does(name):
-    x, y = RECORDED[name]['x'], RECORDED[name]['y']
-    apart = math.dist((ours(name)['x'], ours(name)['y']), (x, y))
-    assert apart < DISPLACEMENT_SHARE * math.hypot(x, y)
-
-
-@pytest.mark.parametrize('name', ['turn', 'arc'])
-def test_the_robot_comes_to_rest_at_gazebos_heading(name):
-    yaw = RECORDED[name]['yaw']
-    assert abs(angle_between(ours(name)['yaw'], yaw)) < TURN_SHARE * abs(yaw)
-
-
-def test_a_straight_drive_veers_no_more_than_gazebos():
-    assert abs(ours('straight')['yaw']) <= abs(RECORDED['straight']['yaw'])
+@pytest.mark.parametrize('name', ['burger', 'skid4', 'tricycle'])
+def test_a_robot_that_nobody_commands_stays_where_it_is(name):
+    assert exceeded(compare_idle(name), KNOWN) == []
 
 
 def test_speeding_up_and_slowing_down_follow_gazebos_ramp():
-    ramp, end = RECORDED['ramp'], RECORDED['straight']['seconds']
-    delays = ramp_delays(samples('straight'), ramp['start'], 0.0, rising=True)
-    delays += ramp_delays(samples('straight'), ramp['stop'], end, rising=False)
+    article, straight = load('article'), samples('article', 'straight_v0.5')
+    ramp, end = article['ramp'], article['drives']['straight_v0.5']['seconds']
+    delays = ramp_delays(straight, ramp['start'], 0.0, rising=True)
+    delays += ramp_delays(straight, ramp['stop'], end, rising=False)
     assert max(map(abs, delays)) <= RAMP_TOLERANCE
 
 

@@ -1,108 +1,235 @@
-"""Drive the article's robot as it was driven in Gazebo, and measure its motion as it was there."""
+"""Drive robots as they were driven in Gazebo, and measure their motion as it was there."""
 
-import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rosbots_description.sim.pose import relative, yaw_of
+from rosbots_description.sim.pose import Pose, relative, rotate, yaw_of
+from rosbots_description.sim.spec import ModelSpec
 from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.urdf import load_urdf
 
-from . import ROOT, SETTLED, SPAWN_POSE, empty_world, robot_spec
+from . import empty_world, robot_spec
+from .recorded import DATA, Difference, load
 
+ROBOTS = ('article', 'burger', 'box4', 'skid4', 'planar', 'tricycle')
 REST = 3.0  # [s] after the end of a command
 STEADY_FROM = 1.0  # [s] after its beginning
 REACHED = 0.9  # share of the steady speed
 STOPPED = 0.05  # share of the steady speed
-RECORDED = json.loads((ROOT / 'test' / 'data' / 'gazebo_motion.json').read_text(encoding='utf-8'))
-COMMANDS = ('straight', 'turn', 'arc')  # what was recorded, by name
+ROW = 20  # steps between two rows of a recording
+IDLE = 20.0  # [s]
 
-Command = tuple[float, float, float]  # when [s], forward [m/s], turning [rad/s]
+# Tolerances: shares of what Gazebo's robot did, or floors where it did next to nothing.
+SPEED_SHARE = 0.03  # of a steady speed, of what was turned by, and of what a wheel turns at
+PLACE_SHARE = 0.04  # of the displacement
+TIME_SHARE, TIME_FLOOR = 0.05, 0.03  # of a time to speed up or slow down; [s], more than one row
+RIM_SHARE = 0.01  # of the fastest rim: floor of speeds along and across
+WAY_SHARE = 0.005  # of the way of the fastest rim: floor of places
+VEER_RATE, VEER = 0.002, 0.01  # [rad/s], [rad] in a straight drive where Gazebo's veers less
+WHEEL_FLOOR = 0.05  # [rad/s]
+HEIGHT, PITCH = 0.001, 0.002  # [m], [rad]
+CREEP, CREEP_TURN = 0.0005, 0.0005  # [m], [rad] in 20 s at rest
+
+Command = tuple[float, float, float, float]  # when [s], forward, to the left [m/s], turning [rad/s]
+
+
+class Robot(NamedTuple):
+    """A robot as it was spawned in Gazebo."""
+
+    spec: ModelSpec
+    spawn_z: float  # [m]
+    settled: int  # steps before the first command
+    arm: float  # what a speed of turning is multiplied with to give that of a rim [m]
 
 
 class Sample(NamedTuple):
-    """Where the robot is, in its frame at the first command, and how it moves."""
+    """Where a robot is, in its frame at the first command, and how it moves.
+
+    Odometry is the newest message's: x, y, forward, turning; wheels are in the order of the model.
+    """
 
     time: float  # [s] since the first command
     x: float  # [m]
     y: float  # [m]
-    yaw: float  # [rad], in -pi to pi
+    yaw: float  # [rad], without leaps
+    z: float  # [m], in the world
+    pitch: float  # [rad]
     forward: float  # [m/s]
     lateral: float  # [m/s] to the left
     turning: float  # [rad/s]
-    left: float  # speed of the left wheel [rad/s]
-    right: float  # [rad/s]
+    odometry: tuple[float, float, float, float]
+    wheels: dict[str, float]  # speed of each joint [rad/s]
+
+
+def robot(name: str) -> Robot:
+    """Return a recorded robot by its name."""
+    data = load(name)
+    if name == 'article':
+        spec = robot_spec()
+    else:
+        text = (DATA / 'robots' / data['robot']).read_text(encoding='utf-8')
+        spec, _ = load_urdf(text, name, robot_namespace='/')
+    return Robot(spec, data['spawn_z'], round(1000 * data['settled']), data['arm'])
 
 
 def drive(
-    commands: Sequence[Command], duration: float, tuning: Tuning | None = None
+    one: Robot, commands: Sequence[Command], duration: float, tuning: Tuning | None = None
 ) -> list[Sample]:
     """Return the motion after each step from the first command on."""
     with empty_world(tuning) as world:
-        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.run(SETTLED)
-        start, begin = model.pose, world.clock.now
-        wheels = model.plugins[0].wheels
-        samples, waiting = [], list(commands)
-        for _ in range(round(duration * 1000)):
-            while waiting and world.clock.now - begin >= waiting[0][0] - 1e-9:
-                model.plugins[0].command(*waiting.pop(0)[1:])
+        model = world.spawn(one.spec, 'robot', Pose((0.0, 0.0, one.spawn_z)))
+        newest = [Pose(), (0.0, 0.0)]
+
+        def remember(reading) -> None:
+            newest[:] = reading.pose, (reading.twist.linear[0], reading.twist.angular[2])
+
+        if model.plugins:
+            model.plugins[0].odometry.connect(remember, lambda: True)
+        world.run(one.settled)
+        odometry_start = newest[0]
+        start, yaw, samples, waiting = None, 0.0, [], list(commands)
+        for k in range(round(duration * 1000) + 1):
+            while waiting and k >= round(1000 * waiting[0][0]):
+                _, x, y, w = waiting.pop(0)
+                for plugin in model.plugins:
+                    plugin.command(x, w, y)
             world.run(1)
             pose, ((vx, vy, _), (_, _, turning)) = model.state()
-            yaw = yaw_of(pose.orientation)
-            forward = math.cos(yaw) * vx + math.sin(yaw) * vy
-            lateral = math.cos(yaw) * vy - math.sin(yaw) * vx
-            way = relative(pose, start)
+            start = start or pose
+            way, heading = relative(pose, start), yaw_of(pose.orientation)
+            yaw += math.remainder(yaw_of(way.orientation) - yaw, math.tau)
+            cos, sin = math.cos(heading), math.sin(heading)
+            measured = relative(newest[0], odometry_start).position
             samples.append(Sample(
-                world.clock.now - begin, *way.position[:2], yaw_of(way.orientation),
-                forward, lateral, turning, *(wheel.velocity for wheel in wheels),
+                k / 1000.0, *way.position[:2], yaw, pose.position[2],
+                -math.asin(max(-1.0, min(1.0, rotate(pose.orientation, (1.0, 0.0, 0.0))[2]))),
+                cos * vx + sin * vy, cos * vy - sin * vx, turning, (*measured[:2], *newest[1]),
+                {name: joint.velocity for name, joint in model.joints.items()},
             ))
         return samples
 
 
-def drive_as_recorded(name: str, tuning: Tuning | None = None) -> list[Sample]:
-    """Return the motion for a command of gazebo_motion.json, until it is at rest."""
-    command, seconds = RECORDED[name]['command'], RECORDED[name]['seconds']
-    return drive([(0.0, *command), (seconds, 0.0, 0.0)], seconds + REST, tuning)
+def drive_as_recorded(name: str, command: str, tuning: Tuning | None = None) -> list[Sample]:
+    """Return the motion of a recorded robot for one of its commands, until it is at rest."""
+    data = load(name)['drives'][command]
+    seconds = data['seconds']
+    commands = [(0.0, *data['command']), (seconds, 0.0, 0.0, 0.0)]
+    return drive(robot(name), commands, seconds + REST, tuning)
 
 
-def measure(samples: Sequence[Sample], seconds: float, turns: bool) -> dict[str, float]:
-    """Return what gazebo_motion.json tells of a command that ended after `seconds`.
+def measure(samples: Sequence[Sample], seconds: float) -> dict[str, float]:
+    """Return what a recording tells of a command that ended after `seconds`."""
+    rows = samples[::ROW]
+    steady = [row for row in rows if STEADY_FROM <= row.time < seconds]
+    end, rest = next(row for row in rows if row.time >= seconds), rows[-1]
 
-    Args:
-        turns: whether the command is to turn on the spot, so that its speed is that of turning.
-    """
-    steady = [sample for sample in samples if STEADY_FROM <= sample.time < seconds]
+    def mean(value) -> float:
+        return sum(map(value, steady)) / len(steady)
 
-    def mean(field: str) -> float:
-        return sum(getattr(sample, field) for sample in steady) / len(steady)
-
-    speed = 'turning' if turns else 'forward'
-    full = abs(mean(speed))
-    after = [sample for sample in samples if sample.time > seconds]
-    moving = [sample.time for sample in after if abs(getattr(sample, speed)) > STOPPED * full]
-    end = next(sample for sample in samples if sample.time >= seconds)
-    rest = samples[-1]
-    return {
-        'v': mean('forward'),
-        'w': mean('turning'),
-        'lateral': mean('lateral'),
-        'left': mean('left'),
-        'right': mean('right'),
-        't90': next(s.time for s in samples if abs(getattr(s, speed)) >= REACHED * full),
-        'stop': (moving[-1] if moving else seconds) - seconds,
-        'end_x': end.x,
-        'end_y': end.y,
-        'end_yaw': end.yaw,
-        'x': rest.x,
-        'y': rest.y,
-        'yaw': rest.yaw,
-    }
+    told = {
+        'v': mean(lambda row: row.forward),
+        'lateral': mean(lambda row: row.lateral),
+        'w': mean(lambda row: row.turning),
+        'odom_vx': mean(lambda row: row.odometry[2]),
+        'odom_wz': mean(lambda row: row.odometry[3]),
+        'end_x': end.x, 'end_y': end.y, 'end_yaw': end.yaw,
+        'x': rest.x, 'y': rest.y, 'yaw': rest.yaw, 'z': rest.z, 'pitch': rest.pitch,
+        'odom_x': rest.odometry[0], 'odom_y': rest.odometry[1],
+    }  # fmt: skip
+    for key, field in (('v', 'forward'), ('w', 'turning')):
+        full = abs(told[key])
+        speeds = [(row.time, abs(getattr(row, field))) for row in rows]
+        told[f't90_{key}'] = next(t for t, speed in speeds if speed >= REACHED * full)
+        told[f'stop_{key}'] = max(
+            (t - seconds for t, speed in speeds if t >= seconds and speed > STOPPED * full),
+            default=0.0,
+        )
+    for joint in steady[0].wheels:
+        told[joint] = mean(lambda row, joint=joint: row.wheels[joint])
+    return told
 
 
-def angle_between(a: float, b: float) -> float:
-    """Return a - b [rad], the shorter way round."""
-    return math.remainder(a - b, 2.0 * math.pi)
+def compare_drive(
+    name: str, command: str, tuning: Tuning | None = None, samples: Sequence[Sample] = ()
+) -> list[Difference]:
+    """Return every quantity that was recorded of a drive, there and here."""
+    data, arm = load(name)['drives'][command], load(name)['arm']
+    samples = samples or drive_as_recorded(name, command, tuning)
+    gazebo, ours = dict(data['quantities']), measure(samples, data['seconds'])
+    scene = f'{name} {command}'
+    *_, turning = data['command']
+    rim = math.hypot(gazebo['v'], gazebo['lateral']) + abs(gazebo['w']) * arm
+    floor = WAY_SHARE * rim * data['seconds']
+    found = []
+
+    def add(quantity: str, unit: str, *told, least: bool = False) -> None:
+        found.append(Difference(scene, quantity, unit, *told, least))
+
+    for keys in (('end_x', 'end_y'), ('x', 'y'), ('odom_x', 'odom_y')):
+        if keys[0] in gazebo:
+            theirs, own = ([told[key] for key in keys] for told in (gazebo, ours))
+            # Distance of the places, which lie about each other anyhow, told as one number.
+            reach = max(PLACE_SHARE * math.hypot(*theirs), floor)
+            quantity = keys[0].removesuffix('_x').replace('x', 'rest') + ' place'
+            add(quantity, 'm', 0.0, math.dist(theirs, own), reach)
+            for key in keys:
+                del gazebo[key]
+    for key, theirs in gazebo.items():
+        unit, tolerance = _tolerance(key, theirs, rim, bool(turning))
+        veers = unit.startswith('rad') and not turning and key != 'pitch'
+        add(key, unit, theirs, ours[key], tolerance, least=veers)
+    for joint, speed in data.get('wheels', {}).items():
+        tolerance = max(SPEED_SHARE * abs(speed), WHEEL_FLOOR)
+        add(joint, 'rad/s', speed, ours[joint], tolerance)
+    return found + list(_compare_paths(scene, data, samples, floor))
+
+
+def _tolerance(key: str, theirs: float, rim: float, turns: bool) -> tuple[str, float]:
+    """Return unit and tolerance of a quantity."""
+    share = SPEED_SHARE * abs(theirs)
+    if key in ('w', 'odom_wz'):
+        return 'rad/s', share if turns else max(abs(theirs), VEER_RATE)
+    if key in ('yaw', 'end_yaw'):
+        return 'rad', share if turns else max(abs(theirs), VEER)
+    if key.startswith(('t90', 'stop')):
+        return 's', max(TIME_SHARE * theirs, TIME_FLOOR)
+    if key in ('z', 'pitch'):
+        return ('m', HEIGHT) if key == 'z' else ('rad', PITCH)
+    return 'm/s', max(share, RIM_SHARE * rim)
+
+
+def _compare_paths(
+    scene: str, data: dict, samples: Sequence[Sample], floor: float
+) -> Iterator[Difference]:
+    """Yield how far the path and the heading are from the recorded ones, at most."""
+    apart = turned = 0.0
+    for time, x, y, yaw in data['trace']:
+        sample = samples[round(1000 * time)]
+        apart = max(apart, math.dist((x, y), (sample.x, sample.y)))
+        turned = max(turned, abs(yaw - sample.yaw))
+    reach = max(math.hypot(x, y) for _, x, y, _ in data['trace'])
+    most = max(abs(yaw) for *_, yaw in data['trace'])
+    turns = bool(data['command'][2])
+    tolerance = SPEED_SHARE * most
+    yield Difference(scene, 'path', 'm', 0.0, apart, max(PLACE_SHARE * reach, floor))
+    if turns:  # else it is told by the yaw that is left
+        yield Difference(scene, 'heading', 'rad', 0.0, turned, tolerance)
+
+
+def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:
+    """Return how far a standing robot moves by itself; in Gazebo it creeps."""
+    idle = load(name).get('idle')
+    if idle is None:
+        return []
+    samples = drive(robot(name), [], IDLE, tuning)
+    last, scene = samples[-1], f'{name} idle 20 s'
+    way = math.hypot(idle['dx'], idle['dy'])
+    return [
+        Difference(scene, 'way', 'm', way, math.hypot(last.x, last.y), CREEP, True),
+        Difference(scene, 'yaw', 'rad', idle['dyaw'], last.yaw, CREEP_TURN, True),
+        Difference(scene, 'z', 'm', idle['z'], last.z, HEIGHT),
+    ]
 
 
 def ramp_delays(samples: Sequence[Sample], speeds: Sequence[Sequence[float]], start: float,

@@ -1,0 +1,129 @@
+"""Passive scenes: bodies that fall, slide, roll and swing as they did in Gazebo."""
+
+import math
+from collections.abc import Callable, Iterator
+
+from rosbots_description.sim.model import Joint, Link
+from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.pose import Twist
+from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.world import World
+from rosbots_description.sim.world_file import open_world, populate
+
+from .recorded import DATA, Difference, load
+
+SCENES = (
+    'push', 'mu_pairs', 'mu_pairs_diag', 'slope', 'roll', 'sleep', 'stack', 'bounce',
+    'bounce_defaults', 'bounce_plate', 'pendulum', 'prismatic',
+)  # fmt: skip
+# Shares of the most that was recorded, and floors where next to nothing happened.
+PLACE_SHARE, PLACE_FLOOR = 0.04, 0.002  # [m]
+SPEED_SHARE, SPEED_FLOOR = 0.03, 0.02  # [m/s]
+ANGLE_SHARE, ANGLE_FLOOR = 0.03, 0.01  # [rad]
+RATE_FLOOR = 0.05  # [rad/s]
+JOINT_SHARE, JOINT_FLOOR = 0.03, 0.005  # [rad or m], and the same per second
+
+
+def compare_scene(name: str, tuning: Tuning | None = None) -> list[Difference]:
+    """Return every quantity that was recorded of a passive scene, there and here."""
+    data = load(name)
+    ours = _run(name, tuning)
+    found = []
+    for link, rows in data.get('links', {}).items():
+        found += _compare_link(name, link, rows, ours)
+    for joint, rows in data.get('joints', {}).items():
+        found += _compare_joint(name, joint, rows, ours)
+    return found
+
+
+def _run(name: str, tuning: Tuning | None) -> dict[tuple[str, int], tuple]:
+    """Return the state of each recorded link and joint after the steps at which it was recorded."""
+    data = load(name)
+    world = World(tuning=tuning)
+    try:
+        populate(world, open_world(DATA / 'worlds' / f'{name}.world', find_model=ModelSearch()))
+        wanted: dict[int, list[str]] = {}
+        for kind in ('links', 'joints'):
+            for target, rows in data.get(kind, {}).items():
+                for row in rows:
+                    wanted.setdefault(round(1000 * row[0]), []).append(target)
+        events, states = list(_events(world, data['events'])), {}
+        for step in range(max(wanted) + 1):
+            for begin, end, act in events:
+                if begin <= step < end:
+                    act()
+            world.run(1)
+            for target in wanted.get(step, ()):
+                states[target, step] = _find(world, target).state()
+        return states
+    finally:
+        world.close()
+
+
+def _events(world: World, events: list) -> Iterator[tuple[int, int, Callable[[], None]]]:
+    """Yield what happens from which step on to before which."""
+    for kind, time, duration, target, values in events:
+        thing, first = _find(world, target), round(1000 * time)
+        last = first + max(1, round(1000 * duration))
+        if kind == 'vel':
+            twist = Twist(tuple(values[:3]), tuple(values[3:]))
+            yield first, last, lambda m=thing.model, t=twist: m.set_twist(t)
+        elif kind == 'force':
+            yield first, last, lambda li=thing, v=values: li.push(tuple(v[:3]), tuple(v[3:]))
+        elif kind == 'jpos':
+            yield first, last, lambda j=thing, v=values: j.set_position(v[0])
+        elif kind == 'jforce':
+            yield first, last, lambda j=thing, v=values: j.push(v[0])
+        else:
+            raise ValueError(f'no event is called {kind}')
+
+
+def _find(world: World, target: str) -> Link | Joint:
+    model, _, name = target.partition('::')
+    found = world.models[model]
+    return found.links[name] if name in found.links else found.joints[name]
+
+
+def _compare_link(scene: str, link: str, rows: list, ours: dict) -> Iterator[Difference]:
+    start = rows[0][1:4]
+    place = angle = speed = rate = 0.0
+    far = turned = fast = spun = 0.0
+    first = rows[0][4:8]
+    for time, *row in rows:
+        pose, twist = ours[link, round(1000 * time)]
+        place = max(place, math.dist(pose.position, row[:3]))
+        angle = max(angle, _angle(pose.orientation, row[3:7]))
+        speed = max(speed, math.dist(twist.linear, row[7:10]))
+        rate = max(rate, math.dist(twist.angular, row[10:13]))
+        far = max(far, math.dist(start, row[:3]))
+        turned = max(turned, _angle(first, row[3:7]))
+        fast = max(fast, math.hypot(*row[7:10]))
+        spun = max(spun, math.hypot(*row[10:13]))
+    for quantity, unit, value, tolerance in (
+        ('place', 'm', place, max(PLACE_SHARE * far, PLACE_FLOOR)),
+        ('orientation', 'rad', angle, max(ANGLE_SHARE * turned, ANGLE_FLOOR)),
+        ('velocity', 'm/s', speed, max(SPEED_SHARE * fast, SPEED_FLOOR)),
+        ('spin', 'rad/s', rate, max(SPEED_SHARE * spun, RATE_FLOOR)),
+    ):
+        yield Difference(scene, f'{link} {quantity}', unit, 0.0, value, tolerance)
+
+
+def _compare_joint(scene: str, joint: str, rows: list, ours: dict) -> Iterator[Difference]:
+    apart = faster = 0.0
+    for time, position, velocity in rows:
+        own = ours[joint, round(1000 * time)]
+        apart = max(apart, abs(own[0] - position))
+        faster = max(faster, abs(own[1] - velocity))
+    reach = max(abs(position) for _, position, _ in rows)
+    fast = max(abs(velocity) for *_, velocity in rows)
+    yield Difference(scene, f'{joint} position', 'rad|m', 0.0, apart,
+                     max(JOINT_SHARE * reach, JOINT_FLOOR))
+    yield Difference(scene, f'{joint} velocity', '/s', 0.0, faster,
+                     max(JOINT_SHARE * fast, JOINT_FLOOR))
+
+
+def _angle(a, b) -> float:
+    """Return the angle between two orientations [rad]."""
+    cosine = abs(sum(x * y for x, y in zip(a, b, strict=True)))
+    length = math.hypot(*a) * math.hypot(*b)
+    return 2.0 * math.acos(min(1.0, cosine / length))
