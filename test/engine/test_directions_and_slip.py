@@ -16,6 +16,7 @@ LOAD = 4 * 29.4  # [N] that the four wheels of skid4 carry
 SPEED = 0.5  # [m/s]
 # Away from the world's axes and their diagonals, two directions of friction mix a little.
 SLIP_SHARE, MIXED_SHARE = 0.05, 0.25
+BOX_SHARE = 0.12  # a box rocks while it is pushed
 COMPLIANCES = [(0.1, 0.0, 20.0), (0.4, 0.0, -8.0)]  # lateral, longitudinal, side force [N]
 
 
@@ -56,6 +57,18 @@ def test_fdir1_says_along_which_direction_the_first_mu_acts():
     way = 1.5**2 / 2.0 / GRAVITY
     assert slide(surface, 0.0) == pytest.approx(way / 0.5, rel=0.04)
     assert slide(surface, math.pi / 2.0) == pytest.approx(way / 0.2, rel=0.04)
+
+
+@pytest.mark.parametrize('yaw', [0.0, math.pi / 2.0])
+@pytest.mark.parametrize(('slip1', 'slip2', 'speed'), [(0.0, 0.05, 0.1), (0.2, 0.02, 0.04)])
+def test_what_slips_slides_by_its_slip_times_the_force(slip1, slip2, speed, yaw):
+    surface = friction(1, 1, f'<slip1>{slip1}</slip1><slip2>{slip2}</slip2>')
+    with empty_world() as world:
+        model = world.spawn(box(surface), 'box', Pose((0.0, 0.0, 0.1), from_rpy(0.0, 0.0, yaw)))
+        for _ in range(1500):
+            model.links['l'].push((2.0 * math.cos(yaw), 2.0 * math.sin(yaw), 0.0), (0.0, 0.0, 0.0))
+            world.run(1)
+        assert math.hypot(*model.twist.linear[:2]) == pytest.approx(speed, rel=BOX_SHARE)
 
 
 def bounce(restitution, max_vel):

@@ -42,7 +42,8 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
     <inertial><pose>0 0 0 0 0 0</pose><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>
       <ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>
     <collision name="c"><pose>0 0 0 0 0 0</pose><geometry><box><size>1 1 1</size></box></geometry>
-      <surface><friction><ode><mu>1</mu><mu2>1</mu2><fdir1>1 0 0</fdir1></ode></friction>
+      <surface><friction><ode><mu>1</mu><mu2>1</mu2><fdir1>1 0 0</fdir1><slip1>0</slip1>
+      <slip2>0</slip2></ode></friction>
       <bounce><restitution_coefficient>0</restitution_coefficient><threshold>1</threshold></bounce>
       <contact><ode><kp>1</kp><kd>1</kd></ode></contact></surface></collision>
     <visual name="v"><pose>0 0 0 0 0 0</pose><transparency>0</transparency><visible>1</visible>

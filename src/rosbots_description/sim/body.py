@@ -74,6 +74,8 @@ class Body:
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
         self.masses: dict[int, Masses] = {}  # what moves, by body
         self.surfaces: dict[str, list[Place]] = {}  # what each link touches with
+        # Of links that slip: the first direction in the link's frame, compliances [m/s per N].
+        self.slips: dict[str, tuple[Vector, tuple[float, float]]] = {}
         self.friction_axes: dict[Place, FrictionAxes] = {}  # of each of these
 
 

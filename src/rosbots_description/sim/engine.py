@@ -20,7 +20,7 @@ from .pose import ALONG, Pose, Twist, Vector, add, compose, conjugate, cross, ro
 from .slip import NONE_SLIPS, Touch, shares, velocity_at
 from .solver_effort import CHECK, Motor, SolverEffort
 from .spec import ModelSpec
-from .surfaces import overlap_share
+from .surfaces import first_direction, overlap_share
 from .tuning import Tuning
 
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then
@@ -57,6 +57,7 @@ class Engine:
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._fast = FastBodies(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
+        self._slipping: list[Body] = []  # those with surfaces that slip
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
         # What has been read since the last step, by PyBullet's body and index: reading one joint
@@ -102,6 +103,7 @@ class Engine:
         self._weightless.clear()
         self._driven.clear()
         self._until_look = CHECK
+        self._slipping.clear()
         self._joint_readings.clear()
         self.waste = 0
         self.apply(self._physics)
@@ -129,6 +131,9 @@ class Engine:
         for _ in range(steps):
             if self._weightless:
                 self._lift_weightless()
+            for body in self._slipping:
+                for link, slip in body.slips.items():
+                    self.let_slip(body, link, *slip)
             if plain:
                 step(client)
             else:
@@ -152,13 +157,21 @@ class Engine:
         if body.weightless:
             self._weightless.append(body)
         self._fast.add(body.masses)
+        for link in spec.links:
+            for one in link.collisions:
+                if one.surface.slip1 or one.surface.slip2:
+                    slips = one.surface.slip1, one.surface.slip2
+                    body.slips[link.name] = first_direction(one, link), slips
+        if body.slips:
+            self._slipping.append(body)
         return body
 
     def remove(self, body: Body) -> None:
         """Take a model out of the world."""
         self._joint_readings.clear()
-        if body in self._weightless:
-            self._weightless.remove(body)
+        for those in (self._weightless, self._slipping):
+            if body in those:
+                those.remove(body)
         self._driven.pop(body, None)
         self._fast.forget(body.bodies)
         self.waste += body.size

@@ -15,7 +15,7 @@ logger = logging.getLogger(__name__)
 # A leaf that says only what is so here anyway is not worth a word.
 _NEUTRAL: dict[str, tuple[float, ...]] = {
     'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0),
-    'slip': (0.0,), 'slip1': (0.0,), 'slip2': (0.0,),
+    'slip': (0.0,),
     'soft_cfm': (0.0,), 'soft_erp': (0.2,), 'collide_without_contact': (0.0,),
     'collide_without_contact_bitmask': (1.0,), 'collide_bitmask': (65535.0,),
     'category_bitmask': (65535.0,), 'spring_reference': (0.0,), 'spring_stiffness': (0.0,),

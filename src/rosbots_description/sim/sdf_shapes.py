@@ -160,7 +160,7 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
     for path, read in (
         ('.', ('friction', 'contact', 'bounce')),
         ('friction', ('ode',)),
-        ('friction/ode', ('mu', 'mu2', 'fdir1')),
+        ('friction/ode', ('mu', 'mu2', 'fdir1', 'slip1', 'slip2')),
         ('contact', ('ode',)),
         ('bounce', ('restitution_coefficient', 'threshold')),
         ('contact/ode', ('kp', 'kd', 'max_vel', 'min_depth')),
@@ -177,6 +177,8 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         mu=_friction(surface, 'friction/ode/mu', default.mu),
         mu2=_friction(surface, 'friction/ode/mu2', default.mu2),
         fdir1=numbers_of(surface, 'friction/ode/fdir1', default.fdir1),
+        slip1=not_negative_of(surface, 'friction/ode/slip1', default.slip1),
+        slip2=not_negative_of(surface, 'friction/ode/slip2', default.slip2),
         kp=default.kp if stiffness is None
         else not_negative_of(surface, f'{contact}/kp', default.kp),
         kd=not_negative_of(surface, f'{contact}/kd', default.kd),

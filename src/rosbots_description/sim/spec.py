@@ -71,6 +71,8 @@ class Surface:
     laser_retro: float = 0.0
     restitution: float = 0.0  # share of the speed of an impact that is given back
     threshold: float = 1e5  # speed of an impact from which on it is [m/s]
+    slip1: float = 0.0  # slip compliance along the first direction [m/s per N]
+    slip2: float = 0.0  # along the second direction
 
     @property
     def greatest_mu(self) -> float:

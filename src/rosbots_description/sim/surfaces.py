@@ -171,14 +171,26 @@ def _directions(collision: Collision) -> tuple:
     return surface.mu, surface.mu2, any(first) and rotate(collision.pose.orientation, first)
 
 
+def first_direction(collision: Collision, link: LinkSpec) -> Vector:
+    """Return the first direction of a collision's friction in the frame of its link, a unit vector.
+
+    Without `fdir1` ODE takes the world's y axis on level ground; here it is that of the model, so
+    that friction turns with what it belongs to.
+    """
+    given = collision.surface.fdir1
+    length = math.hypot(*given)
+    if not length:
+        return rotate(conjugate(link.pose.orientation), (0.0, 1.0, 0.0))
+    return rotate(collision.pose.orientation, tuple(component / length for component in given))
+
+
 def friction_scales(
     collision: Collision, link: LinkSpec, turn: Quaternion, friction: float
 ) -> tuple[float, float, float]:
     """Return which shares of its greatest friction a part holds along each of its own axes.
 
     PyBullet can weaken it along these alone; where the first direction of friction is none of them
-    the part holds alike in all. Without `fdir1` ODE takes the world's y axis on level ground; here
-    it is that of the model, so that friction turns with what it belongs to.
+    the part holds alike in all.
 
     Args:
         turn: turns the part's axes into those of the link.
@@ -188,12 +200,8 @@ def friction_scales(
     greatest = min(friction, surface.greatest_mu)
     if min(surface.mu, surface.mu2) >= greatest:
         return EVENLY
-    if any(surface.fdir1):
-        first = rotate(collision.pose.orientation, surface.fdir1)
-    else:
-        first = rotate(conjugate(link.pose.orientation), (0.0, 1.0, 0.0))
-    least = ALONG * math.hypot(*first)
-    along = [abs(component) > least for component in rotate(conjugate(turn), first)]
+    first = rotate(conjugate(turn), first_direction(collision, link))
+    along = [abs(component) > ALONG for component in first]
     if not any(along):
         return EVENLY
     first, second = (min(1.0, mu / greatest) for mu in (surface.mu, surface.mu2))
