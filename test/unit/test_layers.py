@@ -53,7 +53,7 @@ def test_only_what_makes_moves_and_draws_bodies_uses_pybullet():
                     for node in ast.walk(tree))]
     assert using == [
         'sim/body_maker.py', 'sim/bullet.py', 'sim/canvas.py', 'sim/engine.py',
-        'sim/fast_bodies.py', 'sim/untouching.py',
+        'sim/fast_bodies.py', 'sim/slipping.py', 'sim/untouching.py',
     ]
 
 

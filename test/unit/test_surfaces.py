@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from rosbots_description.sim.friction_axes import EVENLY, friction_scales, restitution
 from rosbots_description.sim.pose import NO_ROTATION, Pose, from_rpy
 from rosbots_description.sim.spec import (
     FIXED,
@@ -16,13 +17,7 @@ from rosbots_description.sim.spec import (
     LinkSpec,
     Surface,
 )
-from rosbots_description.sim.surfaces import (
-    EVENLY,
-    crowned,
-    friction_scales,
-    restitution,
-    rolling_arm,
-)
+from rosbots_description.sim.surfaces import crowned, rolling_arm
 
 TYRE = Collision('tyre', Cylinder(0.1, 0.05))
 AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')

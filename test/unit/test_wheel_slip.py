@@ -8,9 +8,12 @@ from dynamic_reconfigure.encoding import Config
 from support.fake_drive import STEP, FakeModel, wheel_of
 
 from rosbots_description.ros_api import slip_reconfigure
+from rosbots_description.sim.body import Body, FrictionAxes, Place
 from rosbots_description.sim.clock import SimClock
 from rosbots_description.sim.errors import PluginError
+from rosbots_description.sim.friction_axes import EVENLY
 from rosbots_description.sim.plugins.wheel_slip import WheelSlip
+from rosbots_description.sim.pose import NO_ROTATION, from_rpy
 from rosbots_description.sim.slip import LEAST, Touch, shares
 from rosbots_description.sim.spec import Element, PluginSpec
 
@@ -24,9 +27,12 @@ class Model(FakeModel):
     def __init__(self):
         super().__init__(wheel_of(0.1))
         self.joints = self.wheels
-        self.body, self.slips, self.can_slip = None, {}, True
+        self.slips = {}
+        self.body = Body()
+        for k, name in enumerate(self.links):
+            self.body.surfaces[name] = [Place(0, k)]
+            self.body.friction_axes[Place(0, k)] = FrictionAxes(NO_ROTATION, EVENLY)
         self.engine = SimpleNamespace(
-            can_slip=lambda *_: self.can_slip,
             let_slip=lambda _, link, axle, slips: self.slips.__setitem__(link, slips),
         )
 
@@ -84,7 +90,9 @@ def test_a_wheel_that_makes_no_sense_is_left_out_with_a_sentence(bad, told, capl
 
 def test_a_wheel_whose_axle_the_engine_does_not_know_is_left_out(caplog):
     model = Model()
-    model.can_slip = False
+    for place in model.body.friction_axes:
+        askew = FrictionAxes(from_rpy(0.3, 0.0, 0.0), EVENLY)
+        model.body.friction_axes[place] = askew
     with pytest.raises(PluginError, match='no <wheel> that can slip'):
         load(wheel(), model=model)
     assert 'no principal axis' in caplog.text

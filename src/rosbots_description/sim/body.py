@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .pose import Pose, Quaternion, Twist, Vector
+from .pose import Pose, Quaternion, Twist
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,6 @@ class Body:
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
         self.masses: dict[int, Masses] = {}  # what moves, by body
         self.surfaces: dict[str, list[Place]] = {}  # what each link touches with
-        # Of links that slip: the first direction in the link's frame, compliances [m/s per N].
-        self.slips: dict[str, tuple[Vector, tuple[float, float]]] = {}
         self.friction_axes: dict[Place, FrictionAxes] = {}  # of each of these
 
 

@@ -9,20 +9,18 @@ from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .faces import Face, faces, is_one_body, slab
+from .friction_axes import EVENLY, friction_scales, restitution
 from .friction_filter import FrictionFilter, Side
 from .inertia import is_balanced, principal_axes
 from .pose import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
 from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from .surfaces import (
-    EVENLY,
     Groups,
     compliant,
     contact_spring,
-    friction_scales,
     is_rigid,
     jointed_mass,
     parting_rate,
-    restitution,
     rolling_arm,
     surface_groups,
     with_edges,

@@ -1,26 +1,24 @@
 """The physics engine: specs and names in, plain values out.
 
-This module, body_maker.py, fast_bodies.py, untouching.py and canvas.py alone know PyBullet.
+This module, body_maker.py, fast_bodies.py, slipping.py, untouching.py and canvas.py alone know
+PyBullet.
 
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
 frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
-import math
-from collections.abc import Iterator
-
-from .body import Body, FrictionAxes, Motion, Part, Place
+from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .fast_bodies import FastBodies
 from .physics import PhysicsSettings
-from .pose import ALONG, Pose, Twist, Vector, add, compose, conjugate, cross, rotate, subtract
-from .slip import NONE_SLIPS, Touch, shares, velocity_at
+from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from .slipping import Slipping
 from .solver_effort import CHECK, Motor, SolverEffort
 from .spec import ModelSpec
-from .surfaces import first_direction, overlap_share
+from .surfaces import overlap_share
 from .tuning import Tuning
 
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then
@@ -57,7 +55,7 @@ class Engine:
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._fast = FastBodies(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
-        self._slipping: list[Body] = []  # those with surfaces that slip
+        self._slipping = Slipping(self._client, self._maker.scale_friction, self._tuning.reach)
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
         # What has been read since the last step, by PyBullet's body and index: reading one joint
@@ -131,9 +129,8 @@ class Engine:
         for _ in range(steps):
             if self._weightless:
                 self._lift_weightless()
-            for body in self._slipping:
-                for link, slip in body.slips.items():
-                    self.let_slip(body, link, *slip)
+            for body, link, slip in self._slipping.links:
+                self.let_slip(body, link, *slip)
             if plain:
                 step(client)
             else:
@@ -157,21 +154,15 @@ class Engine:
         if body.weightless:
             self._weightless.append(body)
         self._fast.add(body.masses)
-        for link in spec.links:
-            for one in link.collisions:
-                if one.surface.slip1 or one.surface.slip2:
-                    slips = one.surface.slip1, one.surface.slip2
-                    body.slips[link.name] = first_direction(one, link), slips
-        if body.slips:
-            self._slipping.append(body)
+        self._slipping.add(body, spec)
         return body
 
     def remove(self, body: Body) -> None:
         """Take a model out of the world."""
         self._joint_readings.clear()
-        for those in (self._weightless, self._slipping):
-            if body in those:
-                those.remove(body)
+        if body in self._weightless:
+            self._weightless.remove(body)
+        self._slipping.remove(body)
         self._driven.pop(body, None)
         self._fast.forget(body.bodies)
         self.waste += body.size
@@ -313,56 +304,15 @@ class Engine:
             readings = self._joint_readings[number] = dict(zip(indices, states, strict=True))
         return readings[index]
 
-    def can_slip(self, body: Body, link: str, axle: Vector) -> bool:
-        """Tell whether a link can slip along an axis of its frame: PyBullet must have it, too."""
-        return all(
-            any(_along(body.friction_axes[place], axle)) for place in body.surfaces[link]
-        )
-
     def let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
         """Let what a link touches slide in the next step as its slip compliance has it.
 
         Args:
-            axle: unit vector in the link's frame.
+            axle: unit vector in the link's frame, along which it can slip (`can_slip`).
             slips: compliance along the axle and ahead [m/s per N].
         """
-        pose, twist = self.link_state(body, link)
-        for place in body.surfaces[link]:
-            held = NONE_SLIPS if not any(slips) else shares(
-                self._touches(place, pose.position, twist), rotate(pose.orientation, axle), slips,
-                self._physics.step_size, self._tuning.reach,
-            )
-            if held is None:
-                continue
-            axes = body.friction_axes[place]
-            along, ahead = held
-            self._maker.scale_friction(place, [
-                scale * (along if is_axle else ahead)
-                for is_axle, scale in zip(_along(axes, axle), axes.scales, strict=True)
-            ])
-
-    def _touches(self, place: Place, origin: Vector, twist: Twist) -> Iterator[Touch]:
-        """Yield the contacts of a part of a link in the last step."""
-        number, index = place
-        client = self._client
-        for point in pybullet.getContactPoints(number, linkIndexA=index, physicsClientId=client):
-            other, spot, normal, load = (point[2], point[4]), point[5], point[7], point[9]
-            first, one, second, two = point[10:14]
-            force = (first * a + second * b for a, b in zip(one, two, strict=True))
-            own = velocity_at(spot, origin, *twist)
-            mu = (pybullet.getDynamicsInfo(*each, client)[1] for each in (place, other))
-            yield Touch(
-                spot, normal, load, tuple(force), subtract(own, self._velocity(*other, spot)),
-                load * math.prod(mu),
-            )
-
-    def _velocity(self, number: int, index: int, place: Vector) -> Vector:
-        """Return the velocity of what PyBullet calls so, at a place."""
-        if index < 0:
-            com, _ = pybullet.getBasePositionAndOrientation(number, self._client)
-            return velocity_at(place, com, *pybullet.getBaseVelocity(number, self._client))
-        state = pybullet.getLinkState(number, index, 1, 1, self._client)
-        return velocity_at(place, state[0], state[6], state[7])
+        state = self.link_state(body, link)
+        self._slipping.weaken(body, link, state, axle, slips, self._physics.step_size)
 
     def set_joint_position(self, body: Body, joint: str, position: float) -> None:
         """Put a joint at `position` [rad or m], at rest."""
@@ -422,11 +372,6 @@ class Engine:
                 pybullet.applyExternalForce(
                     number, index, force, state[0], pybullet.WORLD_FRAME, self._client
                 )
-
-
-def _along(axes: FrictionAxes, direction: Vector) -> list[bool]:
-    """Tell which axis of a part a direction of the link's frame is."""
-    return [abs(component) > ALONG for component in rotate(conjugate(axes.turn), direction)]
 
 
 def _at_most(vector: Vector, most: float) -> Vector:

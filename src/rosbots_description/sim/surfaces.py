@@ -11,8 +11,9 @@ from operator import not_
 
 from .bullet_description import MeshFile, Tree
 from .edges import leaning
+from .friction_axes import directions, restitution
 from .inner_shapes import inner_shapes
-from .pose import ALONG, UP, Pose, Quaternion, Vector, compose, conjugate, dot, rotate
+from .pose import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
 from .spec import (
     FIXED,
     REVOLUTE,
@@ -27,9 +28,6 @@ from .spec import (
 Groups = list[tuple[Collision, ...]]  # of a link: what it touches with itself, then its riders
 
 _GRAVITY = 9.8  # [m/s^2]
-EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part
-_PARTS_FREELY = 1.0  # [m/s] a max_vel from which on things may bounce
-_FASTEST_IMPACT = 100.0  # [m/s] a threshold beyond which nothing bounces
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
 
 # Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
@@ -157,67 +155,11 @@ def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
     groups: dict = {}
     for collision in collisions:
         surface = collision.surface
-        key = (surface.kp, surface.kd, restitution(surface), _directions(collision))
+        key = (surface.kp, surface.kd, restitution(surface), directions(collision))
         groups.setdefault((surface.greatest_mu, *key), []).append(collision)
     return [tuple(group) for group in groups.values()]
 
 
-def _directions(collision: Collision) -> tuple:
-    """Return what tells apart the directions of friction; nothing if it has none."""
-    surface = collision.surface
-    if surface.mu == surface.mu2:
-        return ()
-    first = surface.fdir1
-    return surface.mu, surface.mu2, any(first) and rotate(collision.pose.orientation, first)
-
-
-def first_direction(collision: Collision, link: LinkSpec) -> Vector:
-    """Return the first direction of a collision's friction in the frame of its link, a unit vector.
-
-    Without `fdir1` ODE takes the world's y axis on level ground; here it is that of the model, so
-    that friction turns with what it belongs to.
-    """
-    given = collision.surface.fdir1
-    length = math.hypot(*given)
-    if not length:
-        return rotate(conjugate(link.pose.orientation), (0.0, 1.0, 0.0))
-    return rotate(collision.pose.orientation, tuple(component / length for component in given))
-
-
-def friction_scales(
-    collision: Collision, link: LinkSpec, turn: Quaternion, friction: float
-) -> tuple[float, float, float]:
-    """Return which shares of its greatest friction a part holds along each of its own axes.
-
-    PyBullet can weaken it along these alone; where the first direction of friction is none of them
-    the part holds alike in all.
-
-    Args:
-        turn: turns the part's axes into those of the link.
-        friction: what PyBullet is given for the part.
-    """
-    surface = collision.surface
-    greatest = min(friction, surface.greatest_mu)
-    if min(surface.mu, surface.mu2) >= greatest:
-        return EVENLY
-    first = rotate(conjugate(turn), first_direction(collision, link))
-    along = [abs(component) > ALONG for component in first]
-    if not any(along):
-        return EVENLY
-    first, second = (min(1.0, mu / greatest) for mu in (surface.mu, surface.mu2))
-    return tuple(first if is_first else second for is_first in along)
-
-
-def restitution(surface: Surface) -> float:
-    """Return PyBullet's restitution of a surface: those of a pair are multiplied.
-
-    Gazebo takes the lesser of a pair, and lets nothing part faster than `max_vel`, which is 0.01
-    m/s unless somebody sets it. The root gives the same for equal ones, and for a pair of which
-    one has none.
-    """
-    if surface.max_vel < _PARTS_FREELY or surface.threshold > _FASTEST_IMPACT:
-        return 0.0
-    return math.sqrt(min(1.0, max(0.0, surface.restitution)))
 
 
 def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> float:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..errors import PluginError
+from ..friction_axes import can_slip
 from ..spec import Element
 from ..wheel_geometry import radius_of
 from .base import ModelPlugin
@@ -99,7 +100,7 @@ class WheelSlip(ModelPlugin):
         for tag, value in (('wheel_radius', radius), ('wheel_normal_force', numbers[NUMBERS[2]])):
             if value <= 0.0:
                 raise PluginError(f"<wheel link_name='{name}'>: <{tag}> must be above 0")
-        if not self.model.engine.can_slip(self.model.body, name, joint.spec.axis_in_child):
+        if not can_slip(self.model.body, name, joint.spec.axis_in_child):
             raise PluginError(f"<wheel link_name='{name}'>: its axle is no principal axis of its "
                               'inertia, and the engine can weaken friction along these alone')
         lateral, longitudinal = (max(0.0, numbers[tag]) for tag in NUMBERS[:2])
