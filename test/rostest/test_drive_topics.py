@@ -6,6 +6,8 @@ from pathlib import Path
 
 import rospy
 import rostest
+from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.srv import Reconfigure
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
@@ -13,6 +15,8 @@ from simulator import SimulatorTest, pose, topics_of, wait_until
 from tf2_msgs.msg import TFMessage
 
 ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
+WHEEL = ('<wheel link_name="{side}_{end}_link"><wheel_normal_force>29</wheel_normal_force>'
+         '</wheel>')
 STEERED = ['steer_joint', 'front_joint', 'left_joint', 'right_joint']
 
 
@@ -51,6 +55,32 @@ class DriveTest(SimulatorTest):
             self.assertEqual([covariance[7 * i] for i in range(6)], variances)
         wait_until(transforms.__len__, 'transforms')
         self.assertEqual(self.edges(transforms), {('odom', 'base_footprint')})
+
+    def test_slip_compliance_is_set_by_dynamic_reconfigure(self):
+        before = topics_of()
+        wheels = ''.join(WHEEL.format(side=side, end=end)
+                         for side in ('left', 'right') for end in ('front', 'rear'))
+        plugin = f'<gazebo><plugin name="s" filename="libgazebo_ros_wheel_slip.so">{wheels}'
+        xml = (ROBOTS / 'skid4.urdf').read_text(encoding='utf-8')
+        xml = xml.replace('</robot>', f'{plugin}</plugin></gazebo></robot>')
+        self.assertTrue(self.spawn('skid4', xml, pose(z=0.02)).success)
+        there = topics_of() - before
+        self.assertIn('/skid4/wheel_slip/parameter_updates', there)
+        publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=1)
+        self._connections.append(publisher)
+        wait_until(publisher.get_num_connections, 'a subscriber of /cmd_vel')
+        odometry = self.collect('/odom', Odometry)
+        twist = Twist()
+        twist.angular.z = 1.0
+        publisher.publish(twist)
+        wait_until(lambda: odometry and odometry[-1].twist.twist.angular.z > 0.6, 'it turns')
+        self.assertLess(odometry[-1].twist.twist.angular.z, 0.8)
+        change = rospy.ServiceProxy('/skid4/wheel_slip/set_parameters', Reconfigure)
+        name = 'slip_compliance_unitless_lateral'
+        change(Config(doubles=[DoubleParameter(name=name, value=10.0)]))
+        wait_until(lambda: odometry[-1].twist.twist.angular.z > 0.85, 'tyres that give way')
+        self.delete('skid4')
+        self.assertEqual(topics_of(), before)
 
     def test_a_planar_robot_moves_sideways(self):
         odometry, command = self.bring('planar', {'/cmd_vel', '/odom', '/tf'})
