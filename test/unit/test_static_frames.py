@@ -8,8 +8,8 @@ from geometry_msgs.msg import TransformStamped
 from support.fake_drive import make
 from tf2_msgs.msg import TFMessage
 
-from rosbots_description.ros_api.adapters import diff_drive
-from rosbots_description.ros_api.adapters.diff_drive import DiffDriveAdapter
+from rosbots_description.ros_api.adapters import drive
+from rosbots_description.ros_api.adapters.drives import DiffDriveAdapter
 from rosbots_description.ros_api.conversions import fill_transform
 from rosbots_description.ros_api.static_frames import StaticFrames, from_root
 from rosbots_description.sim.pose import Pose, compose, from_rpy
@@ -83,8 +83,8 @@ def test_what_is_no_pose_is_left_out(frames):
 def test_wheels_are_left_to_who_reads_joint_states_and_holds_frames(
     frames, monkeypatch, readers, holder, wanted
 ):
-    monkeypatch.setattr(diff_drive, 'has_readers', lambda *_: True)
-    monkeypatch.setattr(diff_drive, 'reader_names', lambda _: readers)
+    monkeypatch.setattr(drive, 'has_readers', lambda *_: True)
+    monkeypatch.setattr(drive, 'reader_names', lambda _: readers)
     adapter = DiffDriveAdapter(SimpleNamespace(static_frames=frames), make())
     adapter._joint_states = object()
     frames.add(holder, message(('base_footprint', 'base_link', HELD)))
