@@ -13,8 +13,7 @@ def test_no_picture_is_made_of_what_touches():
     (tree,) = kinematic_trees(robot_spec())
     count = len(tree.links)
     groups = [surface_groups(tree, i) for i in range(count)]
-    moments = [(1.0, 1.0, 1.0)] * count
-    text = describe_tree(tree, [Pose()] * count, moments, groups, lambda mesh: mesh.path)
+    text = describe_tree(tree, [Pose()] * count, groups, lambda mesh: mesh.path)
     touching = [link for link in ElementTree.fromstring(text).findall('link')
                 if link.find('collision') is not None]
     assert touching

@@ -43,7 +43,6 @@ class Masses(NamedTuple):
     joints: tuple[int, ...]  # all of them
     damping: tuple[float, ...]  # of each joint [N m s/rad or N s/m]
     unbalanced: tuple[int, ...]
-    is_rigid: bool  # to PyBullet, not a multibody
     is_fixed: bool
 
 

@@ -8,7 +8,7 @@ from .body import Body, FrictionAxes, Mass, Masses, Part, Place
 from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
-from .faces import Face, faces, is_one_body, slab
+from .faces import Face, faces, slab
 from .friction_axes import EVENLY, friction_scales, restitution
 from .friction_filter import FrictionFilter, Side
 from .inertia import is_balanced, principal_axes
@@ -48,7 +48,7 @@ def grouped(tree: Tree, mesh_file: MeshFile) -> tuple[list[Groups], bool]:
     return [with_edges(tree, groups[0]), *groups[1:]], False
 
 
-def _masses(tree: Tree, body: Body, moments: Sequence[Vector], rigid: bool) -> Masses:
+def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
     """Return what of a tree weighs, and which of its joints move masses as they turn."""
     parts = tuple(
         Mass(body.parts[link.name].index, link.inertial.mass, of_link, link.gravity)
@@ -62,7 +62,7 @@ def _masses(tree: Tree, body: Body, moments: Sequence[Vector], rigid: bool) -> M
     unbalanced = tuple(body.joints[joint.name][1] for joint, link in movable
                        if link.name in parents or not is_balanced(link.inertial, joint))
     damping = tuple(joint.damping for joint, _ in movable)
-    return Masses(parts, joints, damping, unbalanced, rigid, tree.fixed_base)
+    return Masses(parts, joints, damping, unbalanced, tree.fixed_base)
 
 
 class BodyMaker:
@@ -105,15 +105,14 @@ class BodyMaker:
         mesh_file = self._surface_file if tree.stands else self._mesh_file
         groups, inner_first = grouped(tree, mesh_file)
         found = faces(tree, groups, inner_first, MAX_JOINTS + 1)
-        rigid = is_one_body(tree, found)
         place = compose(model_pose, tree.links[0].pose)
         # What stands is a rigid body for each of its faces; the first is the one that is asked.
         own, *others = [[[face]] for face in (*found[0], *slab(tree))] if tree.stands else [found]
         numbers = []
         for one in (own, *others):
             shapes = [[face.shapes for face in of_link] for of_link in one]
-            text = describe_tree(tree, coms, moments, shapes, mesh_file)
-            numbers.append(self._load_urdf(text, tree, place, rigid))
+            text = describe_tree(tree, coms, shapes, mesh_file)
+            numbers.append(self._load_urdf(text, tree, place))
             body.bodies.append(numbers[-1])
             body.size += len(text)
         number, *also = numbers
@@ -137,8 +136,7 @@ class BodyMaker:
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
             part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i], tuple(also))
             body.parts[link.name] = part
-            weight = inertials[i].mass if rigid and not tree.stands else None
-            self._set_inertia(part, weight, moments[i], joint)
+            self._set_inertia(part, moments[i], joint)
             self._set_surfaces(body, tree, i, own[i], index_of, mass)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
@@ -146,7 +144,7 @@ class BodyMaker:
             if not link.gravity and not (tree.fixed_base and i == 0):
                 body.weightless.append((number, part.index, inertials[i].mass))
         if not tree.stands:
-            body.masses[number] = _masses(tree, body, moments, rigid)
+            body.masses[number] = _masses(tree, body, moments)
         for other, ((face,),) in zip(also, others, strict=True):
             place = Place(other, -1)
             self._set_surface(place, face, face.shapes[0].surface, None)
@@ -187,7 +185,7 @@ class BodyMaker:
         self._sides.clear()
         self._soft.clear()
 
-    def _load_urdf(self, text: str, tree: Tree, pose: Pose, one_body: bool) -> int:
+    def _load_urdf(self, text: str, tree: Tree, pose: Pose) -> int:
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
         if self._tuning.exact_cylinders:
             flags |= pybullet.URDF_USE_IMPLICIT_CYLINDER
@@ -202,7 +200,7 @@ class BodyMaker:
                 f'/proc/self/fd/{descriptor}',
                 *pose,
                 useFixedBase=tree.fixed_base,
-                useMaximalCoordinates=one_body,
+                useMaximalCoordinates=tree.stands,
                 flags=flags,
                 physicsClientId=self._client,
             )
@@ -216,16 +214,12 @@ class BodyMaker:
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
         return indices
 
-    def _set_inertia(
-        self, part: Part, mass: float | None, inertia: Vector, joint: JointSpec | None
-    ) -> None:
-        """Set the principal moments of a part; of a rigid body the mass [kg] belongs to them."""
+    def _set_inertia(self, part: Part, inertia: Vector, joint: JointSpec | None) -> None:
         pybullet.changeDynamics(
             part.body,
             part.index,
             localInertiaDiagonal=inertia,
             jointDamping=joint.damping if joint else 0.0,
-            **({} if mass is None else {'mass': mass}),
             physicsClientId=self._client,
         )
 

@@ -1,9 +1,9 @@
 """Say in PyBullet's terms what a model is: its trees as plain URDF.
 
 PyBullet never sees a user's text. What it gets has one tag per line (it cuts lines at 8191
-bytes), short names of ours, explicit masses and clean mesh files. Visuals are only placeholders
-here, for PyBullet would draw what it is given no visual of. It zeroes tensors it finds impossible,
-so it gets a possible one, and the engine sets the true one afterwards.
+bytes), short names of ours, explicit masses and clean mesh files. Inertia and visuals are only
+placeholders here: PyBullet zeroes tensors it finds impossible, so the engine sets the true one
+afterwards, and would draw what it is given no visual of.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from .pose import Pose, Vector, compose, inverse, relative, to_rpy
+from .pose import Pose, compose, inverse, relative, to_rpy
 from .spec import (
     FIXED,
     PRISMATIC,
@@ -57,7 +57,6 @@ class Tree(NamedTuple):
 def describe_tree(
     tree: Tree,
     inertial_poses: Sequence[Pose],
-    moments: Sequence[Vector],
     groups: Sequence[Sequence[Sequence[Collision]]],
     mesh_file: MeshFile,
 ) -> str:
@@ -66,7 +65,6 @@ def describe_tree(
     Args:
         tree: what to describe.
         inertial_poses: centre of mass and principal axes of each link, in the link's frame.
-        moments: principal moments of each link [kg m^2].
         groups: what each link touches with itself, then what each of its riders does.
         mesh_file: gives the file of a mesh.
     """
@@ -81,10 +79,9 @@ def describe_tree(
         mass = 0.0 if tree.fixed_base and i == 0 else link.inertial.mass
         back = inverse(joint.pose) if joint else Pose()
         inertial = compose(back, inertial_poses[i])
-        lines += _link(f'l{i}', mass, inertial, moments[i], back, groups[i][0], mesh_file)
+        lines += _link(f'l{i}', mass, inertial, back, groups[i][0], mesh_file)
         for k, group in enumerate(groups[i][1:], start=1):
-            inertia = (RIDER_MASS,) * 3
-            lines += _link(f'l{i}r{k}', RIDER_MASS, Pose(), inertia, back, group, mesh_file)
+            lines += _link(f'l{i}r{k}', RIDER_MASS, Pose(), back, group, mesh_file)
             lines += _joint(f'j{i}r{k}', 'fixed', f'l{i}', f'l{i}r{k}', Pose(), ())
         if joint:
             parent = number[joint.parent]
@@ -98,19 +95,16 @@ def _link(
     name: str,
     mass: float,
     inertial: Pose,
-    moments: Vector,
     back: Pose,
     collisions: Sequence[Collision],
     mesh_file: MeshFile,
 ) -> list[str]:
-    total = sum(moments)
-    ixx, iyy, izz = (min(moment, 0.999 * (total - moment)) for moment in moments)
     lines = [
         f'<link name="{name}">',
         '<inertial>',
         _origin(inertial),
         f'<mass value="{mass!r}"/>',
-        f'<inertia ixx="{ixx!r}" iyy="{iyy!r}" izz="{izz!r}" ixy="0" ixz="0" iyz="0"/>',
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>',
         '</inertial>',
         *(_UNSEEN if collisions else ()),
     ]

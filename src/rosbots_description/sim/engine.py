@@ -127,17 +127,14 @@ class Engine:
     def _step_alike(self, steps: int) -> None:
         """Make steps in which the same bodies are fast."""
         step, client, fast = self._step, self._client, self._fast
-        plain = not fast
+        is_fast = bool(fast)
         for _ in range(steps):
             if self._weightless:
                 self._lift_weightless()
             for body, link, slip in self._slipping.links:
                 self.let_slip(body, link, *slip)
-            if plain:
-                step(client)
-            else:
-                fast.before_step()
-                step(client)
+            step(client)
+            if is_fast:
                 fast.after_step()
 
     def add(self, spec: ModelSpec, pose: Pose) -> Body:

@@ -61,15 +61,6 @@ def slab(tree: Tree) -> list[Face]:
     return _in_roles(shapes, Kind.SLAB, stands=True)
 
 
-def is_one_body(tree: Tree, found: Sequence[Sequence[Face]]) -> bool:
-    """Tell whether a tree with these faces is to be a rigid body to PyBullet, not a multibody.
-
-    PyBullet turns a rigid body without gaining energy, and solves for six unknowns less where it is
-    touched. What stands is a rigid body for each of its faces.
-    """
-    return tree.stands or (len(tree.links) == 1 and len(found[0]) == 1 and not tree.fixed_base)
-
-
 def _kind(tree: Tree) -> Kind:
     if is_floor(tree):
         return Kind.PLANE

@@ -1,8 +1,8 @@
 """Keeps the energy of what turns fast, where PyBullet's time steps do not.
 
-PyBullet turns a rigid body by implicit Euler, which loses energy, and the links of a multibody by
-explicit Euler, which gains it without bound: by some dt w^2 of it per second at an angular speed w.
-So all bodies are looked at now and then, and those that turn fast are put right in each step.
+PyBullet turns bodies by explicit Euler, which gains energy without bound: by some dt w^2 of it per
+second at an angular speed w. So all bodies are looked at now and then, and those that turn fast
+are put right in each step.
 """
 
 from collections.abc import Iterable
@@ -11,14 +11,13 @@ import numpy as np
 
 from .body import Masses
 from .bullet import pybullet
-from .gyration import lost_share, missing_torque
 from .pose import Vector, conjugate, rotate
 
 LOOK = 10  # steps between two looks at all bodies
-# dt w^2 [1/s], from which on the links of a multibody are put right: while it touches nothing, and
-# also where something holds it, as a floor does a robot that turns on the spot.
-_FAST, _WILD = 0.01, 0.1
-_LOSES = 1e-3  # [1/s] share of its energy, from which on a rigid body is put right
+# dt w^2 [1/s], from which on bodies of several links are put right while they touch nothing; and
+# the share of its energy that a single link gains per second, from which on it is.
+_FAST, _GAINS = 0.01, 2e-4
+_HELD = 10.0  # times as much where something holds it, as a floor does a robot on the spot
 _CALM = 200  # looks without speed, after which a multibody is left alone again
 # Share of the most kinetic energy a multibody had, by which its energy may grow. As velocities and
 # places are not of the same moment, it seems to change by less.
@@ -32,8 +31,7 @@ class FastBodies:
         """Work in the world of that PyBullet client, which is empty."""
         self._client = client
         self._bodies: dict[int, Masses] = {}
-        self._spinning: list[int] = []  # rigid bodies
-        self._swinging: dict[int, _Swinging] = {}  # multibodies
+        self._swinging: dict[int, _Swinging] = {}
         self.rest = 0  # steps until the next look
         self.set(0.001, (0.0, 0.0, 0.0))
 
@@ -52,8 +50,6 @@ class FastBodies:
         for number in numbers:
             self._bodies.pop(number, None)
             self._swinging.pop(number, None)
-            if number in self._spinning:
-                self._spinning.remove(number)
 
     def clear(self) -> None:
         """Forget all bodies."""
@@ -73,64 +69,46 @@ class FastBodies:
 
     def __bool__(self) -> bool:
         """Tell whether there is anything to put right in the next step."""
-        return bool(self._spinning or self._swinging)
+        return bool(self._swinging)
 
     def look(self) -> None:
         """Find what turns fast."""
         self.rest = LOOK
-        self._spinning.clear()
         for number, masses in self._bodies.items():
             velocity = pybullet.getBaseVelocity(number, self._client)[1]
             speed = sum(w * w for w in velocity) * self._step_size
-            if masses.is_rigid:
-                if speed > _LOSES and self._loses(number, velocity):
-                    self._spinning.append(number)
-                continue
             if masses.unbalanced:
                 states = pybullet.getJointStates(number, masses.unbalanced, self._client)
                 speed += sum(state[1] * state[1] for state in states) * self._step_size
-            self._note(number, masses, speed)
+            fast = speed / _FAST
+            if fast > 1.0 and len(masses.parts) == 1 and not masses.joints:
+                _, turn = pybullet.getBasePositionAndOrientation(number, self._client)
+                own = rotate(conjugate(turn), velocity)
+                fast = gained_share(masses.parts[0].moments, own, self._step_size) / _GAINS
+            self._note(number, masses, fast)
 
-    def _note(self, number: int, masses: Masses, speed: float) -> None:
-        """Note that a multibody has a certain dt w^2 [1/s]."""
+    def _note(self, number: int, masses: Masses, fast: float) -> None:
+        """Note that a body turns so many times as fast as is left alone."""
         swinging = self._swinging.get(number)
         if swinging is not None:
-            swinging.calm = 0 if speed > _FAST else swinging.calm + 1
+            # One that flies may turn fast again: about a middle axis it does so now and then.
+            swinging.calm = 0 if fast > 1.0 or swinging.flies else swinging.calm + 1
             if swinging.calm > _CALM:
                 del self._swinging[number]
-        elif speed > _FAST:
+        elif fast > 1.0:
             swinging = _Swinging(self._client, number, masses)
-            if speed > _WILD or not swinging.touched():
+            if fast > _HELD or not swinging.touched():
                 self._swinging[number] = swinging
 
-    def before_step(self) -> None:
-        """Give to rigid bodies what PyBullet is about to take from them."""
-        for number in self._spinning:
-            (mass,) = self._bodies[number].parts
-            velocity = pybullet.getBaseVelocity(number, self._client)[1]
-            place, turn = pybullet.getBasePositionAndOrientation(number, self._client)
-            own = rotate(conjugate(turn), velocity)
-            torque = missing_torque(mass.moments, own, self._step_size)
-            if torque is not None:
-                pybullet.applyExternalTorque(
-                    number, -1, rotate(turn, torque), pybullet.WORLD_FRAME, self._client
-                )
-
     def after_step(self) -> None:
-        """Take from multibodies what PyBullet has given to them."""
+        """Take from bodies what PyBullet has given to them."""
         with np.errstate(all='ignore'):  # a model may be lost
             for swinging in self._swinging.values():
                 swinging.hold(self._step_size, self._gravity, self._bodies)
 
-    def _loses(self, number: int, velocity: Vector) -> bool:
-        _, turn = pybullet.getBasePositionAndOrientation(number, self._client)
-        (mass,) = self._bodies[number].parts
-        own = rotate(conjugate(turn), velocity)
-        return lost_share(mass.moments, own, self._step_size) > _LOSES
-
 
 class _Swinging:
-    """A multibody that turns fast. Its energy grows by the work that is done on it, or not at all.
+    """A body that turns fast. Its energy grows by the work that is done on it, or not at all.
 
     Work is that of its motors and dampers; what stands does none. What pushes do, and other bodies
     that move, is not known: the energy after that is taken as it is. While a body flies, only the
@@ -149,7 +127,7 @@ class _Swinging:
         self._moments = np.array([part.moments for part in parts])
         self._most = 0.0  # the most kinetic energy seen [J]
         self.ceiling: float | None = None  # of the energy [J]; None: as it is after the next step
-        self._flies, self._total = False, 0.0  # after the last step
+        self.flies, self._total = False, 0.0  # after the last step
         self.calm = 0
 
     def hold(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
@@ -158,10 +136,10 @@ class _Swinging:
         total, kinetic, drift = self._energy(step_size, gravity)
         self._most = max(self._most, kinetic)
         slack = _GROWS * self._most
-        flew, self._flies = self._flies, not (touched or self._all.is_fixed)
-        flies_on = flew and self._flies
+        flew, self.flies = self.flies, not (touched or self._all.is_fixed)
+        flies_on = flew and self.flies
         if self.ceiling is None or not touched.isdisjoint(moving):
-            self.ceiling = slack + (kinetic if self._flies else total)
+            self.ceiling = slack + (kinetic if self.flies else total)
         else:
             if flew and touched:
                 self.ceiling = self._total
@@ -172,7 +150,7 @@ class _Swinging:
                 total, kinetic = total - excess, kinetic - excess
             if touched:
                 self.ceiling = min(self.ceiling, total + slack)
-            elif self._flies and not flew:
+            elif self.flies and not flew:
                 self.ceiling = kinetic
         self._total = total
 
@@ -233,6 +211,23 @@ class _Swinging:
                 [[share * state[1]] for state in states],
                 physicsClientId=self._client,
             )
+
+
+def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
+    """Return the share of its energy that a free body gains by explicit Euler, per second.
+
+    With Euler's equations w' = -I^-1 (w x I w) it is dt (w' I w') / (w I w).
+
+    Args:
+        moments: principal moments of inertia [kg m^2].
+        velocity: angular velocity along the principal axes [rad/s].
+    """
+    (a, b, c), (x, y, z) = moments, velocity
+    energy = a * x * x + b * y * y + c * z * z
+    if energy <= 0.0 or min(moments) <= 0.0:
+        return 0.0
+    torque = ((b - c) * y * z, (c - a) * z * x, (a - b) * x * y)
+    return step_size * sum(t * t / i for t, i in zip(torque, moments, strict=True)) / energy
 
 
 def _turned_back(turns: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -1,0 +1,33 @@
+"""How much energy a free rigid body gains in PyBullet's steps, beside what theory says."""
+
+import pytest
+
+from rosbots_description.sim.fast_bodies import gained_share
+
+MOMENTS = (0.1, 0.2, 0.3)
+
+
+@pytest.mark.parametrize(('moments', 'velocity'), [
+    (MOMENTS, (0.0, 50.0, 0.0)),  # about a principal axis
+    ((0.2, 0.2, 0.2), (3.0, 4.0, 5.0)),  # a ball
+    ((0.0, 1.0, 1.0), (1.0, 2.0, 3.0)),  # one that cannot turn
+    (MOMENTS, (0.0, 0.0, 0.0)),
+])
+def test_what_needs_no_torque_to_turn_on_gains_nothing(moments, velocity):
+    assert gained_share(moments, velocity, 1e-3) == 0.0
+
+
+def test_the_share_gained_grows_with_the_square_of_the_speed_and_with_the_step():
+    share = gained_share(MOMENTS, (3.0, 4.0, 5.0), 1e-3)
+    assert gained_share(MOMENTS, (6.0, 8.0, 10.0), 1e-3) == pytest.approx(4.0 * share)
+    assert gained_share(MOMENTS, (3.0, 4.0, 5.0), 2e-3) == pytest.approx(2.0 * share)
+
+
+def test_the_share_gained_is_that_of_a_step_of_explicit_euler():
+    (a, b, c), (x, y, z), dt = MOMENTS, (3.0, 4.0, 5.0), 1e-5
+    after = (x + dt * (b - c) / a * y * z, y + dt * (c - a) / b * z * x,
+             z + dt * (a - b) / c * x * y)
+    energies = [sum(i * w * w for i, w in zip(MOMENTS, v, strict=True))
+                for v in ((x, y, z), after)]
+    gained = (energies[1] / energies[0] - 1.0) / dt
+    assert gained_share(MOMENTS, (x, y, z), dt) == pytest.approx(gained, rel=1e-3)
