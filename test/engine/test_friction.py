@@ -9,7 +9,7 @@ from support.scenes import ball
 
 from rosbots_description.sim.bullet import pybullet
 from rosbots_description.sim.friction_filter import FrictionFilter, Kind, Role, Side
-from rosbots_description.sim.pose import Pose, compose, from_rpy
+from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy
 
 SECOND = 1000  # steps
 GRAVITY = 9.8
@@ -47,6 +47,21 @@ def test_what_slides_is_held_back_by_the_lesser_mu(mu_box, mu_ramp, mu):
         assert abs(acceleration_down(holds, mu_box, mu_ramp)) < 1e-3
     expected = GRAVITY * (math.sin(slides) - mu * math.cos(slides))
     assert acceleration_down(slides, mu_box, mu_ramp) == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize(('cone', 'mu', 'speed'), [
+    (False, 0.5, 1.5), (True, 0.5, 1.5), (False, 0.2, 1.0), (True, 0.2, 1.0),
+])
+def test_what_slides_on_a_diagonal_is_held_by_a_pyramid_or_a_cone(cone, mu, speed):
+    along = math.sqrt(0.5) * speed
+    with empty_world() as world:
+        world.set_physics(replace(world.physics, friction_cone=cone))
+        box = world.spawn(rough(mu, '0.6 0.6 0.05'), 'box', Pose((0.0, 0.0, 0.025)))
+        box.set_twist(Twist((along, along, 0.0), (0.0, 0.0, 0.0)))
+        world.run(2 * SECOND)
+        x, y, _ = box.pose.position
+    braked = GRAVITY * mu * (math.sqrt(0.5) if cone else 1.0)  # along each axis [m/s^2]
+    assert (x, y) == pytest.approx((along**2 / (2.0 * braked),) * 2, rel=0.03)
 
 
 @pytest.mark.parametrize('mu', [2.0, 10.0, 100.0, 1e6])

@@ -21,6 +21,7 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
   <real_time_update_rate>0</real_time_update_rate>
   <update_rate>0</update_rate><gravity>0 0 -9</gravity><max_contacts>5</max_contacts><ode>
   <max_contacts>5</max_contacts><solver><dt>0.001</dt><iters>9</iters><sor>1</sor>
+  <friction_model>cone_model</friction_model>
   <precon_iters>1</precon_iters></solver><constraints><cfm>0</cfm><erp>1</erp>
   <contact_surface_layer>1</contact_surface_layer>
   <contact_max_correcting_vel>1</contact_max_correcting_vel></constraints></ode></physics>

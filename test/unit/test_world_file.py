@@ -124,6 +124,17 @@ def test_another_engine_is_named(caplog):
     assert "physics type 'bullet' is not here" in caplog.text
 
 
+@pytest.mark.parametrize(('model', 'cone', 'said'), [
+    ('pyramid_model', False, ''), ('cone_model', True, ''),
+    ('box_model', False, "friction_model 'box_model' is not supported; pyramid_model is used"),
+])
+def test_the_friction_model_is_read(model, cone, said, caplog):
+    tag = f'<friction_model>{model}</friction_model>'
+    made = physics(f'<ode><solver>{tag}</solver></ode>')
+    assert made == PhysicsSettings(friction_cone=cone)
+    assert said in caplog.text and bool(said) == bool(caplog.text)
+
+
 def test_the_scene_is_kept():
     scene = load('''<scene><ambient>0.1 0.2 0.3 1</ambient><background>0 0 1 1</background>
       <shadows>0</shadows></scene>''').scene

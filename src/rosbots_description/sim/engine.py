@@ -57,7 +57,7 @@ class Engine:
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._fast = FastBodies(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
-        self._slipping = Slipping(self._client, self._maker.scale_friction, self._tuning.reach)
+        self._slipping = Slipping(self._client, self._maker.scale_friction, self._reach)
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
         # What has been read since the last step, by PyBullet's body and index: reading one joint
@@ -80,6 +80,7 @@ class Engine:
     def apply(self, physics: PhysicsSettings) -> None:
         """Use these settings from the next step on."""
         self._gravity = physics.gravity
+        self._cone = physics.friction_cone or self._tuning.friction_cone
         self._maker.set_step_size(physics.step_size)
         self._fast.set(physics.step_size, physics.gravity)
         pybullet.setGravity(*physics.gravity, physicsClientId=self._client)
@@ -87,7 +88,7 @@ class Engine:
             fixedTimeStep=physics.step_size,
             numSubSteps=0,
             contactERP=overlap_share(physics.step_size, self._tuning.push_out),
-            enableConeFriction=self._tuning.friction_cone,
+            enableConeFriction=self._cone,
             collisionFilterMode=0,  # each of a pair must be willing to meet the other
             enableFileCaching=0,  # else a second model under a file name gets the first one's text
             minimumSolverIslandSize=1,  # what has converged waits for nobody else
@@ -95,6 +96,10 @@ class Engine:
         )
         self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.passes)))
         self._physics = physics
+
+    def _reach(self, direction: Vector) -> float:
+        """Return how many times its limit friction can hold in a level direction, a unit vector."""
+        return 1.0 if self._cone else max(1.0, abs(direction[0]) + abs(direction[1]))
 
     def reset(self) -> None:
         """Remove everything; the same bodies added again then move bit for bit as before."""

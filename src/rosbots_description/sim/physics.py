@@ -18,7 +18,8 @@ class PhysicsSettings:
 
     The defaults are those that gazebo_ros 2.9.2 answers in an empty world of Gazebo 11. Of the
     ODE fields the engine applies `sor_pgs_iters`; the others have no counterpart in PyBullet and
-    are kept.
+    are kept. `friction_cone` tells whether friction is limited by its length (`cone_model` of SDF);
+    else it is so along the world's x and y axis each, as ODE's default has it.
     """
 
     step_size: float = 0.001  # simulated time of one step [s]
@@ -34,6 +35,7 @@ class PhysicsSettings:
     contact_surface_layer: float = 0.001  # [m]
     contact_max_correcting_vel: float = 100.0  # [m/s]
     max_contacts: int = 20
+    friction_cone: bool = False
 
 
 def check(physics: PhysicsSettings) -> None:

@@ -24,10 +24,12 @@ _PATHS: dict[str, tuple[str, ...]] = {
     'contact_surface_layer': ('ode/constraints/contact_surface_layer',),
     'contact_max_correcting_vel': ('ode/constraints/contact_max_correcting_vel',),
 }
+_FRICTION = 'ode/solver/friction_model'
+_PYRAMID, _CONE = 'pyramid_model', 'cone_model'
 _READ = ('max_step_size', 'real_time_update_rate', 'update_rate', 'gravity', 'max_contacts', 'ode')
 # The rate says how fast the simulator tries to be; the solvers' own settings have no counterpart.
 _IDLE = ('real_time_factor', 'bullet', 'simbody', 'dart')
-_ODE_IDLE = ('type', 'min_step_size', 'use_dynamic_moi_rescaling', 'friction_model',
+_ODE_IDLE = ('type', 'min_step_size', 'use_dynamic_moi_rescaling',
              'thread_position_correction', 'island_threads')
 
 
@@ -54,7 +56,11 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
                 value = _value(chosen, path, getattr(plain, field.name))
                 _check_setting(element, field.name, value)
                 settings[field.name] = value
-    return PhysicsSettings(**settings)
+    model = chosen.findtext(_FRICTION, _PYRAMID).strip()
+    if model not in (_PYRAMID, _CONE):
+        document.notes.warn(chosen.find(_FRICTION),
+                            f"friction_model '{model}' is not supported; {_PYRAMID} is used")
+    return PhysicsSettings(**settings, friction_cone=model == _CONE)
 
 
 def _check(document: SdfDocument, physics: etree._Element) -> None:
@@ -65,7 +71,7 @@ def _check(document: SdfDocument, physics: etree._Element) -> None:
     notes.check(physics, _READ, _IDLE)
     for path, read in (
         ('ode', ('solver', 'constraints', 'max_contacts')),
-        ('ode/solver', ('dt', 'precon_iters', 'iters', 'sor')),
+        ('ode/solver', ('dt', 'precon_iters', 'iters', 'sor', 'friction_model')),
         ('ode/constraints',
          ('cfm', 'erp', 'contact_surface_layer', 'contact_max_correcting_vel')),
     ):

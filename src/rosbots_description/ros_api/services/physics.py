@@ -1,5 +1,7 @@
 """Services about the physics of the world: step, pace, gravity and the solver."""
 
+from dataclasses import replace
+
 from gazebo_msgs.msg import ODEPhysics
 from gazebo_msgs.srv import (
     GetPhysicsProperties,
@@ -11,7 +13,7 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Vector3
 
-from ...sim.physics import PhysicsSettings, check
+from ...sim.physics import check
 from ..conversions import read_vector
 from ..server import Server
 from .registry import service
@@ -40,10 +42,13 @@ def set_physics_properties(
 ) -> SetPhysicsPropertiesResponse:
     """Use other settings from the next step on; every field counts, zeros included.
 
+    The friction model, which the request does not have, stays.
+
     The real-time factor that the simulator keeps to, if the machine can, is `max_update_rate`
     times `time_step`; a rate of 0 asks for as much as there is.
     """
-    physics = PhysicsSettings(
+    physics = replace(
+        server.world.physics,
         step_size=request.time_step,
         max_update_rate=request.max_update_rate,
         gravity=read_vector(request.gravity),
