@@ -146,12 +146,14 @@ class BodyMaker:
         if not tree.stands:
             body.masses[number] = _masses(tree, body, moments)
         for other, ((face,),) in zip(also, others, strict=True):
-            place = Place(other, -1)
-            self._set_surface(place, face, face.shapes[0].surface, None)
-            link = tree.links[0]
-            turn = body.parts[link.name].com_in_origin.orientation
-            self._set_directions(body, place, face, link, turn)
-            body.surfaces[link.name].append(place)
+            self._add_face(body, tree.links[0], Place(other, -1), face)
+
+    def _add_face(self, body: Body, link: LinkSpec, place: Place, face: Face) -> None:
+        """Set up another body that a standing link touches with."""
+        self._set_surface(place, face, face.shapes[0].surface, None)
+        turn = body.parts[link.name].com_in_origin.orientation
+        self._set_directions(body, place, face, link, turn)
+        body.surfaces[link.name].append(place)
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Let those links of a model pass through each other that do so in Gazebo."""
