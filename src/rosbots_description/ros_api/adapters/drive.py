@@ -164,7 +164,7 @@ class WheeledDriveAdapter(DriveAdapter):
     def open(self) -> None:
         """Advertise and subscribe, with upstream's log lines."""
         set_level(self.plugin.config.ros_debug_level)
-        logger.info('Starting plugin %s', self.plugin.log_prefix.removesuffix(': '))
+        logger.debug('Starting plugin %s', self.plugin.log_prefix.removesuffix(': '))
         super().open()
 
     def open_states(self) -> None:
@@ -172,7 +172,7 @@ class WheeledDriveAdapter(DriveAdapter):
         if self.plugin.config.publish_wheel_joint_state:
             self._followers = subscribers(rospy.resolve_name(self._joint_states_topic))
             self._joint_states = self.advertise(self._joint_states_topic, JointState, 1000)
-            logger.info('%sAdvertise joint_states', self.plugin.log_prefix)
+            logger.debug('%sAdvertise joint_states', self.plugin.log_prefix)
 
     def connect(self) -> None:
         """Join the plugin's outputs to the publishers that were opened."""
