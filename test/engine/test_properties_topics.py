@@ -50,7 +50,7 @@ def listeners(bench, monkeypatch):
     monkeypatch.setattr(state_commands, 'rospy', wire)
     monkeypatch.setattr(registry, 'rospy', wire)
     monkeypatch.setattr(drive_adapter, 'find_tf_prefix', lambda _: '')
-    monkeypatch.setattr(drive_adapter, 'subscribers', lambda _: set())
+    monkeypatch.setattr(drive_adapter, 'subscribers', lambda *_: (set(), set()))
     state_commands.subscribe_states(bench.server)
     (drive,) = bench.world.models['rosbots'].plugins
     drives.DiffDriveAdapter(bench.server, drive).open()

@@ -89,3 +89,16 @@ def test_wheels_are_left_to_who_reads_joint_states_and_holds_frames(
     adapter._joint_states = object()
     frames.add(holder, message(('base_footprint', 'base_link', HELD)))
     assert adapter._wheels_wanted() is wanted
+
+
+@pytest.mark.parametrize('watching', [True, False])
+def test_a_node_counts_before_anything_has_come_from_it_if_anything_is_listened_to(
+        frames, watching, monkeypatch):
+    monkeypatch.setattr('rospy.Subscriber', lambda *_: SimpleNamespace(impl=None))
+    if watching:
+        frames.watch(SimpleNamespace(every=lambda *_: None, post=None))
+    frames.expect({'/rsp'})
+    assert frames.nodes == ({'/rsp'} if watching else frozenset())
+    assert frames.parents == {}
+    frames.keep(set())
+    assert frames.nodes == frozenset()

@@ -50,10 +50,15 @@ def once_there(ask: Callable[[], Answer]) -> Answer:
     raise rospy.ROSInterruptException('the node is shutting down')
 
 
-def subscribers(topic: str) -> set[str]:
-    """Return the names of the nodes that read a topic, by the master; wait while it is away."""
-    _, readers, _ = once_there(lambda: rosgraph.Master(rospy.get_name()).getSystemState())
-    return {node for name, nodes in readers if name == topic for node in nodes}
+def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
+    """Return the names of the nodes that read a topic, by the master; wait while it is away.
+
+    Args:
+        publishing: another topic; those who publish it are returned as well, in a set of their own.
+    """
+    state = once_there(lambda: rosgraph.Master(rospy.get_name()).getSystemState())
+    return tuple({node for name, nodes in part if name == wanted for node in nodes}
+                 for part, wanted in ((state[1], topic), (state[0], publishing)))
 
 
 def write_parameters(values: Mapping[str, object]) -> None:

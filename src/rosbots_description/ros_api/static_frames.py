@@ -20,6 +20,7 @@ from ..sim.readings import FrameTransform
 from .conversions import read_transform
 from .loop import Loop
 
+TOPIC = '/tf_static'
 PERIOD = 0.5  # time between two looks whether who published is still there [s, wall]
 
 Parents = Mapping[str, tuple[str, Pose]]  # by frame: its parent, and where it stands in that
@@ -33,13 +34,15 @@ class StaticFrames:
 
     def __init__(self) -> None:
         self._by_node: dict[str, dict[str, tuple[str, Pose]]] = {}
+        self._watching = False
         self.parents: Parents = {}
         self.nodes: frozenset[str] = frozenset()  # names of those that publish here
 
     def watch(self, loop: Loop) -> None:
         """Listen from now on."""
+        self._watching = True
         subscriber = rospy.Subscriber(
-            '/tf_static', TFMessage, lambda message: loop.post(lambda: self._take(message))
+            TOPIC, TFMessage, lambda message: loop.post(lambda: self._take(message))
         )
 
         def look() -> None:
@@ -64,6 +67,16 @@ class StaticFrames:
             held[child.lstrip('/')] = parent.lstrip('/'), pose
         self._by_node[node] = held
         self._merge()
+
+    def expect(self, nodes: set[str]) -> None:
+        """Count on nodes from which nothing has come yet, though the master knows of them.
+
+        Nobody counts as long as nothing is listened to.
+        """
+        if self._watching:
+            for node in nodes:
+                self._by_node.setdefault(node, {})
+            self._merge()
 
     def keep(self, nodes: set[str]) -> None:
         """Forget what was published by any other node than these: it has gone."""

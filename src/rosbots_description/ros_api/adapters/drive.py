@@ -30,6 +30,7 @@ from ..master import subscribers
 from ..names import find_tf_prefix, frame_name, topic_name
 from ..sending import has_readers, next_number, publish_serialized, reader_names
 from ..server import Server
+from ..static_frames import TOPIC as STATIC_FRAMES
 from ..static_frames import from_root
 from .registry import Adapter
 
@@ -170,7 +171,11 @@ class WheeledDriveAdapter(DriveAdapter):
     def open_states(self) -> None:
         """Advertise joint_states, if they are wanted."""
         if self.plugin.config.publish_wheel_joint_state:
-            self._followers = subscribers(rospy.resolve_name(self._joint_states_topic))
+            states, server = rospy.resolve_name(self._joint_states_topic), self.server
+            self._followers, holding = subscribers(states, STATIC_FRAMES)
+            # What they hold may be on its way, and the first wheels would be told twice.
+            expected = (holding & self._followers) - {rospy.get_name()}
+            server.loop.post(lambda: server.static_frames.expect(expected))
             self._joint_states = self.advertise(self._joint_states_topic, JointState, 1000)
             logger.debug('%sAdvertise joint_states', self.plugin.log_prefix)
 
