@@ -10,6 +10,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import debian_rviz
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
@@ -75,14 +76,20 @@ class FramesTest(unittest.TestCase):
         if own:
             words = [os.path.join(self._folder, 'rviz.launch')]
             Path(words[0]).write_text(ARTICLE)
-        terminal = self.open('roslaunch', *words)
-        wait_until(lambda: self._looks('/rviz'), 'RViz reading TF', STEP)
-        return terminal
+        for _ in range(debian_rviz.STARTS):
+            terminal = self.open('roslaunch', *words)
+            wait_until(lambda: self._looks('/rviz') or debian_rviz.CRASH.search(terminal.shown()),  # noqa: B023
+                       'RViz reading TF', STEP)
+            if not debian_rviz.CRASH.search(terminal.shown()):
+                return terminal
+            self.end(terminal)
+        raise AssertionError(terminal.shown())
 
     @staticmethod
     def _looks(node):
-        _, readers, _ = rospy.get_master().getSystemState()[2]
-        return any(topic == '/tf' and node in nodes for topic, nodes in readers)
+        _, readers, services = rospy.get_master().getSystemState()[2]
+        return any(topic == '/tf' and node in nodes for topic, nodes in readers) \
+            and any(service == debian_rviz.STANDS for service, _ in services)
 
     def simulator(self):
         terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch')

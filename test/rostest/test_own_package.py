@@ -13,6 +13,7 @@ import unittest
 from contextlib import contextmanager
 from pathlib import Path
 
+import debian_rviz
 import readme
 import rostest
 from simulator import BOX, wait_until
@@ -28,8 +29,6 @@ MOST_LINES = 39  # that a terminal may show from its start to Ctrl-C, but for bl
 # however long the walk takes on a busy machine.
 AGAIN = re.compile(r'Received JointState is .* seconds old')
 RED = '\x1b[31m'
-RVIZ_STARTS = 4  # that may be needed for one that lives
-RVIZ_CRASH = re.compile(r'REQUIRED process \[rviz-\d+\] has died!\s+.* exit code -(6|11),')
 MOVED = 0.05  # [m]
 SPAWNED = 'Spawn status: SpawnModel: Successfully spawned entity'
 ONCE, EACH_TERMINAL, LINK_OURS, ANY_ROBOT = readme.code_blocks('In your own catkin workspace')
@@ -206,24 +205,21 @@ class OwnPackageTest(unittest.TestCase):
         self.assertIn(SPAWNED, type_sourced(ANY_ROBOT.splitlines()[1]))
         self.assertTrue(walk.runs(view), walk.shown[view])
 
-    def _open_rviz(self, walk, starts=RVIZ_STARTS):
-        """Show their robot in RViz; open it again if it crashed before its window stood.
-
-        Debian's RViz 1.14 now and then overwrites its own heap while it opens its window with
-        software rendering, also where only Debian's programs run; ours do not run yet here.
-        """
+    def _open_rviz(self, walk, starts=debian_rviz.STARTS):
+        """Show their robot in RViz, before any program of ours runs."""
         view = walk.open(STEPS[2][1])
         walk.wait(lambda: self._rviz_stands() or not walk.runs(view), 'RViz')
         if walk.runs(view):
             return view
-        walk.wait(lambda: RVIZ_CRASH.search(walk.shown[view]), f'a crash in {walk.shown[view]}')
+        walk.wait(lambda: debian_rviz.CRASH.search(walk.shown[view]),
+                  f'a crash in {walk.shown[view]}')
         self.assertGreater(starts, 1, walk.shown[view])
         walk.close(view)
         return self._open_rviz(walk, starts - 1)
 
     def _rviz_stands(self):
         """Tell whether RViz answers to the first service that it opens after its window."""
-        answer = self.reader.type_sourced('rosservice type /rviz/reload_shaders 2>&1 || true')
+        answer = self.reader.type_sourced(f'rosservice type {debian_rviz.STANDS} 2>&1 || true')
         return answer.startswith('std_srvs/')
 
     def _x(self):

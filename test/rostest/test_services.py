@@ -67,7 +67,7 @@ class ServicesTest(SimulatorTest):
         response = self.model_state('box', '')
         self._assert_outcome(response, True, 'GetModelState: got properties')
         self.assertEqual(response.pose.position.y, 2.0)
-        self.assertEqual(response.header.stamp.to_sec(), self.world().sim_time)
+        self.assertAlmostEqual(response.header.stamp.to_sec(), self.world().sim_time, places=9)
         self.assertEqual(response.header.frame_id, '')
         # Each model's look-ups are counted by themselves, and only those that find it.
         self.model_state(GROUND, '')
