@@ -7,5 +7,5 @@ where only Debian's programs run. So it is started again if it crashed before it
 import re
 
 STARTS = 4  # at most
-CRASH = re.compile(r'rviz-\d+\] has died!?\s.*exit code -(6|11),', re.S)
+CRASH = re.compile(r'rviz-\d+\] (process )?has died.*?exit code -(6|11),', re.S)
 STANDS = '/rviz/reload_shaders'  # the first service that it opens after its window

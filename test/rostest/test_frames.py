@@ -14,6 +14,7 @@ import debian_rviz
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from rosnode import rosnode_ping
 from simulator import wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
@@ -89,7 +90,8 @@ class FramesTest(unittest.TestCase):
     def _looks(node):
         _, readers, services = rospy.get_master().getSystemState()[2]
         return any(topic == '/tf' and node in nodes for topic, nodes in readers) \
-            and any(service == debian_rviz.STANDS for service, _ in services)
+            and any(service == debian_rviz.STANDS for service, _ in services) \
+            and rosnode_ping(node, max_count=1, skip_cache=True)  # else one that has crashed
 
     def simulator(self):
         terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch')
