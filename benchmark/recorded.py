@@ -45,7 +45,7 @@ class Recorder(Hook):
         self._record = Record([], [])
         self._schedule = os.open('/proc/thread-self/schedstat', os.O_RDONLY)
 
-    def update(self) -> None:
+    def before_step(self) -> None:
         """Note when the step begins, and come again at the next one."""
         waited = int(os.pread(self._schedule, 100, 0).split()[1]) / NANOSECONDS
         self._record.steps.append((time.monotonic(), waited))

@@ -1,7 +1,6 @@
 """Whatever comes by a topic, nobody else notices, and the next good message counts."""
 
 import math
-from types import SimpleNamespace
 
 import pytest
 from gazebo_msgs.msg import LinkState, ModelState
@@ -12,10 +11,9 @@ from support.bench import BYSTANDER, NAMES, PLACE, Bench, furnished_world
 from support.invariants import numbers_in
 from support.isolation import isolated
 from support.requests import messages
+from support.wire import Wire
 
 from rosbots_description.ros_api import state_commands
-from rosbots_description.ros_api.adapters import drive as drive_adapter
-from rosbots_description.ros_api.adapters import drives, registry
 from rosbots_description.sim.guard import PERIOD
 
 NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood
@@ -36,24 +34,12 @@ def bench():
 @pytest.fixture
 def listeners(bench, monkeypatch):
     """Return what is called with the messages of a topic, by the last part of its name."""
-    heard = {}
-
-    def subscribe(name, _message_class, callback, **_options):
-        heard[name.rpartition('/')[2].lstrip('~')] = callback
-        return SimpleNamespace(unregister=lambda: None)
-
-    wire = SimpleNamespace(
-        Subscriber=subscribe,
-        Publisher=lambda *_, **__: SimpleNamespace(get_num_connections=lambda: 0),
-        resolve_name=str,
-    )
+    wire = Wire(monkeypatch)
     monkeypatch.setattr(state_commands, 'rospy', wire)
-    monkeypatch.setattr(registry, 'rospy', wire)
-    monkeypatch.setattr(drive_adapter, 'find_tf_prefix', lambda _: '')
-    monkeypatch.setattr(drive_adapter, 'subscribers', lambda *_: (set(), set()))
     state_commands.subscribe_states(bench.server)
     (drive,) = bench.world.models['rosbots'].plugins
-    drives.DiffDriveAdapter(bench.server, drive).open()
+    wire.join(drive)
+    heard = {name.rpartition('/')[2].lstrip('~'): take for name, take in wire.subscribers.items()}
     assert sorted(heard) == sorted(KINDS)
     return heard
 

@@ -21,10 +21,10 @@ class DeadReckoning(Hook):
         self._ways = self._read()
         self.due = world.clock.steps + 1
 
-    def update(self):
+    def before_step(self):
         before, self._ways = self._ways, self._read()
         left, right = (now - then for now, then in zip(self._ways, before, strict=True))
-        turn = (right - left) / self._plugin.config.wheel_separation
+        turn = (right - left) / self._plugin.wheel_separation
         forward, heading = (left + right) / 2.0, self.yaw + turn / 2.0
         self.x += forward * math.cos(heading)
         self.y += forward * math.sin(heading)
@@ -32,7 +32,7 @@ class DeadReckoning(Hook):
         self.due = self._world.clock.steps + 1
 
     def _read(self):
-        radius = self._plugin.config.wheel_diameter / 2.0
+        radius = self._plugin.wheel_diameter / 2.0
         return [wheel.position * radius for wheel in self._plugin.wheels]
 
 
@@ -52,11 +52,11 @@ def test_encoder_odometry_is_what_the_wheels_did(command):
         def compare(odometry):
             (x, y, _), orientation = odometry.pose
             # The plugin comes first in a step, so what was reckoned is one step behind.
-            reckoned.update()
+            reckoned.before_step()
             turned = math.remainder(yaw_of(orientation) - reckoned.yaw, 2.0 * math.pi)
             apart.append(max(abs(x - reckoned.x), abs(y - reckoned.y), abs(turned)))
 
-        plugin.odometry.connect(compare, lambda: True)
+        plugin.odometry.connect(compare)
         plugin.command(*command)
         world.run(4000)
         assert len(apart) == 399

@@ -279,7 +279,7 @@ def test_a_robot_that_turned_and_is_told_to_stand_is_at_rest_at_once(spec, turni
         world.run(3210)
         command(model, 0.0, 0.0)
         plugin = model.plugins[0]
-        ramp = abs(turning) * plugin.config.wheel_separation / 2.0  # at 1 m/s^2
+        ramp = abs(turning) * plugin.wheel_separation / 2.0  # at 1 m/s^2
         world.run(round(1000 * ramp) + 500)
         for _ in range(100):
             world.run(7)
@@ -393,9 +393,8 @@ def test_one_wheel_has_one_angle(spec, driven):
         model = placed(world, spec)
         drive = model.plugins[0]
         told = {}
-        for port in (drive.joint_states, drive.wheel_transform, drive.odometry):
-            port.connect(lambda reading: told.setdefault(type(reading), []).append(reading),
-                         lambda: True)
+        for output in (drive.joint_states, drive.wheel_transform, drive.odometry):
+            output.connect(lambda reading: told.setdefault(type(reading), []).append(reading))
         start = [wheel.position for wheel in drive.wheels]
         drive.reset()
         command(model, *driven)
@@ -406,8 +405,8 @@ def test_one_wheel_has_one_angle(spec, driven):
         for transform, angle in zip(told[FrameTransform][-2:], (left, right), strict=True):
             apart = math.remainder(angle_told_by(transform) - angle, math.tau)
             assert abs(apart) < 1e-9
-        ways = [(now - then) * drive.config.wheel_diameter / 2.0
+        ways = [(now - then) * drive.wheel_diameter / 2.0
                 for now, then in zip((left, right), start, strict=True)]
-        turn = (ways[1] - ways[0]) / drive.config.wheel_separation
+        turn = (ways[1] - ways[0]) / drive.wheel_separation
         yaw = yaw_of(told[Odometry][-1].pose.orientation)
         assert math.remainder(yaw - turn, math.tau) == pytest.approx(0.0, abs=1e-9)

@@ -1,10 +1,7 @@
-"""Drives without an engine: a model of joints that obey at once, or as told."""
+"""Plugins on robots without physics: a real world and model over a fake engine."""
 
 import math
-from types import SimpleNamespace
 
-from rosbots_description.sim.clock import SimClock
-from rosbots_description.sim.errors import NotFoundError
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
 from rosbots_description.sim.pose import Pose, Twist, from_rpy
 from rosbots_description.sim.spec import (
@@ -16,6 +13,9 @@ from rosbots_description.sim.spec import (
     ModelSpec,
     PluginSpec,
 )
+from rosbots_description.sim.world import World
+
+from .fake_engine import FakeEngine
 
 TAGS = {
     'robotNamespace': '/',
@@ -30,98 +30,69 @@ STEP = 0.001  # [s]
 PERIOD_STEPS = 10
 
 
-class Wheel:
-    """A joint that turns at its motor's target from the moment it is told."""
-
-    def __init__(self, name, model):
-        self.name, self.model = name, model
-        self.spec = JointSpec(name, 'revolute', 'base', f'{name}_link')
-        self.position, self.velocity, self.effort = 0.0, 0.0, 0.0
-
-    def set_motor(self, velocity, effort):
-        self.velocity, self.effort = velocity, effort
-
-    def set_position(self, position):
-        self.position, self.velocity = position, 0.0
-
-    def state(self):
-        return self.position, self.velocity
+def fake_model(wheel_collisions=(), names=('left', 'right')):
+    """Return a model of wheels in a world of its own; left ones are at y = 0.4 m."""
+    side = from_rpy(-math.pi / 2, 0.0, 0.0)
+    links = [
+        LinkSpec(f'{name}_link', Pose((0.1, -0.4 if 'right' in name else 0.4, 0.2), side),
+                 collisions=wheel_collisions)
+        for name in names
+    ]
+    joints = tuple(JointSpec(name, 'revolute', 'base', f'{name}_link') for name in names)
+    world = World(make_engine=FakeEngine)
+    model = world.spawn(ModelSpec('robot', (LinkSpec('base'), *links), joints), 'robot', Pose())
+    model.world = world
+    return model
 
 
-class FakeModel:
-    """A model with wheels and a pose that a test can set."""
-
-    def __init__(self, wheel_collisions=(), names=('left', 'right')):
-        self.name = 'robot'
-        self.wheels = {name: Wheel(name, self) for name in names}
-        self.now = (Pose(), Twist())
-        y = {name: -0.4 if 'right' in name else 0.4 for name in names}
-        side = from_rpy(-math.pi / 2, 0.0, 0.0)
-        wheel_links = [
-            LinkSpec(f'{name}_link', Pose((0.0, y[name], 0.2), side), collisions=wheel_collisions)
-            for name in y
-        ]
-        self.spec = ModelSpec('robot', (LinkSpec('base'), *wheel_links))
-        self.links = {
-            link.name: SimpleNamespace(pose=Pose((0.1, *link.pose.position[1:])))
-            for link in self.spec.links
-        }
-
-    def state(self):
-        return self.now
-
-    @property
-    def pose(self):
-        return self.now[0]
-
-    def set_twist(self, twist):
-        self.now = (self.pose, twist)
-
-    def joint(self, name):
-        if name not in self.wheels:
-            known = ', '.join(self.wheels)
-            raise NotFoundError(f"model 'robot' has no joint '{name}'; its joints: {known}")
-        return self.wheels[name]
+def load_plugin(plugin_class, model, element):
+    """Return a plugin of that model, loaded with the tags of an element."""
+    spec = PluginSpec('drive', 'libgazebo_ros_drive.so', element)
+    plugin = plugin_class(model.world, model, spec)
+    plugin.start()
+    model.plugins.append(plugin)
+    model.world.schedule.add(plugin)
+    return plugin
 
 
 def make(wheel_collisions=(), **tags):
     """Return a loaded diff drive with these tags beside TAGS; one that is None is left out."""
-    return make_drive(DiffDrive, FakeModel(wheel_collisions), **(TAGS | tags))
+    return make_drive(DiffDrive, fake_model(wheel_collisions), **(TAGS | tags))
 
 
 def make_drive(plugin_class, model, **tags):
     """Return a loaded plugin of that model with these tags; one that is None is left out."""
     children = tuple(Element(tag, text) for tag, text in tags.items() if text is not None)
-    spec = PluginSpec('drive', 'libgazebo_ros_drive.so', Element('plugin', children=children))
-    plugin = plugin_class(SimpleNamespace(clock=SimClock(STEP)), model, spec)
-    plugin.load()
-    return plugin
+    return load_plugin(plugin_class, model, Element('plugin', children=children))
 
 
 def run(plugin, steps):
-    """Advance like the world does: time, the hook if it is due, physics, its report."""
-    clock = plugin.world.clock
-    for _ in range(steps):
-        clock.steps += 1
-        due = plugin.due <= clock.steps
-        if due:
-            plugin.update()
-        for wheel in plugin.model.wheels.values():
-            wheel.position += wheel.velocity * STEP
-        if due:
-            plugin.observe()
+    """Advance the plugin's world."""
+    plugin.world.run(steps)
+
+
+def place(plugin, pose, twist=None):
+    """Let the plugin's model be somewhere, moving so."""
+    plugin.model.set_pose(pose)
+    plugin.model.set_twist(twist or Twist())
+
+
+def turn(plugin, **speeds):
+    """Let joints turn at speeds [rad/s], whatever their motors are told."""
+    for joint, speed in speeds.items():
+        plugin.model.body.state[joint][1] = speed
 
 
 def rim_speeds(plugin):
     """Return what the joints make of the rims, left and right [m/s]."""
-    wheels = plugin.model.wheels
-    return tuple(wheels[side].velocity * plugin.config.wheel_diameter / 2 for side in wheels)
+    return tuple(joint.velocity * plugin.wheel_diameter / 2
+                 for joint in plugin.model.joints.values())
 
 
-def collect(port):
-    """Return a list that gets what the port sends."""
+def collect(output):
+    """Return a list that gets what the output gives out."""
     readings = []
-    port.connect(readings.append, lambda: True)
+    output.connect(readings.append)
     return readings
 
 

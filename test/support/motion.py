@@ -85,7 +85,7 @@ def drive(
             newest[:] = reading.pose, (reading.twist.linear[0], reading.twist.angular[2])
 
         if model.plugins:
-            model.plugins[0].odometry.connect(remember, lambda: True)
+            model.plugins[0].odometry.connect(remember)
         world.run(one.settled)
         odometry_start = newest[0]
         start, yaw, samples, waiting = None, 0.0, [], list(commands)

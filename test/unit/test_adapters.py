@@ -4,13 +4,23 @@ from types import SimpleNamespace
 
 import pytest
 import rospy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import TransformStamped, Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from support.fake_drive import make
+from sensor_msgs.msg import Range
+from std_msgs.msg import Float64
+from support.fake_drive import fake_model, make, make_drive, run
+from support.wire import Wire
+from tf2_msgs.msg import TFMessage
 
-from rosbots_description.ros_api.adapters.drives import DiffDriveAdapter
-from rosbots_description.ros_api.adapters.registry import Adapters
+from rosbots_description.ros_api.adapters import adapter as adapter_module
+from rosbots_description.ros_api.adapters import registry
+from rosbots_description.ros_api.adapters.adapter import Adapter
+from rosbots_description.ros_api.adapters.declarations import Offers, Publishes
+from rosbots_description.ros_api.adapters.registry import Adapters, topics_of
+from rosbots_description.ros_api.static_frames import StaticFrames
+from rosbots_description.sim.plugins.base import PeriodicPlugin
+from rosbots_description.sim.plugins.diff_drive import DiffDrive
 
 
 def _model(plugin):
@@ -20,12 +30,13 @@ def _model(plugin):
 @pytest.fixture
 def server():
     jobs = []
-    return SimpleNamespace(registrar=SimpleNamespace(post=jobs.append), jobs=jobs)
+    return SimpleNamespace(registrar=SimpleNamespace(post=jobs.append), jobs=jobs,
+                           static_frames=StaticFrames())
 
 
 @pytest.fixture
 def adapter(server):
-    made = DiffDriveAdapter(server, make())
+    made = Adapter(server, make(), topics_of(DiffDrive))
     yield made
     made.close()
 
@@ -64,3 +75,93 @@ def test_messages_of_another_type_never_come_as_commands(adapter, caplog):
     assert adapter.subscribe('/commands', Twist, pytest.fail, 1) is None
     assert 'this node has it as rosgraph_msgs/Clock' in caplog.text
     there.unregister()
+
+
+class Sonar(PeriodicPlugin):
+    """Measures 0.5 m at 100 Hz, and nothing else unless it is asked for."""
+
+    def load(self):
+        self.params.read('frameName', 'sonar')
+        self.set_rate(100.0)
+        self.range, self.raw = self.output('range'), self.output('raw', asked_for=False)
+
+    def report(self):
+        self.range.send(0.5)
+
+
+@pytest.fixture
+def sonar(monkeypatch):
+    closed = []
+    monkeypatch.setattr(registry, '_TOPICS', {Sonar: (
+        Publishes('range', 'range', Range, convert=lambda reading: Range(range=reading),
+                  frame='<frameName>', queue=3, latch=True),
+        Publishes('raw', '<frameName>/raw', Float64, convert=Float64),
+        Offers('calibrate', lambda _adapter, name: lambda: closed.append(name)),
+    )})
+    wire = Wire(monkeypatch)
+    monkeypatch.setattr(adapter_module, 'find_tf_prefix', lambda _: 'r1')
+    plugin = make_drive(Sonar, fake_model(), robotNamespace='front')
+    return plugin, wire, wire.join(plugin), closed
+
+
+def test_a_topic_has_its_header_queue_and_latch_and_none_is_there_unasked_for(sonar):
+    plugin, wire, _, _ = sonar
+    assert list(wire.publishers) == ['/front/range']
+    topic = wire.publishers['/front/range']
+    assert topic.options == {'queue_size': 3, 'latch': True}
+    topic.read()
+    run(plugin, 12)
+    (message,) = topic.sent
+    assert message.range == 0.5
+    assert message.header.frame_id == 'r1/sonar'
+    assert message.header.stamp.to_nsec() == 11_000_000
+
+
+def test_an_output_has_a_reader_while_its_topic_has_one(sonar):
+    plugin, wire, adapter, _ = sonar
+    topic = wire.publishers['/front/range']
+    for _ in range(2):
+        assert not plugin.range.wanted
+        topic.read()
+        assert plugin.range.wanted
+        topic.leave()
+    topic.read()
+    adapter.disconnect()
+    assert not plugin.range.wanted
+    topic.read('/another')  # too late
+    assert not plugin.range.wanted
+
+
+def test_what_was_opened_is_closed(sonar):
+    _, wire, adapter, closed = sonar
+    assert not closed
+    adapter.close()
+    assert closed == ['/front/calibrate']
+    assert wire.publishers['/front/range'].impl is None
+
+
+def test_who_goes_is_not_told_of_readers_of_a_topic_that_others_go_on_with(server):
+    watched = [Adapter(server, make()) for _ in range(2)]
+    publishers = [one.advertise('/shared', Clock, 1) for one in watched]
+    listeners = publishers[0].impl.subscriber_listeners
+    assert len(listeners) == 2
+    watched[0].close()
+    assert publishers[1].impl.subscriber_listeners == listeners[1:]
+    watched[1].close()
+
+
+def test_transforms_of_the_robot_move_what_others_hold_by_its_root(monkeypatch):
+    wire = Wire(monkeypatch)
+    plugin = make()
+    adapter = wire.join(plugin)
+    monkeypatch.setattr(adapter_module, 'find_tf_prefix', lambda _: 'never asked for again')
+    wire.publishers['/tf'].read()
+    run(plugin, 11)
+    held = TransformStamped(child_frame_id='base_footprint')
+    held.header.frame_id = 'root'
+    held.transform.rotation.w = 1.0
+    adapter.server.static_frames.add('/rsp', TFMessage([held]))
+    run(plugin, 10)
+    edges = [edge for message in wire.publishers['/tf'].sent for edge in message.transforms]
+    assert [(edge.header.frame_id, edge.child_frame_id) for edge in edges] == [
+        ('odom', 'base_footprint'), ('odom', 'root')]

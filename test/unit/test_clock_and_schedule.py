@@ -51,7 +51,7 @@ class Every(Hook):
         self.period, self.log, self.name = period, log, name
         self.due = period
 
-    def update(self):
+    def before_step(self):
         self.log.append((self.due, self.name))
         self.due += self.period
 
@@ -93,23 +93,23 @@ class Broken(Hook):
     due = 1
     runs = 0
 
-    def update(self):
+    def before_step(self):
         self.runs += 1
         raise RuntimeError('out of order')
 
 
-def test_a_hook_reports_after_the_physics_of_the_step_in_which_it_was_due():
+def test_a_hook_runs_before_and_after_the_physics_of_the_step_in_which_it_is_due():
     log, schedule = [], Schedule()
 
     class Reporter(Every):
-        def observe(self):
-            log.append('observe')
+        def after_step(self):
+            log.append('after')
 
     schedule.add(Reporter(2, log, 'update'))
     for step in (1, 2, 3):
         schedule.run(step, lambda: log.append('physics'))
-    assert [entry if isinstance(entry, str) else 'update' for entry in log] == [
-        'physics', 'update', 'physics', 'observe', 'physics']
+    assert [entry if isinstance(entry, str) else 'before' for entry in log] == [
+        'physics', 'before', 'physics', 'after', 'physics']
 
 
 def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):

@@ -4,7 +4,17 @@ import logging
 import math
 
 import pytest
-from support.fake_drive import PERIOD_STEPS, STEP, collect, make, rim_speeds, run, wheel_of
+from support.fake_drive import (
+    PERIOD_STEPS,
+    STEP,
+    collect,
+    make,
+    place,
+    rim_speeds,
+    run,
+    turn,
+    wheel_of,
+)
 
 from rosbots_description.sim.errors import PluginError
 from rosbots_description.sim.pose import Pose, Twist, from_rpy
@@ -14,7 +24,7 @@ from rosbots_description.sim.readings import JointStates
 def test_the_first_update_comes_one_step_late_and_the_mean_rate_is_exact():
     plugin = make()
     clock, times = plugin.world.clock, []
-    plugin.odometry.connect(lambda _: times.append(clock.steps), lambda: True)
+    plugin.odometry.connect(lambda _: times.append(clock.steps))
     run(plugin, 100)
     assert times == [11, 21, 31, 41, 51, 61, 71, 81, 91]
 
@@ -58,16 +68,15 @@ def test_the_setpoint_is_not_synchronised_with_the_wheels():
     plugin = make()
     plugin.command(0.5, 0.0)
     run(plugin, PERIOD_STEPS * 5 + 1)
-    for wheel in plugin.model.wheels.values():
-        wheel.velocity = 0.0  # something blocks the wheels
+    turn(plugin, left=0.0, right=0.0)  # something blocks the wheels
     run(plugin, PERIOD_STEPS)
     assert rim_speeds(plugin) == pytest.approx((6 * 0.011,) * 2)
 
 
 def test_the_torque_limit_is_wheel_torque():
     plugin = make(wheelTorque='2.5')
-    assert plugin.model.wheels['left'].effort == 2.5
-    assert make(torque='20').model.wheels['left'].effort == 5.0
+    assert plugin.model.joints['left'].effort == 2.5
+    assert make(torque='20').model.joints['left'].effort == 5.0
 
 
 def test_the_last_command_holds_without_end():
@@ -92,7 +101,7 @@ def test_world_odometry_is_the_pose_of_the_model_and_its_twist_turned_into_the_b
     plugin = make()
     odometry = collect(plugin.odometry)
     pose = Pose((1.0, 2.0, -0.12), from_rpy(0.0, 0.0, math.pi / 2))
-    plugin.model.now = (pose, Twist((0.0, 0.3, 0.1), (0.5, 0.6, 0.7)))
+    place(plugin, pose, Twist((0.0, 0.3, 0.1), (0.5, 0.6, 0.7)))
     run(plugin, PERIOD_STEPS + 1)
     assert odometry[0].pose == pose
     assert odometry[0].twist.linear == pytest.approx((0.3, 0.0, 0.0))
@@ -138,7 +147,7 @@ def test_encoder_speed_is_positive_also_when_driving_backwards():
 def test_joint_states_are_right_then_left():
     plugin = make(publishWheelJointState='true')
     states = collect(plugin.joint_states)
-    plugin.model.wheels['left'].position = 1.5
+    plugin.model.joints['left'].set_position(1.5)
     run(plugin, PERIOD_STEPS + 1)
     assert states == [JointStates(('right', 'left'), (0.0, 1.5))]
 
@@ -146,36 +155,35 @@ def test_joint_states_are_right_then_left():
 def test_wheel_transforms_are_relative_to_the_model_whatever_the_parent():
     plugin = make(publishWheelTF='true')
     transforms = collect(plugin.wheel_transform)
-    plugin.model.now = (Pose((1.0, 0.0, 0.0)), Twist())
+    place(plugin, Pose((1.0, 0.0, 0.0)))
     run(plugin, PERIOD_STEPS + 1)
     assert [(t.parent, t.child) for t in transforms] == [
         ('base', 'left_link'),
         ('base', 'right_link'),
     ]
-    assert transforms[0].pose.position == pytest.approx((-0.9, 0.4, 0.2))
+    assert transforms[0].pose.position == pytest.approx((0.1, 0.4, 0.2))
 
 
 @pytest.mark.parametrize(
-    ('tag', 'port'),
+    ('tag', 'gone'),
     [
-        ('publishTf', 'odometry'),
-        ('publishWheelTF', 'wheel_transform'),
-        ('publishWheelJointState', 'joint_states'),
+        ('publishTf', {'odometry', 'odometry_transform'}),
+        ('publishOdomTF', {'odometry_transform'}),
+        ('publishWheelTF', {'wheel_transform'}),
+        ('publishWheelJointState', {'joint_states'}),
     ],
 )
-def test_what_is_switched_off_is_not_sent(tag, port):
-    plugin = make(**{tag: 'false'})
-    readings = collect(getattr(plugin, port))
-    run(plugin, 50)
-    assert readings == []
+def test_what_is_switched_off_is_no_output(tag, gone):
+    tags = dict.fromkeys(('publishWheelTF', 'publishWheelJointState'), 'true')
+    assert make(**tags).outputs.keys() - make(**(tags | {tag: 'false'})).outputs.keys() == gone
 
 
 def test_the_model_is_asked_once_for_all_that_is_published():
     plugin = make(publishWheelTF='true', publishWheelJointState='true')
-    for port in (plugin.odometry, plugin.wheel_transform, plugin.joint_states):
-        collect(port)
-    model, looks = plugin.model, []
-    model.state = lambda: looks.append(1) or model.now
+    for output in plugin.outputs.values():
+        collect(output)
+    model, looks, state = plugin.model, [], plugin.model.state
+    model.state = lambda: looks.append(1) or state()
     run(plugin, PERIOD_STEPS + 1)
     assert looks == [1]
 
@@ -223,7 +231,7 @@ def test_a_separation_that_makes_no_sense_is_refused(text):
 
 
 def test_a_boolean_that_is_none_keeps_the_default_and_says_so(caplog):
-    assert make(publishOdomTF='maybe').config.publish_odom_tf is True
+    assert make(publishOdomTF='maybe').outputs['odometry_transform']
     assert "<publishOdomTF> is 'maybe'" in caplog.text
 
 

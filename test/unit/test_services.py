@@ -7,7 +7,7 @@ from gazebo_msgs.srv import DeleteModel, DeleteModelResponse
 from std_srvs.srv import Empty
 
 from rosbots_description.ros_api import adapters, services  # noqa: F401  both register
-from rosbots_description.ros_api.adapters.registry import Adapter, adapter_class
+from rosbots_description.ros_api.adapters.registry import topics_of
 from rosbots_description.ros_api.services.models import relative_state
 from rosbots_description.ros_api.services.registry import (
     SERVICES,
@@ -85,8 +85,8 @@ def test_a_service_is_answered_by_one_function():
 
 
 @pytest.mark.parametrize('filename', known_filenames())
-def test_every_plugin_has_an_adapter(filename):
-    assert issubclass(adapter_class(plugin_class(filename)), Adapter)
+def test_every_plugin_has_its_topics(filename):
+    assert topics_of(plugin_class(filename))
 
 
 def test_relative_velocity_is_turned_but_has_no_share_of_the_frames_rotation():

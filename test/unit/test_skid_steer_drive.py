@@ -1,7 +1,7 @@
 """The skid steer drive's tags, timing, wheels and odometry, with joints that obey at once."""
 
 import pytest
-from support.fake_drive import FakeModel, collect, make_drive, run
+from support.fake_drive import collect, fake_model, make_drive, place, run
 
 from rosbots_description.sim.errors import PluginError
 from rosbots_description.sim.plugins.skid_steer_drive import SkidSteerDrive
@@ -11,21 +11,21 @@ JOINTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_rea
 
 
 def make(joints=JOINTS, **tags):
-    return make_drive(SkidSteerDrive, FakeModel(names=joints), **tags)
+    return make_drive(SkidSteerDrive, fake_model(names=joints), **tags)
 
 
 def speeds(plugin):
-    return [wheel.velocity for wheel in plugin.model.wheels.values()]
+    return [joint.velocity for joint in plugin.model.joints.values()]
 
 
 def test_all_tags_have_upstreams_defaults_and_its_warnings(caplog):
     plugin = make()
-    config = plugin.config
-    assert config.joints == JOINTS
-    assert (config.wheel_separation, config.wheel_diameter, config.torque) == (0.4, 0.15, 5.0)
-    assert (config.command_topic, config.odometry_topic) == ('cmd_vel', 'odom')
-    assert (config.odometry_frame, config.robot_base_frame) == ('odom', 'base_footprint')
-    assert (config.update_rate, config.broadcast_tf, plugin.namespace) == (100.0, False, '')
+    assert tuple(wheel.name for wheel in plugin.wheels) == JOINTS
+    assert (plugin.wheel_separation, plugin.wheel_diameter, plugin.torque) == (0.4, 0.15, 5.0)
+    values = plugin.params.values
+    assert (values['commandTopic'], values['odometryTopic']) == ('cmd_vel', 'odom')
+    assert (values['odometryFrame'], values['robotBaseFrame']) == ('odom', 'base_footprint')
+    assert (values['updateRate'], values['broadcastTF'], plugin.namespace) == (100.0, False, '')
     assert plugin.pose_variances == plugin.twist_variances == (1e-4, 1e-4, 1e12, 1e12, 1e12, 0.01)
     prefix = 'GazeboRosSkidSteerDrive Plugin (ns = /) missing '
     assert f'{prefix}<commandTopic>, defaults to "cmd_vel"' in caplog.messages
@@ -59,20 +59,20 @@ def test_front_and_rear_wheels_turn_alike_and_at_once():
     assert speeds(plugin) == [0.0] * 4
     run(plugin, 1)
     assert speeds(plugin) == pytest.approx([5.0, 15.0] * 2)
-    assert {wheel.effort for wheel in plugin.model.wheels.values()} == {7.0}
+    assert {joint.effort for joint in plugin.model.joints.values()} == {7.0}
 
 
 def test_odometry_comes_one_step_late_and_is_where_the_robot_truly_is():
     plugin = make()
-    odometry = collect(plugin.odometry)
-    place = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.5707963267948966))
-    plugin.model.now = (place, Twist((0.0, 0.5, 0.1), (0.0, 0.0, 0.2)))
+    odometry, edges = collect(plugin.odometry), collect(plugin.odometry_transform)
+    there = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.5707963267948966))
+    place(plugin, there, Twist((0.0, 0.5, 0.1), (0.0, 0.0, 0.2)))
     run(plugin, 31)
-    assert len(odometry) == 3
+    assert len(odometry) == len(edges) == 3
     pose, twist = odometry[-1]
-    assert pose == place  # the message is flat, the transform is not
+    assert pose == Pose((1.0, 2.0, 0.0), there.orientation)  # the transform is not flat
+    assert edges[-1] == ('odom', 'base_footprint', there)
     assert twist.linear == pytest.approx((0.5, 0.0, 0.0))
-    assert plugin.flat_odometry
 
 
 def test_a_reset_leaves_the_command():

@@ -5,11 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 from geometry_msgs.msg import TransformStamped
-from support.fake_drive import make
+from support.fake_drive import make, run
+from support.wire import Wire
 from tf2_msgs.msg import TFMessage
 
-from rosbots_description.ros_api.adapters import drive
-from rosbots_description.ros_api.adapters.drives import DiffDriveAdapter
 from rosbots_description.ros_api.conversions import fill_transform
 from rosbots_description.ros_api.static_frames import StaticFrames, from_root
 from rosbots_description.sim.pose import Pose, compose, from_rpy
@@ -81,14 +80,35 @@ def test_what_is_no_pose_is_left_out(frames):
     ({'/plotter'}, '/camera', True),  # one reads joint states, another holds a camera
 ])
 def test_wheels_are_left_to_who_reads_joint_states_and_holds_frames(
-    frames, monkeypatch, readers, holder, wanted
+    monkeypatch, readers, holder, wanted
 ):
-    monkeypatch.setattr(drive, 'has_readers', lambda *_: True)
-    monkeypatch.setattr(drive, 'reader_names', lambda _: readers)
-    adapter = DiffDriveAdapter(SimpleNamespace(static_frames=frames), make())
-    adapter._joint_states = object()
+    wire = Wire(monkeypatch)
+    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
+    frames = wire.join(plugin).server.static_frames
+    wire.publishers['/tf'].read()
+    for node in readers:
+        wire.publishers['/joint_states'].read(node)
+    run(plugin, 20)
+    wheels = wire.publishers['/tf'].sent
+    assert wheels
+    wheels.clear()
     frames.add(holder, message(('base_footprint', 'base_link', HELD)))
-    assert adapter._wheels_wanted() is wanted
+    assert plugin.wheel_transform.wanted is wanted
+    run(plugin, 20)
+    assert bool(wheels) is wanted
+
+
+def test_a_state_publisher_that_has_come_counts_before_anybody_was_told(monkeypatch):
+    wire = Wire(monkeypatch)
+    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
+    frames = wire.join(plugin).server.static_frames
+    wire.publishers['/tf'].read()
+    frames.add('/rsp', message(('base_footprint', 'base_link', HELD)))
+    states = wire.publishers['/joint_states']
+    states.impl.subscriber_listeners.clear()
+    states.read('/rsp')
+    run(plugin, 20)
+    assert not wire.publishers['/tf'].sent
 
 
 @pytest.mark.parametrize('watching', [True, False])

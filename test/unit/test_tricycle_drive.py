@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support.fake_drive import FakeModel, collect, make_drive, run
+from support.fake_drive import collect, fake_model, make_drive, run, turn
 
 from rosbots_description.sim.errors import PluginError
 from rosbots_description.sim.plugins.tricycle_drive import TricycleDrive
@@ -12,18 +12,18 @@ JOINTS = ('front_steering_joint', 'front_wheel_joint', 'left_wheel_joint', 'righ
 
 
 def make(joints=JOINTS, **tags):
-    return make_drive(TricycleDrive, FakeModel(names=joints), **tags)
+    return make_drive(TricycleDrive, fake_model(names=joints), **tags)
 
 
 def test_all_tags_have_upstreams_defaults(caplog):
-    config = make(wheelAcceleration='2.5').config
-    assert (config.driven_diameter, config.encoder_diameter) == (0.15, 0.15)
-    assert (config.encoder_separation, config.torque) == (0.5, 5.0)
-    assert (config.acceleration, config.deceleration) == (2.5, 2.5)
-    assert (config.speed_tolerance, config.angle_tolerance) == (0.01, 0.01)
-    assert config.steering_speed == 0.0
-    assert (config.odometry_source, config.robot_base_frame) == ('world', 'base_link')
-    assert (config.publish_wheel_tf, config.publish_wheel_joint_state) == (False, False)
+    values = make(wheelAcceleration='2.5').params.values
+    assert (values['actuatedWheelDiameter'], values['encoderWheelDiameter']) == (0.15, 0.15)
+    assert (values['encoderWheelSeparation'], values['wheelTorque']) == (0.5, 5.0)
+    assert (values['wheelAcceleration'], values['wheelDeceleration']) == (2.5, 2.5)
+    assert (values['wheelSpeedTolerance'], values['steeringAngleTolerance']) == (0.01, 0.01)
+    assert values['steeringSpeed'] == 0.0
+    assert (values['odometrySource'], values['robotBaseFrame']) == ('world', 'base_link')
+    assert (values['publishWheelTF'], values['publishWheelJointState']) == (False, False)
     assert 'TricycleDrive(ns = robot/): missing <wheelTorque> default is 5' in caplog.messages
 
 
@@ -42,16 +42,16 @@ def test_forward_is_the_speed_of_the_driven_wheels_rim():
     plugin = make(actuatedWheelDiameter='0.5')
     plugin.command(1.0, 0.0)
     run(plugin, 11)
-    assert plugin.model.wheels['front_wheel_joint'].velocity == pytest.approx(4.0)
+    assert plugin.model.joints['front_wheel_joint'].velocity == pytest.approx(4.0)
 
 
 def test_it_speeds_up_by_the_deceleration_and_slows_down_by_the_acceleration():
     plugin = make(wheelAcceleration='1', wheelDeceleration='5', actuatedWheelDiameter='0.2')
-    wheel = plugin.model.wheels['front_wheel_joint']
+    wheel = plugin.model.joints['front_wheel_joint']
     plugin.command(1.0, 0.0)
     run(plugin, 11)
     assert wheel.velocity == pytest.approx(5 * 0.011)
-    wheel.velocity = 9.0
+    turn(plugin, front_wheel_joint=9.0)
     plugin.command(0.0, 0.0)
     run(plugin, 10)
     assert wheel.velocity == pytest.approx(9.0 - 1 * 0.011)
@@ -59,10 +59,10 @@ def test_it_speeds_up_by_the_deceleration_and_slows_down_by_the_acceleration():
 
 def test_a_wheel_within_the_tolerance_goes_on_as_it_does():
     plugin = make(wheelAcceleration='1', wheelSpeedTolerance='0.5', actuatedWheelDiameter='2')
-    plugin.model.wheels['front_wheel_joint'].velocity = 0.6
+    turn(plugin, front_wheel_joint=0.6)
     plugin.command(1.0, 0.0)
     run(plugin, 11)
-    assert plugin.model.wheels['front_wheel_joint'].velocity == 0.6
+    assert plugin.model.joints['front_wheel_joint'].velocity == 0.6
 
 
 @pytest.mark.parametrize(('angle', 'speed'), [(0.3, 0.4), (-0.3, -0.4), (0.01, 0.0)])
@@ -71,21 +71,20 @@ def test_steering_turns_towards_the_angle_at_its_speed(angle, speed, forward):
     plugin = make(steeringSpeed='0.4', steeringAngleTolerance='0.02')
     plugin.command(forward, angle)
     run(plugin, 11)
-    assert plugin.model.wheels['front_steering_joint'].velocity == speed
+    assert plugin.model.joints['front_steering_joint'].velocity == speed
 
 
 def test_steering_without_speed_is_at_its_angle_at_once_and_not_beyond_straight_across():
     plugin = make()
     plugin.command(0.0, 3.0)
     run(plugin, 11)
-    assert plugin.model.wheels['front_steering_joint'].position == pytest.approx(math.pi / 2)
+    assert plugin.model.joints['front_steering_joint'].position == pytest.approx(math.pi / 2)
 
 
 def test_encoder_odometry_turns_the_wrong_way_round_and_has_speeds_in_its_own_frame():
     plugin = make(odometrySource='encoder', encoderWheelDiameter='0.2')
     odometry = collect(plugin.odometry)
-    plugin.model.wheels['left_wheel_joint'].velocity = -5.0
-    plugin.model.wheels['right_wheel_joint'].velocity = -3.0
+    turn(plugin, left_wheel_joint=-5.0, right_wheel_joint=-3.0)
     run(plugin, 1001)
     pose, twist = odometry[-1]
     assert twist.angular[2] == pytest.approx(-(5.0 - 3.0) * 0.1 / 0.5, rel=1e-6)
@@ -98,7 +97,7 @@ def test_encoder_odometry_turns_the_wrong_way_round_and_has_speeds_in_its_own_fr
 def test_joint_states_are_steering_driven_left_right_with_velocities_and_efforts():
     plugin = make(publishWheelJointState='true')
     states = collect(plugin.joint_states)
-    plugin.model.wheels['left_wheel_joint'].velocity = 2.0
+    turn(plugin, left_wheel_joint=2.0)
     run(plugin, 11)
     assert states[0].names == JOINTS
     assert states[0].velocities == (0.0, 0.0, 2.0, 0.0)

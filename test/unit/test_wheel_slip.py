@@ -1,40 +1,22 @@
 """Which tyres slip by how much, and what is left of their friction for it."""
 
 import threading
-from types import SimpleNamespace
 
 import pytest
 from dynamic_reconfigure.encoding import Config
-from support.fake_drive import STEP, FakeModel, wheel_of
+from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_of
 
 from rosbots_description.ros_api import slip_reconfigure
-from rosbots_description.sim.body import Body, FrictionAxes, Place
-from rosbots_description.sim.clock import SimClock
+from rosbots_description.sim.body import FrictionAxes
 from rosbots_description.sim.errors import PluginError
 from rosbots_description.sim.friction_axes import EVENLY
 from rosbots_description.sim.plugins.wheel_slip import WheelSlip
-from rosbots_description.sim.pose import NO_ROTATION, from_rpy
+from rosbots_description.sim.pose import from_rpy
 from rosbots_description.sim.slip import LEAST, Touch, shares
-from rosbots_description.sim.spec import Element, PluginSpec
+from rosbots_description.sim.spec import Element
 
 AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
 LOAD, LIMIT = 10.0, 8.0  # [N]
-
-
-class Model(FakeModel):
-    """Wheels of radius 0.1 m, and an engine that remembers how they were to slip."""
-
-    def __init__(self):
-        super().__init__(wheel_of(0.1))
-        self.joints = self.wheels
-        self.slips = {}
-        self.body = Body()
-        for k, name in enumerate(self.links):
-            self.body.surfaces[name] = [Place(0, k)]
-            self.body.friction_axes[Place(0, k)] = FrictionAxes(NO_ROTATION, EVENLY)
-        self.engine = SimpleNamespace(
-            let_slip=lambda _, link, axle, slips: self.slips.__setitem__(link, slips),
-        )
 
 
 def wheel(name='left_link', **numbers):
@@ -46,11 +28,8 @@ def wheel(name='left_link', **numbers):
 
 def load(*wheels, model=None, namespace=None):
     named = (Element('robotNamespace', namespace),) if namespace is not None else ()
-    spec = PluginSpec('slip', 'libgazebo_ros_wheel_slip.so',
-                      Element('plugin', children=(*named, *wheels)))
-    plugin = WheelSlip(SimpleNamespace(clock=SimClock(STEP)), model or Model(), spec)
-    plugin.load()
-    return plugin
+    element = Element('plugin', children=(*named, *wheels))
+    return load_plugin(WheelSlip, model or fake_model(wheel_of(0.1)), element)
 
 
 def touch(force=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), load=LOAD):
@@ -63,17 +42,19 @@ def held(*touches, slips=(0.01, 0.0)):
 
 def test_slip_grows_with_the_speed_of_the_rim_and_shrinks_with_the_normal_force():
     plugin = load(wheel())
-    plugin.model.wheels['left'].velocity = -4.0
-    plugin.update()
-    assert plugin.model.slips == {'left_link': pytest.approx((0.4 / 50 * 0.5, 0.4 / 50 * 0.25))}
-    assert plugin.due == plugin.world.clock.steps + 1
+    for speed in (-4.0, 8.0):  # [rad/s] in one step and the next
+        turn(plugin, left=speed)
+        run(plugin, 1)
+        rim = abs(speed) * 0.1
+        assert plugin.world.engine.slips == {
+            'left_link': pytest.approx((rim / 50 * 0.5, rim / 50 * 0.25))}
 
 
 def test_a_radius_that_is_given_counts_and_a_negative_compliance_is_none():
     plugin = load(wheel(wheel_radius='0.2', slip_compliance_lateral='-3'))
-    plugin.model.wheels['left'].velocity = 1.0
-    plugin.update()
-    assert plugin.model.slips['left_link'] == pytest.approx((0.0, 0.2 / 50 * 0.25))
+    turn(plugin, left=1.0)
+    run(plugin, 1)
+    assert plugin.world.engine.slips['left_link'] == pytest.approx((0.0, 0.2 / 50 * 0.25))
 
 
 @pytest.mark.parametrize(('bad', 'told'), [
@@ -89,7 +70,7 @@ def test_a_wheel_that_makes_no_sense_is_left_out_with_a_sentence(bad, told, capl
 
 
 def test_a_wheel_whose_axle_the_engine_does_not_know_is_left_out(caplog):
-    model = Model()
+    model = fake_model(wheel_of(0.1))
     for place in model.body.friction_axes:
         askew = FrictionAxes(from_rpy(0.3, 0.0, 0.0), EVENLY)
         model.body.friction_axes[place] = askew

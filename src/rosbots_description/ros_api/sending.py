@@ -10,7 +10,7 @@ import logging
 import socket
 import threading
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import rospy
 import rospy.topics
@@ -127,16 +127,40 @@ class Outlet:
                 self._waiting.clear()
 
 
-def has_readers(*publishers: rospy.Publisher | None) -> bool:
-    """Tell whether anybody reads one of the topics; None is one that was left out.
+class ReaderWatch(rospy.SubscribeListener):
+    """Calls `changed()` whenever a reader of a topic has come or gone, on whatever thread."""
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self._changed = changed
+
+    def peer_subscribe(self, _topic: str, _publish: object, _publish_to_one: object) -> None:
+        """Tell of a new reader."""
+        self._changed()
+
+    def peer_unsubscribe(self, _topic: str, _count: int) -> None:
+        """Tell of one less."""
+        self._changed()
+
+
+def stop_publishing(publisher: rospy.Publisher, watch: ReaderWatch) -> None:
+    """Publish no more; other publishers of this node may go on with the topic.
+
+    rospy would then go on telling the watch of readers.
+    """
+    topic = publisher.impl
+    if topic is not None and topic.subscriber_listeners:
+        others = [listener for listener in topic.subscriber_listeners if listener is not watch]
+        topic.subscriber_listeners = others  # another thread may be telling those there were
+    publisher.unregister()
+
+
+def has_readers(publisher: rospy.Publisher | None) -> bool:
+    """Tell whether anybody reads a topic; None is one that was left out.
 
     What rospy offers for it takes a lock, which matters where every robot asks at 100 Hz.
     """
-    for publisher in publishers:
-        topic = publisher.impl if publisher is not None else None
-        if topic is not None and topic.connections:
-            return True
-    return False
+    topic = publisher.impl if publisher is not None else None
+    return topic is not None and bool(topic.connections)
 
 
 def reader_names(publisher: rospy.Publisher) -> set[str]:

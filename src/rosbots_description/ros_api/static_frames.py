@@ -10,7 +10,7 @@ Subscribes:
     /tf_static (tf2_msgs/TFMessage).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import rospy
 from tf2_msgs.msg import TFMessage
@@ -30,11 +30,13 @@ class StaticFrames:
     """What other nodes publish on /tf_static; any thread may read it.
 
     `parents` and `nodes` are replaced and never changed: what was read stays true to itself.
+    `listeners` are called when they were, on the thread that owns the world.
     """
 
     def __init__(self) -> None:
         self._by_node: dict[str, dict[str, tuple[str, Pose]]] = {}
         self._watching = False
+        self.listeners: list[Callable[[], None]] = []
         self.parents: Parents = {}
         self.nodes: frozenset[str] = frozenset()  # names of those that publish here
 
@@ -91,6 +93,8 @@ class StaticFrames:
             child: edge for held in self._by_node.values() for child, edge in held.items()
         }
         self.nodes = frozenset(self._by_node)
+        for listener in self.listeners:
+            listener()
 
 
 def from_root(edge: FrameTransform, parents: Parents) -> FrameTransform:

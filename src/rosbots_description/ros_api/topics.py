@@ -114,7 +114,7 @@ class StatesTopic(Topic, Hook):
         super().__init__(server, name, type(message))
         self._message = message
 
-    def update(self) -> None:
+    def before_step(self) -> None:
         """Publish, and come again at the next step."""
         self.fill()
         self._publisher.publish(self._message)

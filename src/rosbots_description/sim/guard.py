@@ -29,7 +29,7 @@ class Guard(Hook):
         self._world = world
         self.look_soon()
 
-    def update(self) -> None:
+    def before_step(self) -> None:
         """Mend the world if a model is lost."""
         lost = [model for model in self._world.models.values() if is_lost(model)]
         if lost or self._world.engine.waste > MOST_WASTE:

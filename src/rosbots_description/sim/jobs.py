@@ -50,7 +50,7 @@ class Jobs(Hook):
         self._jobs = [job for job in self._jobs if not chosen(job.target)]
         self._set_due()
 
-    def update(self) -> None:
+    def before_step(self) -> None:
         """Push what is to be pushed in this step and drop what is over."""
         now_ns = self._clock.now_ns
         self._jobs = [job for job in self._jobs if job.end_ns is None or now_ns <= job.end_ns]

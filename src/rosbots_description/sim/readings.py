@@ -1,9 +1,11 @@
-"""What plugins and sensors hand out, as plain values, and the ports they hand it out through."""
+"""What plugins and sensors give out: readings, which are plain values, and outputs for them."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 from .pose import Pose, Twist
+
+Reading = TypeVar('Reading')
 
 
 class Odometry(NamedTuple):
@@ -30,23 +32,34 @@ class JointStates(NamedTuple):
     efforts: tuple[float, ...] = ()  # [N m or N]
 
 
-class Port:
-    """An output of a plugin. Nothing is computed for it while nobody wants it.
+class Output(Generic[Reading]):
+    """What a plugin gives out, to any number of readers: ROS, a window, a script.
 
-    `wanted()` tells whether a reading would be used; only then it is handed to `send(reading)`.
+    While `wanted` is false there is none, and nothing is to be computed for it. Readers come and go
+    between two runs of the world, on the thread that owns it.
     """
 
-    def __init__(self) -> None:
-        self.disconnect()
+    def __init__(self, changed: Callable[[], None]) -> None:
+        """Call `changed()` when the first reader has come, and when the last one has gone."""
+        self._changed = changed
+        self._readers: tuple[Callable[[Reading], object], ...] = ()
+        self.wanted = False
 
-    def connect(self, send: Callable, wanted: Callable[[], bool]) -> None:
-        """Give every reading to `send(reading)` while `wanted()` is true."""
-        self.send, self.wanted = send, wanted
+    def connect(self, read: Callable[[Reading], object]) -> None:
+        """Give every reading to `read(reading)`, after those that were connected before."""
+        self._set_readers((*self._readers, read))
 
-    def disconnect(self) -> None:
-        """Give readings to nobody."""
-        self.send, self.wanted = None, _nobody
+    def disconnect(self, read: Callable[[Reading], object]) -> None:
+        """Give no more readings to `read`; it may have none already."""
+        self._set_readers(tuple(other for other in self._readers if other != read))
 
+    def send(self, reading: Reading) -> None:
+        """Give a reading to all readers."""
+        for read in self._readers:
+            read(reading)
 
-def _nobody() -> bool:
-    return False
+    def _set_readers(self, readers: tuple[Callable[[Reading], object], ...]) -> None:
+        self._readers = readers
+        if self.wanted != bool(readers):
+            self.wanted = bool(readers)
+            self._changed()

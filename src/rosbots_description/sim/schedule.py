@@ -12,20 +12,20 @@ LEFT_OUT = 1000  # steps that something that failed is not run, so that it does 
 
 
 class Hook:
-    """Something that runs at certain steps, after time has advanced and before physics.
+    """Something that runs at certain steps, before and after physics.
 
-    `due` is the step count at which `update` is to run next. Set it in `update`, or from outside
+    `due` is the count of the step in which it runs next. Set it in `before_step`, or from outside
     between two runs of the world, on the thread that owns the world.
     """
 
     due = NEVER
 
-    def update(self) -> None:
-        """Do the work of this step and set the next `due`."""
+    def before_step(self) -> None:
+        """Do what comes before physics, after time has advanced, and set the next `due`."""
         raise NotImplementedError
 
-    def observe(self) -> None:
-        """Report the state at the end of a step in which `update` ran, after physics."""
+    def after_step(self) -> None:
+        """Do what comes after physics, in a step whose `before_step` did not fail."""
 
 
 class Herald:
@@ -78,15 +78,15 @@ class Schedule:
         return min([hook.due for hook in self._hooks], default=NEVER)
 
     def run(self, step: int, physics: Callable[[], None]) -> None:
-        """Make one step: every hook that is due at `step` or before, then physics, then reports.
+        """Make one step: every hook that is due at `step` or before, physics, the hooks again.
 
         A hook that fails is told of in the log and left out for a while; the others go on.
         """
         due = [hook for hook in self._hooks if hook.due <= step]
-        done = [hook for hook in due if _tried(hook, hook.update, step)]
+        done = [hook for hook in due if _tried(hook, hook.before_step, step)]
         physics()
         for hook in done:
-            _tried(hook, hook.observe, step)
+            _tried(hook, hook.after_step, step)
 
     def change_step(self, now: int, ratio: Fraction) -> None:
         """Keep all due at their time, now that steps last `ratio` times as long.

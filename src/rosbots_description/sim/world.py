@@ -3,7 +3,7 @@
 import contextlib
 import logging
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
 from typing import Protocol
@@ -53,12 +53,16 @@ class World:
     """
 
     def __init__(
-        self, physics: PhysicsSettings | None = None, tuning: Tuning | None = None
+        self,
+        physics: PhysicsSettings | None = None,
+        tuning: Tuning | None = None,
+        make_engine: Callable[..., Engine] = Engine,
     ) -> None:
         """Open an empty world.
 
         Args:
             tuning: other choices of the engine than the usual ones, to measure what they do.
+            make_engine: takes what `Engine` takes, and gives what does its work.
         """
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
@@ -73,7 +77,7 @@ class World:
         self._files: dict[str, dict[tuple[Mesh, bool], EngineFile]] = {}  # model -> what it needs
         self._guard = Guard(self)
         self.schedule.add(self._guard)
-        self.engine = Engine(
+        self.engine = make_engine(
             self.physics,
             lambda mesh: self._engine_file(mesh, exact=False),
             lambda mesh: self._engine_file(mesh, exact=True),
@@ -291,7 +295,7 @@ class World:
             return
         plugin = cls(self, model, spec)
         try:
-            plugin.load()
+            plugin.start()
         except SimError as error:
             logger.error('%s: %s; the model lives on without it', where, error)
             model.left_out.append(f"plugin '{spec.filename}'")

@@ -1,28 +1,137 @@
-"""Which topics each drive has: those that drive.py describes."""
+"""The topics of drives.
+
+Subscribes:
+    <ns>/<commandTopic> (geometry_msgs/Twist): what the drive follows; the last counts.
+Publishes:
+    <ns>/<odometryTopic> (nav_msgs/Odometry), if the plugin sends odometry.
+    /tf (tf2_msgs/TFMessage): odometry frame to base frame, if the plugin sends it. Beside a
+        robot_state_publisher: odometry frame to the root of what that holds together.
+        diff_drive and tricycle_drive: the wheels too, if publishWheelTF.
+    <ns>/joint_states (sensor_msgs/JointState): diff_drive (right, left) and tricycle_drive (with
+        velocities and efforts), if publishWheelJointState.
+Parameters:
+    tf_prefix, searched from the plugin's namespace upward.
+"""
+
+import logging
+from dataclasses import dataclass
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry as OdometryMessage
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins.diff_drive import DiffDrive
 from ...sim.plugins.planar_move import PlanarMove
 from ...sim.plugins.skid_steer_drive import SkidSteerDrive
 from ...sim.plugins.tricycle_drive import TricycleDrive
-from .drive import DriveAdapter, WheeledDriveAdapter
-from .registry import adapter
+from ...sim.readings import FrameTransform
+from ..log_bridge import set_level
+from ..master import subscribers
+from ..sending import reader_names
+from ..static_frames import TOPIC as STATIC_FRAMES
+from .adapter import Adapter
+from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite
+from .packs import JointStatesPack, RootedTransformPack, TransformPack, odometry_pack
+from .registry import connects
+
+logger = logging.getLogger(__name__)
 
 
-@adapter(DiffDrive)
-class DiffDriveAdapter(WheeledDriveAdapter):
-    """Joins a `DiffDrive` to its topics; joint_states are right, left."""
+@dataclass(frozen=True)
+class LogsStart:
+    """What upstream does before it has any topic: it logs, and at another level if asked to."""
+
+    def join(self, adapter: Adapter) -> 'StartLog':
+        """Return what does so for the adapter's plugin."""
+        return StartLog(adapter)
 
 
-@adapter(SkidSteerDrive)
-class SkidSteerDriveAdapter(DriveAdapter):
-    """Joins a `SkidSteerDrive` to its topics."""
+class StartLog(Endpoint):
+    """Sets the level of the log, and begins it."""
+
+    def open(self) -> None:
+        """Log what upstream logs."""
+        plugin = self.adapter.plugin
+        if 'rosDebugLevel' in plugin.params.values:
+            set_level(plugin.params.values['rosDebugLevel'])
+            logger.debug('Starting plugin %s', plugin.log_prefix.removesuffix(': '))
+        logger.debug('%s<tf_prefix> = %s', plugin.log_prefix, self.adapter.tf_prefix)
 
 
-@adapter(PlanarMove)
-class PlanarMoveAdapter(DriveAdapter):
-    """Joins a `PlanarMove` to its topics."""
+class WheelStates(Publishes):
+    """The joint states of wheels, from which a robot_state_publisher may make their frames."""
+
+    def join(self, adapter: Adapter) -> 'WheelStatesTopic':
+        """Return the topic of the adapter's plugin."""
+        return WheelStatesTopic(adapter, self)
 
 
-@adapter(TricycleDrive)
-class TricycleDriveAdapter(WheeledDriveAdapter):
-    """Joins a `TricycleDrive` to its topics; joint_states have velocities and efforts."""
+class WheelStatesTopic(PublishedTopic):
+    """A topic that knows who reads it, and who soon will."""
+
+    _followers: frozenset[str] = frozenset()  # those that read it as soon as they can
+
+    def open(self) -> None:
+        """Advertise it."""
+        if self.has_output:
+            server = self.adapter.server
+            followers, holding = subscribers(rospy.resolve_name(self.name), STATIC_FRAMES)
+            self._followers = frozenset(followers)
+            # What they hold may be on its way, and the first wheels would be told twice.
+            expected = (holding & followers) - {rospy.get_name()}
+            server.loop.post(lambda: server.static_frames.expect(expected))
+        super().open()
+
+    def readers(self) -> set[str]:
+        """Return the names of the nodes that read it, or soon will."""
+        return self._followers | reader_names(self.publisher) if self.publisher else set()
+
+
+class WheelFrames(Publishes):
+    """The frames of wheels, which are left to a robot_state_publisher if there is one."""
+
+    def join(self, adapter: Adapter) -> 'WheelFramesTopic':
+        """Return the topic of the adapter's plugin."""
+        return WheelFramesTopic(adapter, self)
+
+
+class WheelFramesTopic(PublishedTopic):
+    """A topic that is not for robots beside a robot_state_publisher.
+
+    That is a node which reads our joint states and holds frames still.
+    """
+
+    def is_wanted(self) -> bool:
+        """Tell whether to publish the frames."""
+        nodes = self.adapter.server.static_frames.nodes
+        return super().is_wanted() and not (nodes and any(
+            nodes.intersection(states.readers()) for states in self.adapter.endpoints
+            if isinstance(states, WheelStatesTopic)))
+
+    def send(self, reading: FrameTransform) -> None:
+        """Publish a frame, unless such a node has come since we were told of readers."""
+        if self.is_wanted():
+            super().send(reading)
+
+
+COMMAND, SIDEWAYS = (
+    Subscribes('<commandTopic>', Twist, 'command', finite(*fields),
+               log_before='Try to subscribe to {}', log='Subscribe to {}')
+    for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y'))
+)
+ODOMETRY = Publishes('odometry', '<odometryTopic>', OdometryMessage, pack=odometry_pack,
+                     log='Advertise odom on {} ')
+TRANSFORM = Publishes('odometry_transform', '/tf', TFMessage, pack=RootedTransformPack, queue=100,
+                      always=True)
+WHEELS = (
+    WheelStates('joint_states', 'joint_states', JointState, pack=JointStatesPack, queue=1000,
+                log='Advertise joint_states'),
+    WheelFrames('wheel_transform', '/tf', TFMessage, pack=TransformPack, queue=100),
+)
+
+connects(DiffDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
+connects(SkidSteerDrive, LogsStart(), TRANSFORM, COMMAND, ODOMETRY)
+connects(PlanarMove, LogsStart(), TRANSFORM, SIDEWAYS, ODOMETRY)
+connects(TricycleDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)

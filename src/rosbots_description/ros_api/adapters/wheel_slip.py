@@ -1,28 +1,18 @@
 """What of the wheel slip plugin is on the wire: its dynamic_reconfigure server."""
 
+from collections.abc import Callable
+
 from ...sim.plugins.wheel_slip import WheelSlip
-from ..names import topic_name
-from ..server import Server
-from .registry import Adapter, adapter
+from .adapter import Adapter
+from .declarations import Offers
+from .registry import connects
 
 
-@adapter(WheelSlip)
-class WheelSlipAdapter(Adapter):
-    """Offers the slip compliances of a `WheelSlip` to dynamic_reconfigure."""
+def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
+    """Offer the slip compliances; loading the library must not keep the world waiting."""
+    from ..slip_reconfigure import SlipReconfigure  # noqa: PLC0415
 
-    def __init__(self, server: Server, plugin: WheelSlip) -> None:
-        super().__init__(server, plugin)
-        self._reconfigure = None
-        topic_name('', plugin.namespace)  # it must be a name
+    return SlipReconfigure(adapter.plugin, adapter.server.loop.post).close
 
-    def open(self) -> None:
-        """Offer them; loading the library must not keep the world waiting."""
-        from ..slip_reconfigure import SlipReconfigure  # noqa: PLC0415
 
-        self._reconfigure = SlipReconfigure(self.plugin, self.server.loop.post)
-
-    def close(self) -> None:
-        """Offer them no more."""
-        if self._reconfigure is not None:
-            self._reconfigure.close()
-        super().close()
+connects(WheelSlip, Offers('', reconfigure))

@@ -1,18 +1,16 @@
-"""What all drives share: a velocity command, updates at a rate, odometry of the model's motion."""
+"""What all drives share: a velocity command, frames, odometry of the model's motion."""
 
 import logging
 import math
 from abc import abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..clock import NANOSECONDS
-from ..errors import NotFoundError, PluginError
 from ..pose import Pose, Twist, compose, from_rpy, inverse, yaw_of
-from ..readings import FrameTransform, Odometry, Port
-from .base import ModelPlugin
-from .params import Params, says_default
+from ..readings import FrameTransform, JointStates, Odometry, Output
+from .base import PeriodicPlugin
+from .params import Params
 
 if TYPE_CHECKING:
     from ..model import Joint
@@ -20,96 +18,58 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 ENCODER, WORLD = 'encoder', 'world'
-SLOWEST_RATE = 1e-3  # [Hz] updates rarer than that are a mistake
 NO_VARIANCES = (0.0,) * 6
 
 
-@dataclass(frozen=True)
-class DriveConfig:
-    """The tags that all drives have. Names are as written, without namespace or prefix."""
+class Drive(PeriodicPlugin):
+    """Follows a velocity command and gives out odometry, as a reading and as a transform.
 
-    command_topic: str
-    odometry_topic: str
-    odometry_frame: str
-    robot_base_frame: str
-    update_rate: float  # [Hz]; not above 0: every step
-
-
-class Drive(ModelPlugin):
-    """Follows a velocity command and reports odometry through the port `odometry`.
-
-    A subclass reads its tags in `read_config` and finds its joints in `find_joints`. At the rate of
-    its updates it follows the command in `follow`, before physics, and tells the state at the end
-    of that step in `report`. As long as `every_step` is true, `advance` and `sample` are called
-    before and after physics in every step.
+    A subclass calls `read_frames` and `give_odometry` in `load`, and follows `target` (x [m/s],
+    y [m/s], yaw rate [rad/s]) in `update`.
     """
 
-    prefix = ''  # how its log lines begin; {} stands for the namespace
-    missing: Callable[[str, object], str] = staticmethod(says_default)
-    named_after_model = True  # an absent or empty robotNamespace is the model's name, not the root
-    keeps_rate = True  # the mean rate is exact; else each period is a step longer than asked for
-    every_step = False
     # Diagonals of the covariances of odometry: x, y, z, roll, pitch, yaw.
-    pose_variances = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
-    twist_variances = NO_VARIANCES
-    flat_odometry = False  # z is 0 in the message, though not in the transform
-    moves_sideways = False  # whether it follows linear_y, too
-    sends_odometry = True
-    sends_transform = True
+    pose_variances: tuple[float, ...] = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
+    twist_variances: tuple[float, ...] = NO_VARIANCES
+    hints = {'torque': ' (the motor limit is <wheelTorque>)'}
+    target = (0.0, 0.0, 0.0)
 
-    def load(self) -> None:
-        """Read the tags, find the joints, begin.
+    def read_frames(self, base: str) -> None:
+        """Read the names of topics and frames; that of the robot's is `base` by default."""
+        for tag, default in (('commandTopic', 'cmd_vel'), ('odometryTopic', 'odom'),
+                             ('odometryFrame', 'odom'), ('robotBaseFrame', base)):
+            self.params.read(tag, default)
 
-        Raises:
-            PluginError: a joint is missing or a tag makes no sense.
-        """
-        self.namespace = self._namespace()
-        self.log_prefix = self.prefix.format(self.namespace)
-        self.params = Params(self.spec.element, self.log_prefix, self.missing)
-        self.params.ignore('robotNamespace', 'alwaysOn')
-        self.config = self.read_config(self.params)
-        self.odometry = Port()
-        self.find_joints()
-        self._warn_unread()
-        rate = self.config.update_rate
-        self._period_ns = round(NANOSECONDS / rate) if rate > 0.0 else 0
-        self.restart()
+    def give_odometry(self, message: bool = True, transform: bool = True) -> None:
+        """Give out odometry, and the transform between its frames, if they are asked for."""
+        self.odometry: Output[Odometry] = self.output('odometry', message)
+        self.odometry_transform: Output[FrameTransform] = self.output(
+            'odometry_transform', transform)
 
-    @abstractmethod
-    def read_config(self, params: Params) -> DriveConfig:
-        """Read all tags with upstream's defaults.
+    @property
+    def odometry_wanted(self) -> bool:
+        """Tell whether anybody reads odometry in one form or the other."""
+        return self.odometry.wanted or self.odometry_transform.wanted
 
-        Raises:
-            PluginError: a value makes no sense.
-        """
+    def send_odometry(self, reading: Odometry, flat: bool = False) -> None:
+        """Send odometry in both forms; `flat` if z is 0 in the reading, though not in the other."""
+        if self.odometry_transform.wanted:
+            frames = self.params.values['odometryFrame'], self.params.values['robotBaseFrame']
+            self.odometry_transform.send(FrameTransform(*frames, reading.pose))
+        if self.odometry.wanted:
+            if flat:
+                (x, y, _), orientation = reading.pose
+                reading = Odometry(Pose((x, y, 0.0), orientation), reading.twist)
+            self.odometry.send(reading)
 
-    def find_joints(self) -> None:
-        """Find what the plugin drives.
-
-        Raises:
-            PluginError: a joint is missing.
-        """
-
-    def advance(self, now_ns: int) -> None:
-        """Do what is due before physics at every step."""
-
-    def sample(self, now_ns: int) -> None:
-        """Read what is to be read after physics at every step."""
-
-    @abstractmethod
-    def follow(self, elapsed: float) -> None:
-        """Follow the command; the last time was `elapsed` seconds ago."""
-
-    @abstractmethod
-    def report(self) -> None:
-        """Tell the state at the end of the step, which is that at its stamp."""
+    def restart(self) -> None:
+        """Forget the command and begin."""
+        self.command(0.0, 0.0)
+        super().restart()
 
     def reset(self) -> None:
-        """Forget the command and the time of the last update."""
-        self.target = (0.0, 0.0, 0.0)
-        self._reports = False
-        self._last_ns = self.world.clock.now_ns
-        self._set_due()
+        """Begin a period."""
+        self.begin_period()
 
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
         """Drive so until told else, as far as this drive can.
@@ -121,78 +81,79 @@ class Drive(ModelPlugin):
         """
         self.target = (linear_x, linear_y, angular_z)
 
-    def update(self) -> None:
-        """Do what is due at every step, and follow the command when the period has passed."""
-        now_ns = self.world.clock.now_ns
-        if self.every_step:
-            self.advance(now_ns)
-        elapsed_ns = now_ns - self._last_ns
-        self._reports = elapsed_ns > self._period_ns
-        if self._reports:
-            self.follow(elapsed_ns / NANOSECONDS)
-            keeps = self._period_ns and self.keeps_rate
-            self._last_ns = self._last_ns + self._period_ns if keeps else now_ns
-        self._set_due()
 
-    def observe(self) -> None:
-        """Read what is to be read at every step, and report in those that followed the command."""
-        if self.every_step:
-            self.sample(self.world.clock.now_ns)
-        if self._reports:
-            self.report()
+class WheeledDrive(Drive):
+    """A drive that tells of its wheels, too, and whose odometry may come from two encoders.
 
-    def _set_due(self) -> None:
-        clock = self.world.clock
-        later = clock.first_step_after(self._last_ns + self._period_ns)
-        self.due = clock.steps + 1 if self.every_step else later
+    A subclass sets `encoders` in `load`, and `every_step` if odometry comes from them.
+    """
 
-    def joint(self, name: str, what: str) -> 'Joint':
-        """Return a joint by its name; `what` it is stands in the message of the `PluginError`."""
-        try:
-            return self.model.joint(name)
-        except NotFoundError as error:
-            raise PluginError(
-                f"{self.log_prefix}couldn't get {what} joint named {name}: {error}"
-            ) from None
+    absent_namespace = empty_namespace = '{}'
+    encoders: 'Encoders'
 
-    def _warn_unread(self) -> None:
-        unread = self.params.unread()
-        if unread:
-            logger.warning(
-                '%snot read by this plugin: %s%s',
-                self.log_prefix,
-                ', '.join(f'<{tag}>' for tag in unread),
-                ' (the motor limit is <wheelTorque>)' if 'torque' in unread else '',
-            )
+    def read_debug_level(self) -> None:
+        """Read the level at which the server is to log."""
+        self.params.read('rosDebugLevel', 'na')
 
-    def _namespace(self) -> str:
-        child = self.spec.element.child('robotNamespace')
-        given = child.text.strip() if child is not None else ''
-        return given or (self.model.name if self.named_after_model else '')
+    def give_wheels(self, transforms: bool, states: bool) -> None:
+        """Give out where the wheels stand, once per wheel, and their joints' states."""
+        self.wheel_transform: Output[FrameTransform] = self.output('wheel_transform', transforms)
+        self.joint_states: Output[JointStates] = self.output('joint_states', states)
+
+    @abstractmethod
+    def encoder_odometry(self) -> Odometry:
+        """Return what the encoders tell."""
+
+    @abstractmethod
+    def wheel_transforms(self, model_pose: Pose) -> Iterable[FrameTransform]:
+        """Return where the wheels stand, with the model at that pose."""
+
+    @abstractmethod
+    def wheel_states(self) -> JointStates:
+        """Return the states of the wheels' joints."""
+
+    def reset(self) -> None:
+        """Forget the command and where the encoders say that the robot is."""
+        self.command(0.0, 0.0)
+        self.encoders.reset(self.world.clock.now_ns)
+        super().reset()
+
+    def after_each_step(self, now_ns: int) -> None:
+        """Read the encoders."""
+        self.encoders.advance(now_ns)
+
+    def report(self) -> None:
+        """Tell odometry, wheel transforms and joint states."""
+        odometry, wheels = self.odometry_wanted, self.wheel_transform.wanted
+        if odometry or wheels:
+            pose, twist = self.model.state()  # once: the engine takes its time to tell
+        if odometry:
+            encoders = self.every_step
+            self.send_odometry(self.encoder_odometry() if encoders else world_odometry(pose, twist))
+        if wheels:
+            for transform in self.wheel_transforms(pose):
+                self.wheel_transform.send(transform)
+        if self.joint_states.wanted:
+            self.joint_states.send(self.wheel_states())
+
+    def in_model(self, joint: 'Joint', model_pose: Pose) -> FrameTransform:
+        """Return where the link on a joint stands in the model's frame, which is called parent."""
+        pose = self.model.links[joint.spec.child].pose
+        return FrameTransform(
+            joint.spec.parent, joint.spec.child, compose(inverse(model_pose), pose))
 
 
-def odometry_source(params: Params) -> str:
-    """Read where odometry comes from: ENCODER or WORLD; it is WORLD if that is neither."""
+def reads_encoders(params: Params) -> bool:
+    """Tell by <odometrySource> whether odometry comes from encoders; else it is the truth."""
     # Upstream's warning shows the number behind `world`.
     text = params.read('odometrySource', WORLD, shown='1').lower()
-    if text in (ENCODER, WORLD, '0', '1'):
-        return {'0': ENCODER, '1': WORLD}.get(text, text)
-    logger.warning(
-        "%s<odometrySource> is '%s', which is neither encoder nor world; default is world",
-        params.prefix,
-        text,
-    )
-    return WORLD
-
-
-def wheel_transforms(model, joints: 'list[Joint]', model_pose: Pose) -> list[FrameTransform]:
-    """Return where the links of wheels stand in the model's frame, which upstream calls parent."""
-    world_in_model = inverse(model_pose)
-    return [
-        FrameTransform(one.spec.parent, one.spec.child,
-                       compose(world_in_model, model.links[one.spec.child].pose))
-        for one in joints
-    ]
+    if text not in (ENCODER, WORLD, '0', '1'):
+        logger.warning(
+            "%s<odometrySource> is '%s', which is neither encoder nor world; default is world",
+            params.prefix,
+            text,
+        )
+    return text in (ENCODER, '0')
 
 
 def world_odometry(pose: Pose, twist: Twist) -> Odometry:
@@ -210,9 +171,17 @@ class Encoders:
     Their angles are what joint states tell, so both agree.
     """
 
-    def __init__(self, left: 'Joint', right: 'Joint', diameter: float, separation: float) -> None:
-        """Take the wheels, and their diameter and separation [m]; `reset` begins."""
+    def __init__(
+        self, left: 'Joint', right: 'Joint', diameter: float, separation: float,
+        turning: float = 1.0,
+    ) -> None:
+        """Take the wheels, and their diameter and separation [m]; `reset` begins.
+
+        Args:
+            turning: -1 where left counts as right.
+        """
         self._wheels, self._radius, self._separation = (left, right), diameter / 2.0, separation
+        self._turning = turning
 
     def reset(self, now_ns: int) -> None:
         """Begin anew at the origin."""
@@ -220,15 +189,15 @@ class Encoders:
         self.rate = (0.0, 0.0, 0.0)  # of the same, by time
         self._ns, self._ways = now_ns, self._measure()
 
-    def advance(self, now_ns: int, turning: float = 1.0) -> None:
-        """Add what the wheels have turned; `turning` is -1 where left counts as right."""
+    def advance(self, now_ns: int) -> None:
+        """Add what the wheels have turned."""
         elapsed, self._ns = (now_ns - self._ns) / NANOSECONDS, now_ns
         before, self._ways = self._ways, self._measure()
         if elapsed <= 0.0:
             return
         left, right = (now - then for now, then in zip(self._ways, before, strict=True))
         x, y, yaw = self.place
-        turn = turning * (right - left) / self._separation
+        turn = self._turning * (right - left) / self._separation
         forward, heading = (left + right) / 2.0, yaw + turn / 2.0
         dx, dy = forward * math.cos(heading), forward * math.sin(heading)
         self.place = (x + dx, y + dy, yaw + turn)
@@ -243,28 +212,3 @@ class Encoders:
         """Return the place as a pose."""
         x, y, yaw = self.place
         return Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw))
-
-
-def above_zero(params: Params, tag: str, value: float) -> float:
-    """Return a length [m].
-
-    Raises:
-        PluginError: it is not above zero.
-    """
-    if value <= 0.0:
-        raise PluginError(f'{params.prefix}<{tag}> is {value:g} m; it must be above 0')
-    return value
-
-
-def as_rate(params: Params, tag: str, value: float) -> float:
-    """Return a rate [Hz] at which something can be done.
-
-    Raises:
-        PluginError: that would be hardly ever.
-    """
-    if 0.0 < value < SLOWEST_RATE:
-        raise PluginError(
-            f'{params.prefix}<{tag}> is {value:g} Hz; it must be at least '
-            f'{SLOWEST_RATE:g}, or 0 for every step'
-        )
-    return value

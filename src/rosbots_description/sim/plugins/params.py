@@ -12,13 +12,14 @@ logger = logging.getLogger(__name__)
 
 Value = TypeVar('Value', str, float, bool)
 Missing = Callable[[str, str | float | bool], str]  # a tag and its default -> a warning
+SLOWEST_RATE = 1e-3  # [Hz] anything rarer is a mistake
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 
 
 class Params:
     """The tags of one plugin element.
 
-    `prefix` begins every message, e.g. 'DiffDrive(ns = //): '.
+    `prefix` begins every message, e.g. 'DiffDrive(ns = //): '. `values` has what `read` returned.
     """
 
     def __init__(
@@ -29,6 +30,7 @@ class Params:
         self._element = element
         self._missing = missing or says_default
         self._read: set[str] = set()
+        self.values: dict[str, str | float | bool] = {}
 
     def text(self, tag: str) -> str | None:
         """Return the tag's text without surrounding blanks, or None; says nothing."""
@@ -45,14 +47,42 @@ class Params:
             PluginError: a number was expected and the text is none, or is not finite.
         """
         text = self.text(tag)
+        value = default
         if text is None:
             logger.warning('%s%s', self.prefix, self._missing(tag, shown or default))
-            return default
-        if isinstance(default, bool):
-            return self._boolean(tag, text, default)
-        if isinstance(default, float):
-            return self._number(tag, text)
-        return text
+        elif isinstance(default, bool):
+            value = self._boolean(tag, text, default)
+        elif isinstance(default, float):
+            value = self._number(tag, text)
+        else:
+            value = text
+        self.values[tag] = value
+        return value
+
+    def length(self, tag: str, default: float) -> float:
+        """Return a length [m], as `read` does.
+
+        Raises:
+            PluginError: it is not above zero.
+        """
+        value = self.read(tag, default)
+        if value <= 0.0:
+            raise PluginError(f'{self.prefix}<{tag}> is {value:g} m; it must be above 0')
+        return value
+
+    def rate(self, tag: str, default: float) -> float:
+        """Return a rate [Hz], as `read` does; not above 0 means in every step.
+
+        Raises:
+            PluginError: that would be hardly ever.
+        """
+        value = self.read(tag, default)
+        if 0.0 < value < SLOWEST_RATE:
+            raise PluginError(
+                f'{self.prefix}<{tag}> is {value:g} Hz; it must be at least '
+                f'{SLOWEST_RATE:g}, or 0 for every step'
+            )
+        return value
 
     def ignore(self, *tags: str) -> None:
         """Count `tags` as read: they are known to mean nothing here."""

@@ -14,7 +14,7 @@ from ..errors import PluginError
 from ..friction_axes import can_slip
 from ..spec import Element
 from ..wheel_geometry import radius_of
-from .base import ModelPlugin
+from .base import PeriodicPlugin
 from .registry import register
 
 if TYPE_CHECKING:
@@ -38,8 +38,14 @@ class SlippingWheel:
 
 
 @register('libgazebo_ros_wheel_slip.so')
-class WheelSlip(ModelPlugin):
+class WheelSlip(PeriodicPlugin):
     """Sets how easily the tyres of a model slip, at every step."""
+
+    prefix = 'wheel_slip: '
+
+    def find_namespace(self, given: str | None) -> str:
+        """Return the namespace, which is within that of the model."""
+        return f'{self.model.name}/{(given or "").strip("/ ") or "wheel_slip"}'
 
     def load(self) -> None:
         """Read the wheels; one that cannot slip is left out with a sentence.
@@ -47,9 +53,7 @@ class WheelSlip(ModelPlugin):
         Raises:
             PluginError: there is none.
         """
-        child = self.spec.element.child('robotNamespace')
-        given = child.text.strip('/ ') if child is not None else ''
-        self.namespace = f'{self.model.name}/{given or "wheel_slip"}'
+        self.params.ignore('wheel')
         self.wheels: list[SlippingWheel] = []
         for element in self.spec.element.children:
             if element.tag != 'wheel':
@@ -60,11 +64,6 @@ class WheelSlip(ModelPlugin):
                 logger.error('wheel_slip: %s; this wheel does not slip', error)
         if not self.wheels:
             raise PluginError('wheel_slip: there is no <wheel> that can slip')
-        self.reset()
-
-    def reset(self) -> None:
-        """Go on at the next step."""
-        self.due = self.world.clock.steps + 1
 
     def set_compliance(
         self, lateral: float | None = None, longitudinal: float | None = None
@@ -75,7 +74,7 @@ class WheelSlip(ModelPlugin):
         if longitudinal is not None and longitudinal >= 0.0:
             self.wheels = [replace(wheel, longitudinal=longitudinal) for wheel in self.wheels]
 
-    def update(self) -> None:
+    def update(self, _elapsed: float) -> None:
         """Let each tyre slip by its speed."""
         model = self.model
         for wheel in self.wheels:
@@ -83,7 +82,6 @@ class WheelSlip(ModelPlugin):
             slip = abs(wheel.joint.velocity) * wheel.radius / wheel.normal_force
             slips = slip * wheel.lateral, slip * wheel.longitudinal
             model.engine.let_slip(model.body, spec.child, spec.axis_in_child, slips)
-        self.due = self.world.clock.steps + 1
 
     def _wheel(self, element: Element) -> SlippingWheel:
         name = element.attributes.get('link_name', '')

@@ -1,0 +1,79 @@
+"""Readings that are sent often, laid out by hand: `Publishes` takes these as `pack`."""
+
+import logging
+
+from ...sim.readings import FrameTransform, JointStates
+from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
+from ..static_frames import from_root
+from .adapter import Adapter
+from .declarations import Pack
+
+logger = logging.getLogger(__name__)
+
+
+def odometry_pack(adapter: Adapter) -> Pack:
+    """Return what lays the odometry of a drive out."""
+    plugin, values = adapter.plugin, adapter.plugin.params.values
+    frames = (adapter.frame(values[tag]) for tag in ('odometryFrame', 'robotBaseFrame'))
+    return OdometryLayout(*frames, plugin.pose_variances, plugin.twist_variances).pack
+
+
+class TransformPack:
+    """Lays transforms out; how each is laid out stays, once its frames are known."""
+
+    def __init__(self, adapter: Adapter) -> None:
+        self.adapter = adapter
+        self._layouts: dict[tuple[str, str], TransformLayout] = {}  # by parent and child
+        self._frames = adapter.server.static_frames
+        adapter.tf_prefix  # noqa: B018  ask for it now: this thread may wait for the master
+
+    def moved(self, edge: FrameTransform) -> FrameTransform:
+        """Return the transform to publish in place of `edge`, while others hold frames still."""
+        return edge
+
+    def __call__(self, _number: int, now_ns: int, edge: FrameTransform) -> bytes:
+        """Return a message with one transform."""
+        parent, child, pose = self.moved(edge) if self._frames.parents else edge
+        layout = self._layouts.get((parent, child))
+        if layout is None:
+            frames = self.adapter.frame(parent), self.adapter.frame(child)
+            layout = self._layouts[parent, child] = TransformLayout(*frames)
+        return layout.pack(now_ns, pose)
+
+
+class RootedTransformPack(TransformPack):
+    """Moves what another node holds together by its root, in place of the robot's frame."""
+
+    _told = ''  # said once, not with every message
+
+    def moved(self, edge: FrameTransform) -> FrameTransform:
+        """Return the transform of the root."""
+        frame = self.adapter.frame
+        named = FrameTransform(frame(edge.parent), frame(edge.child), edge.pose)
+        moved = from_root(named, self._frames.parents)
+        if moved is named:
+            return edge
+        self._tell(named, moved)
+        return FrameTransform(f'/{moved.parent}', f'/{moved.child}', moved.pose)
+
+    def _tell(self, edge: FrameTransform, moved: FrameTransform) -> None:
+        if self._told != moved.child:
+            self._told = moved.child
+            logger.debug(
+                '%sanother node holds %s still in %s, so %s -> %s is published in place of %s -> '
+                '%s: TF keeps one parent for each frame', self.adapter.plugin.log_prefix,
+                edge.child, moved.child, moved.parent, moved.child, edge.parent, edge.child,
+            )
+
+
+class JointStatesPack:
+    """Lays joint states out; the names of the first ones stay."""
+
+    def __init__(self, _adapter: Adapter) -> None:
+        self._layout: JointStatesLayout | None = None
+
+    def __call__(self, number: int, now_ns: int, reading: JointStates) -> bytes:
+        """Return the message."""
+        if self._layout is None:
+            self._layout = JointStatesLayout(reading)
+        return self._layout.pack(number, now_ns, reading)

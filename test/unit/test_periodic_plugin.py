@@ -1,0 +1,180 @@
+"""When a plugin runs: rates, steps, sleep, resets; and outputs with any number of readers."""
+
+from dataclasses import replace
+
+import pytest
+from support.fake_drive import fake_model, make_drive
+
+from rosbots_description.sim.plugins.base import ModelPlugin, PeriodicPlugin
+from rosbots_description.sim.schedule import NEVER
+
+
+class Watcher(PeriodicPlugin):
+    """Reports the step it is in."""
+
+    def load(self):
+        self.set_rate(self.params.rate('rate', 0.0))
+        self.steps, self.woken = self.output('steps', asked_for=False), 0
+
+    def report(self):
+        self.steps.send(self.world.clock.steps)
+
+    def wake(self):
+        self.woken += 1
+
+
+class Exact(Watcher):
+    """Does not wait until a period is over."""
+
+    later = False
+
+
+class Rounded(Exact):
+    """Begins each period in the step that ended one."""
+
+    keeps_rate = False
+
+
+class LaterRounded(Watcher):
+    """Waits until a period is over, and begins the next one then."""
+
+    keeps_rate = False
+
+
+class Actor(Watcher):
+    """Acts, too."""
+
+    def update(self, elapsed):
+        self.elapsed = elapsed
+
+
+class Counter(Watcher):
+    """Counts steps while somebody reads."""
+
+    every_step = True
+    count = 0
+
+    def after_each_step(self, now_ns):
+        self.count += 1
+
+
+def make(cls, rate):
+    return make_drive(cls, fake_model(), rate=rate)
+
+
+def seen(plugin, steps):
+    """Return the steps in which it reports."""
+    found = []
+    plugin.steps.connect(found.append)
+    plugin.world.run(steps)
+    plugin.steps.disconnect(found.append)
+    return found
+
+
+@pytest.mark.parametrize(('cls', 'rate', 'steps'), [
+    (Watcher, '100', [11, 21, 31]),
+    (LaterRounded, '20', [51, 102]),
+    (Exact, '100', [10, 20, 30]),
+    (Exact, '30', [34, 67, 100]),
+    (Rounded, '30', [34, 68, 102]),
+    (Exact, '0', [1, 2, 3]),
+    (Watcher, '-1', [1, 2, 3]),
+    (Exact, '2000', [1, 2, 3]),
+])
+def test_rates_are_those_of_gazebos_four_kinds(cls, rate, steps):
+    assert seen(make(cls, rate), 110)[:3] == steps[:3]
+
+
+def test_the_mean_rate_is_exact_for_a_minute():
+    assert len(seen(make(Exact, '30'), 60_000)) == 1800
+
+
+@pytest.mark.parametrize('cls', [Watcher, Exact])
+@pytest.mark.parametrize('rate', ['30', '100', '7', '400', '0'])
+def test_a_reader_that_comes_late_changes_no_step(cls, rate):
+    at_once = seen(make(cls, rate), 300)
+    for late in (1, 9, 10, 11, 33, 34, 35, 143):
+        plugin = make(cls, rate)
+        plugin.world.run(late)
+        assert seen(plugin, 300 - late) == [step for step in at_once if step > late]
+        assert plugin.woken == 1
+
+
+def test_who_only_watches_sleeps_while_nobody_reads():
+    plugin = make(Watcher, '100')
+    assert plugin.due == NEVER
+    assert seen(plugin, 25) == [11, 21]
+    assert plugin.due == NEVER
+    plugin.world.engine.steps.clear()
+    plugin.world.run(60)
+    assert plugin.world.engine.steps == [60]  # the watchdog's steps are 1 and 101
+
+
+def test_who_acts_is_never_asleep():
+    plugin = make(Actor, '100')
+    plugin.world.run(11)
+    assert plugin.elapsed == pytest.approx(0.011)
+    plugin.world.run(10)
+    assert plugin.elapsed == pytest.approx(0.011)  # since the end of a period, a step before
+
+
+def test_what_is_done_in_every_step_is_not_done_for_nobody():
+    plugin = make(Counter, '100')
+    plugin.world.run(50)
+    assert plugin.count == 0
+    assert seen(plugin, 20) == [51, 61]
+    assert plugin.count == 20
+
+
+def test_a_reset_of_the_world_disturbs_no_rhythm_and_a_new_beginning_is_one():
+    plugin, found = make(Exact, '100'), []
+    plugin.steps.connect(found.append)
+    plugin.world.run(15)
+    plugin.world.reset_world()
+    plugin.world.run(10)
+    plugin.world.reset_simulation()
+    plugin.world.run(15)
+    assert found == [10, 20, 10]
+
+
+def test_the_rate_holds_when_steps_get_longer():
+    plugin, times = make(Exact, '100'), []
+    plugin.steps.connect(lambda _: times.append(plugin.world.clock.now))
+    plugin.world.run(15)
+    plugin.world.set_physics(replace(plugin.world.physics, step_size=0.004))
+    plugin.world.run(10)
+    assert times == pytest.approx([0.010, 0.023, 0.031, 0.043, 0.051])
+
+
+def test_all_readers_get_what_is_computed_once():
+    plugin, one, other = make(Watcher, '0'), [], []
+    for found in (one, other):
+        plugin.steps.connect(found.append)
+    plugin.world.run(3)
+    plugin.steps.disconnect(one.append)
+    plugin.steps.disconnect(one.append)  # it reads no more already
+    plugin.world.run(1)
+    assert (one, other) == ([1, 2, 3], [1, 2, 3, 4])
+    assert plugin.steps.wanted
+    plugin.steps.disconnect(other.append)
+    assert not plugin.steps.wanted
+
+
+@pytest.mark.parametrize(('tag', 'namespace'), [(None, 'a/robot'), ('', 'robot'), ('/r1', '/r1')])
+def test_each_plugin_has_its_own_rule_for_the_namespace(tag, namespace):
+    class Placed(ModelPlugin):
+        absent_namespace, empty_namespace, prefix = 'a/{}', '{}', 'P({}): '
+
+    plugin = make_drive(Placed, fake_model(), robotNamespace=tag)
+    assert (plugin.namespace, plugin.log_prefix) == (namespace, f'P({namespace}): ')
+
+
+def test_tags_that_are_not_read_are_named(caplog):
+    make_drive(Watcher, fake_model(), rate='1', alwaysOn='1', colour='red', size='2')
+    assert 'not read by this plugin: <colour>, <size>' in caplog.messages
+
+
+def test_a_plugin_that_does_nothing_is_never_due():
+    plugin = make_drive(ModelPlugin, fake_model())
+    plugin.world.run(10)
+    assert plugin.due == NEVER
