@@ -1,0 +1,68 @@
+"""The plugin in doc/howto_add_a_plugin.md is complete: it is run and linted as it stands there."""
+
+import importlib.util
+import math
+import re
+import subprocess
+import sys
+
+import pytest
+from std_msgs.msg import Float64
+from support import ROOT
+from support.fake_drive import fake_model, make_drive
+from support.wire import Wire
+
+from rosbots_description.ros_api.adapters import registry as topics
+from rosbots_description.sim.plugins import registry as plugins
+
+PAGE = ROOT / 'doc' / 'howto_add_a_plugin.md'
+BLOCK = re.compile(r'```python\n# src/(\S+)\.py\n(.*?)```', re.DOTALL)
+MOST_LINES = 60
+BLOCKS = dict(BLOCK.findall(PAGE.read_text(encoding='utf-8')))
+
+
+@pytest.fixture
+def spinner(monkeypatch, tmp_path):
+    """Load the modules of the page where it says that they are, and return the plugin's class."""
+    monkeypatch.setattr(plugins, '_PLUGINS', dict(plugins._PLUGINS))
+    monkeypatch.setattr(topics, '_TOPICS', dict(topics._TOPICS))
+    for path, source in BLOCKS.items():
+        name = path.replace('/', '.')
+        file = tmp_path / f'{name}.py'
+        file.write_text(source, encoding='utf-8')
+        spec = importlib.util.spec_from_file_location(name, file)
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, name, module)
+        spec.loader.exec_module(module)
+    return plugins.plugin_class('libgazebo_ros_spinner.so')
+
+
+def test_the_example_is_short():
+    assert len(BLOCKS) == 2
+    assert sum(source.count('\n') for source in BLOCKS.values()) <= MOST_LINES
+
+
+@pytest.mark.parametrize('path', BLOCKS)
+def test_the_example_is_lint_clean(path):
+    checked = subprocess.run(
+        ['ruff', 'check', '--stdin-filename', f'src/{path}.py', '-'], input=BLOCKS[path],
+        cwd=ROOT, capture_output=True, text=True, check=False)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_the_example_works_on_its_topics(spinner, monkeypatch, caplog):
+    wire = Wire(monkeypatch)
+    plugin = make_drive(spinner, fake_model(), jointName='left', angleTopic='/angle', torque='2')
+    wire.join(plugin)
+    plugin.world.run(100)
+    assert plugin.world.engine.steps == [1, 99]  # the watchdog's; nothing else is due
+    wire.publishers['/angle'].read()
+    wire.subscribers['/spin'](Float64(3.0))
+    plugin.world.run(100)
+    angles = [message.data for message in wire.publishers['/angle'].sent]
+    assert angles == pytest.approx([3.0 * 0.001 * step for step in (1, 21, 41, 61, 81)])
+    assert plugin.spun.motor == (3.0, 2.0)
+    wire.subscribers['/spin'](Float64(math.nan))
+    assert 'Spinner(ns = ): dropped a command on spin with data nan; it takes finite' in caplog.text
+    plugin.world.reset_simulation()
+    assert plugin.spun.motor == (0.0, 2.0)
