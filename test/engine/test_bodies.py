@@ -1,15 +1,19 @@
 """Bodies move as rigid-body mechanics has it, and as their description says."""
 
+import gc
 import math
+from pathlib import Path
 
 import pytest
-from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+from support import ROOT, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
 from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.meshes import MeshStore
+from rosbots_description.sim.model_search import ModelSearch
 from rosbots_description.sim.physics import PhysicsSettings
 from rosbots_description.sim.pose import Pose, Twist, from_rpy, to_rpy
+from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.spec import Inertial, LinkSpec, ModelSpec
 
 SECOND = 1000  # steps
@@ -159,6 +163,24 @@ def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, extr
     meshes.close()
     assert used == set(files)
     assert [exactly for _, exactly in used] == [exact]
+
+
+def test_the_files_of_a_submesh_go_with_the_last_model_that_has_it():
+    shape = (f'<geometry><mesh><uri>file://{ROOT}/meshes/wheel.dae</uri>'
+             '<submesh><name>wheel</name><center>1</center></submesh></mesh></geometry>')
+    text = (f'<sdf version="1.6"><model name="m"><link name="l"><collision name="c">{shape}'
+            f'</collision><visual name="v">{shape}</visual></link></model></sdf>')
+    with empty_world() as world:
+        for name in ('first', 'second'):
+            spec, _ = load_sdf(text, name, find_model=ModelSearch())
+            model = world.spawn(spec, name, SPAWN_POSE)
+        world.run(10)
+        folder = Path(str(model.spec.links[0].visuals[0].geometry.path)).parent
+        del model, spec
+        for name, left in (('first', 1), ('second', 0)):
+            world.delete(name)
+            gc.collect()  # a model and its links hold each other
+            assert len(list(folder.iterdir())) == left
 
 
 def test_a_link_without_gravity_floats():

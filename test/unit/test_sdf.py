@@ -2,12 +2,13 @@
 
 import logging
 import math
+from pathlib import Path
 
 import pytest
 
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.gazebo_tags import ENDLESS_FRICTION
-from rosbots_description.sim.mesh_reading import read_mesh
+from rosbots_description.sim.mesh_reading import check_mesh, read_mesh
 from rosbots_description.sim.model_search import BUILT_IN_MODELS, ModelSearch
 from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.sdf import load_sdf, load_sdf_light
@@ -146,13 +147,21 @@ def test_a_mesh_of_a_package_is_found(tmp_path):
     assert spec.links[0].visuals[0].geometry.path == str(tmp_path / 'seat.obj')
 
 
-def submesh(tmp_path, name, center):
-    """Return the corners that a link has of a file with two triangles, 0.01 m a unit."""
-    (tmp_path / 'two.dae').write_text(two_triangles(), encoding='utf-8')
-    spec = load(link(f'<collision name="c"><geometry><mesh><uri>file://{tmp_path}/two.dae</uri>'
+def load_submesh(tmp_path, name, center):
+    """Return a link with one part of a file of two triangles, 0.01 m a unit."""
+    file = tmp_path / 'two.dae'
+    if not file.exists():
+        file.write_text(two_triangles(), encoding='utf-8')
+    spec = load(link(f'<collision name="c"><geometry><mesh><uri>file://{file}</uri>'
                      f'<submesh><name>{name}</name><center>{center}</center></submesh></mesh>'
                      '</geometry></collision>'))
-    vertices, faces = read_mesh(spec.links[0].collisions[0].geometry.path).triangles()
+    return spec.links[0]
+
+
+def submesh(tmp_path, name, center):
+    """Return the corners of such a part."""
+    shape = load_submesh(tmp_path, name, center).collisions[0].geometry
+    vertices, faces = read_mesh(shape.path).triangles()
     return vertices[faces.ravel()]
 
 
@@ -183,6 +192,21 @@ def test_a_centred_submesh_has_its_middle_in_the_origin(tmp_path):
     corners = submesh(tmp_path, 'right', 'true')
     assert corners.min(axis=0) == pytest.approx((-0.5, -1.0, 0.0))
     assert corners.max(axis=0) == pytest.approx((0.5, 1.0, 0.0))
+
+
+@pytest.mark.parametrize('center', ['false', 'true'])
+def test_the_file_of_a_submesh_stays_as_long_as_a_model_has_it(tmp_path, center):
+    first, second = (load_submesh(tmp_path, 'left', center) for _ in range(2))
+    file = Path(str(first.collisions[0].geometry.path))
+    assert second.collisions[0].geometry.path == str(file)
+    check_mesh(second.collisions[0].geometry.path)
+    del first
+    assert [file] == list(file.parent.iterdir())
+    del second
+    assert list(file.parent.iterdir()) == []
+    again = load_submesh(tmp_path, 'left', center)
+    assert again.collisions[0].geometry.path == str(file)
+    assert file.exists()
 
 
 def test_an_unknown_submesh_is_left_out_and_named_with_the_one_that_may_be_meant(tmp_path, caplog):

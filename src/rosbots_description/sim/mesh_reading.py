@@ -83,7 +83,7 @@ def check_mesh(path: str, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -
     Raises:
         ModelError: the sentence names the file and what is wrong with it.
     """
-    reach = _check(path, *_state(path)) * max(map(abs, scale))
+    reach = _check(str(path), *_state(path)) * max(map(abs, scale))
     if reach > LONGEST:
         raise _fault(path, f'reaches {reach:g} m far; at most {LONGEST:g} m are accepted')
 
@@ -94,7 +94,7 @@ def read_mesh(path: str) -> MeshData:
     Raises:
         ModelError: the file is missing, of another format, too big, broken or empty.
     """
-    return _read(path, *_state(path))
+    return _read(str(path), *_state(path))  # a plain string: caches hold no file
 
 
 def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | None, Colour], ...]:

@@ -5,13 +5,8 @@ written as plain .stl and .obj files named by what they hold, so that all models
 removed when no model uses them any more.
 """
 
-import contextlib
 import hashlib
 import math
-import os
-import threading
-import weakref
-from collections import Counter
 from functools import lru_cache
 
 import numpy as np
@@ -20,7 +15,7 @@ from .extremes import farthest
 from .inertia import settle
 from .mesh_reading import MeshData, check_mesh, read_mesh, visual_parts
 from .pose import Vector
-from .scratch import ScratchFolder
+from .scratch import HeldFile, HeldFiles
 from .spec import Mesh
 from .stl import write_stl
 
@@ -31,25 +26,18 @@ __all__ = ['MeshStore', 'check_mesh', 'visual_parts']
 HULL_DIRECTIONS = 512
 
 
-class EngineFile(str):
-    """The path of a file for the engine, which stays as long as somebody holds this very object."""
-
-
 class MeshStore:
     """Makes the engine's mesh files, each as long as it is held. Any thread may ask for files."""
 
     def __init__(self) -> None:
-        self._scratch = ScratchFolder('rosbots_meshes_')
-        self._files: weakref.WeakValueDictionary[str, EngineFile] = weakref.WeakValueDictionary()
-        self._uses: Counter[str] = Counter()  # objects that hold the file of a name
-        self._lock = threading.RLock()  # what is dropped while it is held may drop a file
+        self._files = HeldFiles('rosbots_meshes_')
 
-    def engine_file(self, mesh: Mesh, exact: bool) -> EngineFile:
+    def engine_file(self, mesh: Mesh, exact: bool) -> HeldFile:
         """Return the file of a mesh: its exact surface, or its hull."""
         make = self.collision_surface if exact else self.collision_hull
         return make(mesh.path, mesh.scale)
 
-    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> EngineFile:
+    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> HeldFile:
         """Return the .stl file of the convex hull of the whole mesh, for bodies that move.
 
         The file holds the points to be hulled, which the engine does itself; its faces only
@@ -60,7 +48,7 @@ class MeshStore:
         """
         return self._file('hull', path, scale)
 
-    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> EngineFile:
+    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> HeldFile:
         """Return the .obj file of the mesh's exact triangles, for bodies that stand.
 
         Raises:
@@ -70,38 +58,14 @@ class MeshStore:
 
     def close(self) -> None:
         """Remove all files."""
-        self._scratch.close()
+        self._files.close()
 
-    def _file(self, kind: str, path: str, scale: Vector) -> EngineFile:
+    def _file(self, kind: str, path: str, scale: Vector) -> HeldFile:
         mesh = read_mesh(path)
         key = hashlib.sha256(repr((kind, mesh.digest, *map(float, scale))).encode())
         # Of an .obj PyBullet makes a compound with the hull in it, of a .stl the hull itself.
         name = f'{kind}_{key.hexdigest()[:32]}.{"stl" if kind == "hull" else "obj"}'
-        file = self._files.get(name)
-        if file is None or not os.path.isfile(file):  # somebody may have cleared the folder
-            file = self._write(name, _converted(kind, mesh, scale), path)
-        return file
-
-    def _write(self, name: str, content: bytes, source: str) -> EngineFile:
-        with self._lock:
-            self._uses[name] += 1
-            try:
-                file = EngineFile(self._scratch.write(name, content, source))
-            except BaseException:
-                self._uses[name] -= 1
-                raise
-            self._files[name] = file
-            weakref.finalize(file, self._drop, name, str(file)).atexit = False
-            return file
-
-    def _drop(self, name: str, path: str) -> None:
-        """Remove a file when the last object is gone that held it."""
-        with self._lock:
-            self._uses[name] -= 1
-            if not self._uses[name]:
-                del self._uses[name]
-                with contextlib.suppress(OSError):
-                    os.unlink(path)
+        return self._files.get(name) or self._files.write(name, _converted(kind, mesh, scale), path)
 
 
 def _converted(kind: str, mesh: MeshData, scale: Vector) -> bytes:

@@ -4,6 +4,8 @@ import contextlib
 import os
 import tempfile
 import threading
+import weakref
+from collections import Counter
 from pathlib import Path
 
 from .errors import ModelError
@@ -66,6 +68,55 @@ class ScratchFolder:
             f"mesh file '{source}' cannot be made ready: nothing can be written in "
             f"{' nor in '.join(faults)}; make room there, or set TMPDIR to a folder that has some"
         )
+
+
+class HeldFile(str):
+    """The path of a file of ours, which stays as long as somebody holds this very object.
+
+    Caches keep plain strings of it.
+    """
+
+
+class HeldFiles:
+    """Files in a private folder, each as long as it is held. Any thread may ask for them."""
+
+    def __init__(self, prefix: str) -> None:
+        """Begin the folder's name with `prefix`."""
+        self._scratch = ScratchFolder(prefix)
+        self._files: weakref.WeakValueDictionary[str, HeldFile] = weakref.WeakValueDictionary()
+        self._uses: Counter[str] = Counter()  # objects that hold the file of a name
+        self._lock = threading.RLock()  # what is dropped while it is held may drop a file
+
+    def get(self, name: str) -> HeldFile | None:
+        """Return the file of that name; None if nobody holds it or it was deleted."""
+        file = self._files.get(name)
+        return file if file is not None and os.path.isfile(file) else None
+
+    def write(self, name: str, content: bytes, source: str) -> HeldFile:
+        """Write a file and return it; arguments and faults as of `ScratchFolder.write`."""
+        with self._lock:
+            self._uses[name] += 1
+            try:
+                file = HeldFile(self._scratch.write(name, content, source))
+            except BaseException:
+                self._uses[name] -= 1
+                raise
+            self._files[name] = file
+            weakref.finalize(file, self._drop, name, str(file)).atexit = False
+            return file
+
+    def close(self) -> None:
+        """Remove all files."""
+        self._scratch.close()
+
+    def _drop(self, name: str, path: str) -> None:
+        """Remove a file when the last object is gone that held it."""
+        with self._lock:
+            self._uses[name] -= 1
+            if not self._uses[name]:
+                del self._uses[name]
+                with contextlib.suppress(OSError):
+                    os.unlink(path)
 
 
 def _temporary_folder() -> str:

@@ -5,7 +5,6 @@ units, transforms and colours do too.
 """
 
 import hashlib
-from functools import lru_cache
 from pathlib import Path
 
 from lxml import etree
@@ -15,15 +14,16 @@ from .errors import ModelError
 from .files import read_file, regular_state
 from .markup_values import suggestion
 from .mesh_reading import MAX_BYTES, read_mesh
-from .scratch import ScratchFolder
+from .scratch import HeldFile, HeldFiles
 
 _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
+_files = HeldFiles('rosbots_submeshes_')
 
 
-def submesh_file(path: str, name: str, center: bool) -> str:
+def submesh_file(path: str, name: str, center: bool) -> HeldFile:
     """Return a file that shows only the part `name` of the mesh file `path`.
 
-    It lies in a private folder that lives as long as the process.
+    It lies in a private folder as long as what is returned is held, as a model's spec does.
 
     Args:
         center: move the middle of the part's bounding box into the origin.
@@ -32,22 +32,21 @@ def submesh_file(path: str, name: str, center: bool) -> str:
             room for what is made of it.
     """
     state = regular_state(path, 'mesh file')
-    return _submesh_file(path, state.st_mtime_ns, state.st_size, name, center)
-
-
-@lru_cache(maxsize=256)
-def _submesh_file(path: str, mtime_ns: int, size: int, name: str, center: bool) -> str:
-    if not path.lower().endswith('.dae') or size > MAX_BYTES:
+    if not path.lower().endswith('.dae') or state.st_size > MAX_BYTES:
         raise ModelError(
             f"mesh file '{path}': only .dae files of at most {MAX_BYTES} bytes have submeshes here"
         )
+    key = repr((path, state.st_mtime_ns, state.st_size, name, center)).encode()
+    made = f'{Path(path).stem}_{hashlib.sha256(key).hexdigest()[:32]}.dae'
+    return _files.get(made) or _files.write(made, _content(path, name, center), path)
+
+
+def _content(path: str, name: str, center: bool) -> bytes:
     root = _parse(path)
     _keep_only(root, path, name)
-    file = _write(root, path)
     if center:
-        _move_to_middle(root, file)
-        file = _write(root, path)
-    return file
+        _move_to_middle(root, submesh_file(path, name, center=False))
+    return etree.tostring(root)
 
 
 def _parse(path: str) -> etree._Element:
@@ -91,14 +90,3 @@ def _move_to_middle(root: etree._Element, file: str) -> None:
     etree.SubElement(wrapper, f'{tag}translate').text = ' '.join(f'{x:.12g}' for x in shift)
     wrapper.extend(scene.findall('{*}node'))
     scene.insert(0, wrapper)
-
-
-def _write(root: etree._Element, path: str) -> str:
-    content = etree.tostring(root)
-    digest = hashlib.sha256(content).hexdigest()[:32]
-    return str(_scratch().write(f'{Path(path).stem}_{digest}.dae', content, path))
-
-
-@lru_cache(maxsize=1)
-def _scratch() -> ScratchFolder:
-    return ScratchFolder('rosbots_submeshes_')

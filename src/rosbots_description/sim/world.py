@@ -16,13 +16,14 @@ from .gazebo_libraries import PAGE, library_remark, missing_libraries
 from .guard import LARGEST, Guard, is_lost
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
-from .meshes import EngineFile, MeshStore
+from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
 from .plugins.base import ModelPlugin
 from .plugins.registry import library_name, plugin_class
 from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
+from .scratch import HeldFile
 from .spec import Mesh, ModelSpec, PluginSpec
 from .tuning import Tuning
 from .world_spec import LightSpec
@@ -74,7 +75,7 @@ class World:
         self.listeners: list[Listener] = []
         self.paused = False
         self.meshes = MeshStore()
-        self._files: dict[str, dict[tuple[Mesh, bool], EngineFile]] = {}  # model -> what it needs
+        self._files: dict[str, dict[tuple[Mesh, bool], HeldFile]] = {}  # model -> what it needs
         self._guard = Guard(self)
         self.schedule.add(self._guard)
         self.engine = make_engine(

@@ -14,9 +14,9 @@ from rosbots_msgs.srv import (
 from ...sim.bullet_description import mesh_needs
 from ...sim.errors import ModelError, NotFoundError
 from ...sim.markup import root_tag
-from ...sim.meshes import EngineFile
 from ...sim.model import Model
 from ...sim.pose import Pose, compose
+from ...sim.scratch import HeldFile
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.spec import ModelSpec
 from ...sim.urdf import load_urdf
@@ -54,7 +54,7 @@ class _Arrival:
     spec: ModelSpec
     pose: Pose
     frame: str
-    files: tuple[EngineFile, ...]  # held until the world holds them
+    files: tuple[HeldFile, ...]  # held until the world holds them
 
 
 def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnModelResponse:
