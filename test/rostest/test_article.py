@@ -9,6 +9,7 @@ import sys
 import unittest
 from pathlib import Path
 
+import debian_rviz
 import rospy
 import rostest
 from gazebo_msgs.srv import GetModelState
@@ -119,12 +120,14 @@ class ArticleTest(unittest.TestCase):
         if 'DISPLAY' not in os.environ:
             self.assertTrue(shutil.which('xvfb-run'), 'install xvfb')
             command = ['xvfb-run', '-a', *command]
-        view = self.open(*command)
+        view = debian_rviz.start(lambda: self.open(*command), self._end, STEP)
         for node in ('/joint_state_publisher', '/robot_state_publisher', '/rviz'):
             wait_until(lambda node=node: node in output_of('rosnode', 'list').split(), node, STEP)
-        wait_until(lambda: '/rviz' in output_of('rostopic', 'info', '/tf'), 'RViz reading TF', STEP)
-        os.killpg(view.process.pid, signal.SIGINT)
-        wait_until(lambda: view.shown() is not None and view.process.poll() is not None,
+        self._end(view)
+
+    def _end(self, terminal):
+        os.killpg(terminal.process.pid, signal.SIGINT)
+        wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
                    'the end of RViz', STEP)
 
 

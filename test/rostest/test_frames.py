@@ -14,7 +14,6 @@ import debian_rviz
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from rosnode import rosnode_ping
 from simulator import wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
@@ -77,21 +76,7 @@ class FramesTest(unittest.TestCase):
         if own:
             words = [os.path.join(self._folder, 'rviz.launch')]
             Path(words[0]).write_text(ARTICLE)
-        for _ in range(debian_rviz.STARTS):
-            terminal = self.open('roslaunch', *words)
-            wait_until(lambda: self._looks('/rviz') or debian_rviz.CRASH.search(terminal.shown()),  # noqa: B023
-                       'RViz reading TF', STEP)
-            if not debian_rviz.CRASH.search(terminal.shown()):
-                return terminal
-            self.end(terminal)
-        raise AssertionError(terminal.shown())
-
-    @staticmethod
-    def _looks(node):
-        _, readers, services = rospy.get_master().getSystemState()[2]
-        return any(topic == '/tf' and node in nodes for topic, nodes in readers) \
-            and any(service == debian_rviz.STANDS for service, _ in services) \
-            and rosnode_ping(node, max_count=1, skip_cache=True)  # else one that has crashed
+        return debian_rviz.start(lambda: self.open('roslaunch', *words), self.end, STEP)
 
     def simulator(self):
         terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch')

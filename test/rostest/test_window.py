@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
 """The window: quiet, with frames of its own, and it says when the simulator goes and comes."""
 
+import os
+import re
 import signal
 import sys
 import unittest
+from xmlrpc.client import ServerProxy
 
+import rosnode
 import rospy
 import rostest
 from gazebo_msgs.msg import ModelState
@@ -16,6 +20,15 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 STEP = 40.0  # [s, wall] for a program to come up on a slow machine
 GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: there is a simulator again'
+# Of itself RViz does so in one start of 28.
+CRASHED = 'gzclient: RViz crashed as it opened'
+
+
+def said_by(window):
+    """Return the lines on the screen, from the start of the RViz that stands."""
+    lines = window.shown().splitlines()
+    starts = [i + 1 for i, line in enumerate(lines) if line.startswith(CRASHED)]
+    return lines[max(starts, default=0):]
 
 
 class WindowTest(unittest.TestCase):
@@ -37,13 +50,24 @@ class WindowTest(unittest.TestCase):
     def window(self):
         """Open the window and wait until it takes markers and frames of the simulator."""
         terminal = self.open('gzclient', f'__name:={self._testMethodName}')
-        wait_until(lambda: {'/gazebo/visual_markers', '/gazebo/view/frames'} <= self.read_by_rviz(),
-                   'the window', STEP)
+        self.wait_for_rviz(f'/{self._testMethodName}')
         return terminal
 
-    def read_by_rviz(self):
+    def wait_for_rviz(self, node):
+        wait_until(lambda: {'/gazebo/visual_markers', '/gazebo/view/frames'} <= self.read_by(node)
+                   and rosnode.rosnode_ping(node, max_count=1, skip_cache=True),
+                   f'the window {node}', STEP)
+
+    @staticmethod
+    def read_by(node):
         _, readers, _ = rospy.get_master().getSystemState()[2]
-        return {topic for topic, nodes in readers if f'/{self._testMethodName}' in nodes}
+        return {topic for topic, nodes in readers if node in nodes}
+
+    @staticmethod
+    def process_of(node):
+        """Return the number of a node's process."""
+        uri = rospy.get_master().lookupNode(node)[2]
+        return ServerProxy(uri).getPid('/test')[2]
 
     def see(self, terminal, text):
         wait_until(lambda: text in terminal.shown(), text, STEP)
@@ -57,10 +81,30 @@ class WindowTest(unittest.TestCase):
     def test_it_reads_no_tf_and_says_nothing(self):
         self.server()
         window = self.window()
-        self.assertEqual(self.read_by_rviz() & {'/tf', '/tf_static'}, set())
+        self.assertEqual(self.read_by(f'/{self._testMethodName}') & {'/tf', '/tf_static'}, set())
         window.process.send_signal(signal.SIGINT)
         wait_until(lambda: window.process.poll() is not None, 'the end', STEP)
-        self.assertEqual((window.process.returncode, window.shown()), (0, ''))
+        self.assertEqual((window.process.returncode, said_by(window)), (0, []))
+
+    def test_it_opens_again_after_rviz_has_crashed_at_its_start(self):
+        self.server()
+        node = f'/{self._testMethodName}'
+        window = self.open('gzclient', f'__name:={node[1:]}')
+        wait_until(lambda: node in rosnode.get_node_names(), 'RViz', STEP)
+        first = self.process_of(node)
+        os.kill(first, signal.SIGSEGV)
+        self.see(window, CRASHED)
+        self.wait_for_rviz(node)
+        self.assertNotEqual(self.process_of(node), first)
+
+    def test_a_second_window_opens_beside_the_first(self):
+        self.server()
+        first, node = self.window(), f'/{self._testMethodName}'
+        second = self.open('gzclient', f'__name:={self._testMethodName}')
+        self.see(second, f'a window has the name {node} already; this one is ')
+        self.wait_for_rviz(re.search(r'this one is (\S+)', second.shown())[1])
+        self.assertIsNone(first.process.poll())
+        self.wait_for_rviz(node)
 
     def test_frames_follow_the_models(self):
         self.server()
@@ -96,7 +140,7 @@ class WindowTest(unittest.TestCase):
         self.assertEqual(window.process.returncode, 0, window.shown())
         self.assertNotIn('Traceback', window.shown())
         # RViz itself may say that time has jumped back
-        said = [line for line in window.shown().splitlines() if line.startswith('gzclient:')]
+        said = [line for line in said_by(window) if line.startswith('gzclient:')]
         self.assertEqual(len(said), 2, window.shown())
 
 

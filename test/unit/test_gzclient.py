@@ -11,7 +11,7 @@ import pytest
 import yaml
 from support import ROOT
 
-from rosbots_description.cli.gzclient import config_file, surroundings
+from rosbots_description.cli.gzclient import STARTS, config_file, surroundings
 
 WINDOW = """#!/bin/sh
 echo $$ "$@" > {folder}/arguments
@@ -21,16 +21,34 @@ MAIN = ('import sys; from rosbots_description.cli import gzclient; '
         'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))')
 
 
+# Dies as Debian's RViz does, {times} times and then stays until it is told to go.
+CRASHES = """#!/bin/sh
+echo >> {folder}/starts
+test $(wc -l < {folder}/starts) -gt {times} && exec sleep 60
+kill -{signal} $$
+"""
+
+
+def open_window(folder, text):
+    """Start gzclient with a program of this text in the place of RViz."""
+    program = folder / 'rviz'
+    program.write_text(text)
+    program.chmod(0o755)
+    return subprocess.Popen(
+        [sys.executable, '-c', MAIN, '--verbose', '__name:=gazebo_gui'],
+        env={**os.environ, 'PATH': f'{folder}:{os.environ["PATH"]}',
+             'ROS_MASTER_URI': 'http://127.0.0.1:1'}, stderr=subprocess.PIPE, text=True)
+
+
+def count_starts(folder):
+    starts = folder / 'starts'
+    return len(starts.read_text().splitlines()) if starts.exists() else 0
+
+
 @pytest.fixture
 def window(tmp_path):
     """A gzclient with a program in the place of RViz; and that one's number and arguments."""
-    program = tmp_path / 'rviz'
-    program.write_text(WINDOW.format(folder=tmp_path))
-    program.chmod(0o755)
-    process = subprocess.Popen(
-        [sys.executable, '-c', MAIN, '--verbose', '__name:=gazebo_gui'],
-        env={**os.environ, 'PATH': f'{tmp_path}:{os.environ["PATH"]}',
-             'ROS_MASTER_URI': 'http://127.0.0.1:1'})
+    process = open_window(tmp_path, WINDOW.format(folder=tmp_path))
     try:
         deadline, arguments = time.monotonic() + 20.0, tmp_path / 'arguments'
         while not arguments.exists() or not arguments.read_text():
@@ -60,6 +78,35 @@ def test_the_window_ends_when_its_parent_is_killed(window):
             break
         assert time.monotonic() < deadline
         time.sleep(0.01)
+
+
+@pytest.mark.parametrize(('number', 'times'), [('SEGV', 1), ('ABRT', STARTS - 1)])
+def test_rviz_that_crashes_as_it_opens_is_started_again(tmp_path, number, times):
+    process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal=number, times=times))
+    deadline = time.monotonic() + 20.0
+    while count_starts(tmp_path) <= times:
+        assert process.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate(timeout=10.0)
+    assert process.returncode == 0
+    assert said.splitlines() == [
+        f'gzclient: RViz crashed as it opened (SIG{number}); it is started again'] * times
+
+
+def test_rviz_that_crashes_each_time_is_given_up(tmp_path):
+    process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='SEGV', times=99))
+    _, said = process.communicate(timeout=20.0)
+    assert (process.returncode, count_starts(tmp_path)) == (128 + signal.SIGSEGV, STARTS)
+    assert said.splitlines()[-1] == (
+        f'gzclient: RViz crashed as it opened (SIGSEGV); no window after {STARTS} starts')
+
+
+def test_rviz_that_somebody_ends_stays_closed(tmp_path):
+    process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='KILL', times=9))
+    _, said = process.communicate(timeout=10.0)
+    assert (process.returncode, count_starts(tmp_path), said) == (128 + signal.SIGKILL, 1, '')
 
 
 def test_rviz_gets_a_folder_and_log_levels_unless_the_user_has_given_them(tmp_path, monkeypatch):

@@ -10,7 +10,8 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from .gzserver import split_remappings
@@ -18,6 +19,11 @@ from .gzserver import split_remappings
 # The window shows the world as the simulator has it, whatever TF says of the robots in it.
 _PR_SET_PDEATHSIG = 1  # of prctl(2)
 PERIOD = 1.0  # time between two looks after the simulator [s]
+# Debian's RViz 1.14 now and then overwrites its own heap while it opens its window, without a
+# graphics card in one start of 28. Later the cause is another one, and would only come again.
+STARTS = 4  # at most
+OPENS = 30.0  # time within which a crash is one of the start [s]
+CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGBUS}
 OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 
 
@@ -67,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if rviz is None:
         _say('no window: rviz is not installed; on Debian: apt install rviz')
         return 1
-    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings]
+    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_another_name(remappings)]
     return _attend(command, surroundings(os.environ, config.with_name('gzclient_log.config')))
 
 
@@ -82,6 +88,25 @@ def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
     return made
 
 
+def _another_name(remappings: Sequence[str]) -> list[str]:
+    """Return what gives this window a name of its own, if an open one has that it would get.
+
+    The ROS master would close that one: it allows one node per name.
+    """
+    from ..ros_api.master import NO_MASTER  # noqa: PLC0415  only a window needs these
+    from ..ros_api.name_conflict import holder, node_name  # noqa: PLC0415
+
+    if not any(word.startswith('__name:=') for word in remappings):
+        return []  # RViz makes up a name that nobody has
+    name = node_name('rviz', remappings)
+    with contextlib.suppress(*NO_MASTER):
+        if holder(name):
+            other = f'{name}_{os.getpid()}'
+            _say(f'a window has the name {name} already; this one is {other}')
+            return [f'__name:={other.rpartition("/")[2]}']
+    return []
+
+
 def _end_with_parent() -> None:
     """Let the kernel end this process when its parent is killed and cannot."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
@@ -89,17 +114,7 @@ def _end_with_parent() -> None:
 
 def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     """Run the window until it is closed, and say there and here when the simulator has gone."""
-    from ..ros_api.server_watch import NOTICE, Notice, ServerWatch  # noqa: PLC0415  as above
-
-    notice = Notice()
-
-    def tell(there: bool) -> None:
-        if there:
-            _say('there is a simulator again')
-            notice.withdraw()
-        else:
-            _say(f'{NOTICE}; this window shows what it showed last')
-            notice.show()
+    from ..ros_api.server_watch import ServerWatch  # noqa: PLC0415  only a window needs it
 
     told: list[int] = []
     window: subprocess.Popen | None = None
@@ -111,18 +126,42 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
-    window = subprocess.Popen(
-        command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  no threads yet
-    if told:  # meanwhile
-        end()
-    watch = ServerWatch(tell)
-    code = None
-    while code is None and not told:  # who is told to end says no more of the simulator
-        watch.look()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            code = window.wait(PERIOD)
-    window.wait()
-    return 0 if told else code
+    watch = ServerWatch(_teller())
+    for left in reversed(range(STARTS)):
+        started = time.monotonic()
+        window = subprocess.Popen(command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  it only calls the kernel
+        if told:  # meanwhile
+            end()
+        code = None
+        while code is None and not told:  # who is told to end says no more of the simulator
+            watch.look()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                code = window.wait(PERIOD)
+        code = window.wait()
+        if told:
+            return 0
+        if code not in CRASHES or time.monotonic() - started > OPENS:
+            break
+        _say(f'RViz crashed as it opened ({signal.Signals(-code).name}); '
+             + ('it is started again' if left else f'no window after {STARTS} starts'))
+    return code if code >= 0 else 128 - code  # as shells tell of a signal
+
+
+def _teller() -> Callable[[bool], None]:
+    """Return what tells, here and in the scene, whether there is a simulator."""
+    from ..ros_api.server_watch import NOTICE, Notice  # noqa: PLC0415  only a window needs these
+
+    notice = Notice()
+
+    def tell(there: bool) -> None:
+        if there:
+            _say('there is a simulator again')
+            notice.withdraw()
+        else:
+            _say(f'{NOTICE}; this window shows what it showed last')
+            notice.show()
+
+    return tell
 
 
 def _say(sentence: str) -> None:
