@@ -14,6 +14,7 @@ import debian_rviz
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from sensor_msgs.msg import JointState
 from simulator import wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
@@ -21,6 +22,7 @@ from tf2_msgs.msg import TFMessage
 STEP = 40.0  # [s, wall] for a launch file to show what it is to show
 LINES = 40  # at most in a terminal, as a reader sees them
 DRIVEN = 0.5  # [m]: some two seconds, in which the flood was of 400 lines
+TURNED = 1.0  # [rad]: less than the wheels turn on that way
 ARTICLE = """<launch>
   <param name="robot_description" command="xacro '$(find rosbots_description)/urdf/rosbots.xacro'"/>
   <node name="joint_state_publisher" pkg="joint_state_publisher" type="joint_state_publisher"/>
@@ -51,6 +53,13 @@ class FramesTest(unittest.TestCase):
             subscriber = rospy.Subscriber(topic, TFMessage, self._note)
             self.addCleanup(subscriber.unregister)
         self._travelled = 0.0
+        self._joints = {}  # node -> what it said last of the joints
+        subscriber = rospy.Subscriber('/joint_states', JointState, self._note_joints)
+        self.addCleanup(subscriber.unregister)
+
+    def _note_joints(self, message):
+        self._joints[message._connection_header['callerid']] = dict(
+            zip(message.name, message.position, strict=True))
 
     def _note(self, message):
         for transform in message.transforms:
@@ -106,6 +115,7 @@ class FramesTest(unittest.TestCase):
         moved = self.drive()
         self.assertEqual(moved, {child: TREE[child] for child in moved})
         self.assertTrue(WHEELS | {'base_footprint'} <= set(moved), moved)
+        wait_until(self._angles_agree, f'the same angles in {self._joints}', STEP)
         for terminal in terminals:
             shown = CONTROL.sub('', terminal.shown())
             lines = [line for line in shown.splitlines() if line.strip()]
@@ -113,6 +123,13 @@ class FramesTest(unittest.TestCase):
             self.assertNotRegex(shown, 'Traceback|has died|no such package|QStandard')
             # A state publisher that comes may tell of each wheel once before it is known.
             self.assertLessEqual(shown.count('TF_'), len(WHEELS), shown)
+
+    def _angles_agree(self):
+        told, passed_on = (self._joints.get(f'/{name}') for name in
+                           ('gazebo', 'joint_state_publisher'))
+        return told and passed_on and all(
+            abs(angle) > TURNED and abs(angle - passed_on[joint]) < TURNED / 10
+            for joint, angle in told.items())
 
     def test_rviz_before_the_simulator(self):
         view = self.rviz()

@@ -1,0 +1,39 @@
+"""Debian's joint_state_publisher, which passes on what others say of the joints.
+
+By itself it says that all of them stand at zero, also beside a simulator that turns them, so that
+the wheels in RViz jump to and fro between both.
+
+Subscribes:
+    joint_states (sensor_msgs/JointState): those of other nodes, unless ~source_list says what else.
+Publishes:
+    joint_states (sensor_msgs/JointState) and parameters: as joint_state_publisher has them.
+"""
+
+import contextlib
+import sys
+
+import rospy
+from joint_state_publisher import JointStatePublisher
+from sensor_msgs.msg import JointState
+
+NAME = 'joint_state_publisher'
+
+
+def main() -> int:
+    """Publish until told to end; return an exit code."""
+    rospy.init_node(NAME)
+    try:
+        joints = JointStatePublisher()
+    except RuntimeError as error:  # there is no robot_description
+        sys.stderr.write(f'{NAME}: {error}\n')
+        return 1
+
+    def pass_on(message: JointState) -> None:
+        if message._connection_header['callerid'] != rospy.get_name():
+            joints.source_cb(message)
+
+    if not joints.sources:
+        joints.sources.append(rospy.Subscriber('joint_states', JointState, pass_on))
+    with contextlib.suppress(rospy.ROSInterruptException):
+        joints.loop()
+    return 0
