@@ -94,6 +94,7 @@ workspace_fingerprint() (
   cd "$ROOT"
   {
     echo "$ROOT $WORKSPACE"
+    find . -maxdepth 1 -name CATKIN_IGNORE
     find . companions -maxdepth 2 \( -path './.*' -prune \) -o \
       \( -name CMakeLists.txt -o -name package.xml -o -name setup.py \) -print0 |
       sort -z | xargs -0 sha256sum
@@ -163,9 +164,16 @@ install_python() {
 
 link_packages() {
   local package
+  rm -rf "$WORKSPACE/src/rosbots_description"
   mkdir -p "$WORKSPACE/src"
   find "$WORKSPACE/src" -maxdepth 1 -type l -delete
-  ln -s "$ROOT" "$WORKSPACE/src/rosbots_description"
+  if [[ -e $ROOT/CATKIN_IGNORE ]]; then  # tools/link.py hides the clone as a whole, not its parts
+    mkdir "$WORKSPACE/src/rosbots_description"
+    find "$ROOT" -mindepth 1 -maxdepth 1 ! -name '.*' ! -name CATKIN_IGNORE \
+      -exec ln -s -t "$WORKSPACE/src/rosbots_description" {} +
+  else
+    ln -s "$ROOT" "$WORKSPACE/src/rosbots_description"
+  fi
   for package in "$ROOT"/companions/*/; do
     ln -s "${package%/}" "$WORKSPACE/src/$(basename "$package")"
   done

@@ -123,5 +123,9 @@ def test_the_layouts_have_time_displays_and_views_and_the_window_can_follow_a_mo
         layout = yaml.safe_load(path.read_text())
         assert {panel['Name'] for panel in layout['Panels']} == {'Displays', 'Views', 'Time'}
         assert layout['Window Geometry']['Time'] == {'collapsed': False}
-    views = yaml.safe_load(config_file().read_text())['Visualization Manager']['Views']
+    shown = yaml.safe_load(config_file().read_text())['Visualization Manager']
+    red, _, blue = map(int, shown['Global Options']['Background Color'].split(';'))
+    assert blue > red > 100  # a sky by day
+    views = shown['Views']
+    assert views['Current']['Pitch'] > 0.3  # [rad], from above
     assert views['Saved'][0]['Target Frame'] == 'rosbots'

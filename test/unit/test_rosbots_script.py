@@ -1,6 +1,7 @@
 """./rosbots passes exit codes on and says in one sentence what it does not know."""
 
 import os
+import re
 import subprocess
 
 import pytest
@@ -30,6 +31,8 @@ def rosbots(*arguments, script='', prefix=(), **environment):
         (['exec', 'true'], 0, ''),
         (['exec', 'sh', '-c', 'exit 7'], 7, ''),
         (['exec', 'no_such_program'], 127, "no program 'no_such_program'"),
+        (['link'], 2, 'link takes one workspace'),
+        (['link', '/nowhere'], 2, 'there is no folder /nowhere/src'),
     ],
 )
 def test_exit_codes_and_complaints(arguments, code, said):
@@ -59,6 +62,52 @@ def theirs(tmp_path):
     package.mkdir(parents=True)
     (package / 'package.xml').write_text('<package><name>rosbots_description</name></package>')
     return package
+
+
+def test_every_package_is_linked_but_those_that_the_user_has(tmp_path):
+    packages = {path.parent.name for path in ROOT.glob('companions/*/package.xml')}
+    source = tmp_path / 'src'
+    own = source / 'robots' / 'speech'
+    own.mkdir(parents=True)
+    (own / 'package.xml').write_text('<package><name>teleop_twist_keyboard</name></package>')
+    (source / 'xacro').symlink_to(tmp_path / 'gone')
+    result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.splitlines()[0] == (
+        f'teleop_twist_keyboard is yours, in {own}; ours is left out')
+    linked = {link.name: link.resolve() for link in source.iterdir() if link.is_symlink()}
+    assert linked == {name: ROOT / 'companions' / name
+                      for name in packages - {'teleop_twist_keyboard'}} \
+        | {'rosbots_description': ROOT}
+    assert 'nothing new' in rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='').stdout
+
+
+def test_what_is_in_the_way_of_a_link_is_named(tmp_path):
+    (tmp_path / 'src' / 'xacro').mkdir(parents=True)
+    result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')
+    assert (result.returncode, result.stderr) == (
+        2, f'rosbots: {tmp_path}/src/xacro is in the way, and no package of that name\n')
+
+
+def test_a_workspace_over_one_with_a_robot_of_the_user_gets_no_other(theirs, tmp_path):
+    source = tmp_path / 'over' / 'src'
+    source.mkdir(parents=True)
+    (source / 'rosbots_description').symlink_to(ROOT)
+    said = rosbots('link', str(source.parent), ROS_PACKAGE_PATH=str(theirs.parent)).stdout
+    assert f'rosbots_description is yours, in {theirs}; ours is left out' in said
+    assert not (source / 'rosbots_description').exists()
+    assert (source / 'rosbots_simulator').exists()
+
+
+def test_the_optional_packages_are_installed_by_the_command_that_their_list_gives(tmp_path):
+    (tmp_path / 'sudo').write_text('#!/bin/sh\necho "$@"\n')
+    (tmp_path / 'sudo').chmod(0o755)
+    text = (ROOT / 'apt-optional.txt').read_text()
+    (command,) = re.findall('^# All of them: (.*)', text, re.M)
+    shown = subprocess.run(['sh', '-c', command], cwd=ROOT, capture_output=True, text=True,
+                           env={'PATH': f'{tmp_path}:/usr/bin:/bin'}, check=True).stdout.split()
+    packages = [line for line in text.splitlines() if line and not line.startswith('#')]
+    assert shown == ['apt-get', 'install', '-y', '--no-install-recommends', *packages]
 
 
 @pytest.mark.parametrize(('arguments', 'sees_theirs'), [

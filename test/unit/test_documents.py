@@ -1,0 +1,32 @@
+"""What the documents point to is there."""
+
+import re
+from pathlib import Path
+
+import pytest
+from support import ROOT
+
+DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').glob('*.md'))]
+LINK = re.compile(r'\[[^]]*\]\(([^)\s]+)\)')
+
+
+def anchors(document: Path) -> set[str]:
+    """Return the names by which its headings can be linked to, as GitHub makes them."""
+    titles = re.findall('^#+ (.*)', document.read_text(encoding='utf-8'), re.M)
+    return {re.sub(r'[^\w\- ]', '', title.lower()).replace(' ', '-') for title in titles}
+
+
+@pytest.mark.parametrize('document', DOCUMENTS, ids=lambda path: path.name)
+def test_every_link_leads_to_a_file_and_heading_that_is_there(document):
+    targets = [target for target in LINK.findall(document.read_text(encoding='utf-8'))
+               if '://' not in target]
+    for target in targets:
+        name, _, anchor = target.partition('#')
+        file = document.parent / name if name else document
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file), target
+
+
+def test_the_readme_names_the_tutorial():
+    text = ' '.join((ROOT / 'README.md').read_text(encoding='utf-8').split())
+    assert '"ROS truck trolley, part 4: creating a robot simulation in rviz and gazebo"' in text
