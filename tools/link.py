@@ -23,7 +23,7 @@ def main() -> int:
     """Link what lies in the first folder into the workspace, and say what was done."""
     if len(sys.argv) != 3:
         return _complain('link takes one workspace, for example: ./rosbots link ~/catkin_ws')
-    ours = {folder.name: folder for folder in sorted(Path(sys.argv[1]).iterdir())
+    ours = {folder.name: folder for folder in sorted(Path(sys.argv[1]).absolute().iterdir())
             if (folder / 'package.xml').exists()}
     source = Path(sys.argv[2]).absolute() / 'src'
     if not source.is_dir():
