@@ -99,6 +99,22 @@ def test_a_push_keeps_its_time_when_the_step_size_changes():
         assert model.twist.linear[0] == pytest.approx(1.0, abs=0.005)
 
 
+@pytest.mark.parametrize('together', [3, 8, 40])
+def test_steps_made_together_are_the_same_to_the_bit_as_single_ones(together):
+    """A push given between two runs acts in the next step only, however many follow it."""
+    seen = []
+    for run in (1, together):
+        with empty_world() as world:
+            robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+            for _ in range(5):
+                next(iter(robot.links.values())).push((30.0, 0.0, 5.0), (0.0, 0.0, 1.0))
+                robot.joint('wheel_left_joint').push(0.5)
+                for _ in range(120 // run):
+                    world.run(run)
+            seen.append([*world.engine.coordinates(robot.body)])
+    assert seen[0] == seen[1]
+
+
 def test_a_cancelled_push_ends():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)

@@ -8,7 +8,8 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import repeat
 
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
@@ -26,6 +27,7 @@ from .tuning import Tuning
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then
 # whatever a body touches is no number any more either, the ground first.
 _ANY_FORCE = 1e15  # [N or N m]
+_TOGETHER = 8  # steps in one call, which costs less than a call each
 _ANYWHERE = 1e9  # [m] there a model is lost (see guard.py)
 
 
@@ -54,15 +56,16 @@ class Engine:
         self._step = pybullet.stepSimulation
         self._effort = SolverEffort(self._set_iterations)
         self._until_look = CHECK  # steps
+        self._pushed = False  # since the last step
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._fast = FastBodies(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
         self._slipping = Slipping(self._client, self._maker.scale_friction, self._reach)
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
         self.waste = 0
-        # What has been read since the last step, by PyBullet's body and index: reading one joint
-        # costs as much as reading all of a body's.
-        self._joint_readings: dict[int, dict[int, tuple]] = {}
+        # What has been read since the last step, by PyBullet's body, in the order of Body.indices:
+        # reading one joint costs as much as reading all of a body's.
+        self._joint_readings: dict[int, Sequence[tuple]] = {}
         self.apply(physics)
 
     def close(self) -> None:
@@ -132,15 +135,30 @@ class Engine:
     def _step_alike(self, steps: int) -> None:
         """Make steps in which the same bodies are fast."""
         step, client, fast = self._step, self._client, self._fast
-        is_fast = bool(fast)
-        for _ in range(steps):
+        if not (fast or self._weightless or self._slipping.links or self._pushed):
+            while steps >= _TOGETHER:
+                self._step_together(_TOGETHER)
+                steps -= _TOGETHER
+        self._pushed = False
+        for _ in repeat(None, steps):
             if self._weightless:
                 self._lift_weightless()
             for body, link, slip in self._slipping.links:
                 self.let_slip(body, link, *slip)
             step(client)
-            if is_fast:
+            if fast:
                 fast.after_step()
+
+    def _step_together(self, steps: int) -> None:
+        """Make so many steps in one call, a power of two: then their sizes add up exactly.
+
+        Pushes last as long as a call, and motors are to be set with the size of a single step.
+        """
+        size, client = self._physics.step_size, self._client
+        resize = pybullet.setPhysicsEngineParameter
+        resize(fixedTimeStep=steps * size, numSubSteps=steps, physicsClientId=client)
+        self._step(client)
+        resize(fixedTimeStep=size, numSubSteps=0, physicsClientId=client)
 
     def add(self, spec: ModelSpec, pose: Pose) -> Body:
         """Put a model into the world, its frame at `pose`, all joints at zero."""
@@ -284,6 +302,7 @@ class Engine:
         force, torque = _at_most(force, _ANY_FORCE), _at_most(torque, _ANY_FORCE)
         pybullet.applyExternalForce(part.body, part.index, force, place, world, client)
         pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
+        self._pushed = True
         self._fast.disturb(part.body)
 
     def push_joint(self, body: Body, joint: str, effort: float) -> None:
@@ -292,6 +311,7 @@ class Engine:
         pybullet.setJointMotorControl2(
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
         )
+        self._pushed = True
         self._fast.disturb(body.joints[joint][0])
 
     def joint_reading(self, body: Body, joint: str) -> tuple:
@@ -301,12 +321,11 @@ class Engine:
         gave in the last step [N m or N].
         """
         number, index = body.joints[joint]
-        readings = self._joint_readings.get(number)
+        readings, indices = self._joint_readings.get(number), body.indices[number]
         if readings is None:
-            indices = body.indices[number]
-            states = pybullet.getJointStates(number, indices, self._client)
-            readings = self._joint_readings[number] = dict(zip(indices, states, strict=True))
-        return readings[index]
+            readings = pybullet.getJointStates(number, indices, self._client)
+            self._joint_readings[number] = readings
+        return readings[indices.index(index)]
 
     def let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
         """Let what a link touches slide in the next step as its slip compliance has it.
@@ -327,9 +346,9 @@ class Engine:
 
     def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
-        velocity = max(-ANY_SPEED, min(ANY_SPEED, velocity))
         if body.motors.get(joint) == (velocity, effort):
             return  # it does so already
+        velocity = max(-ANY_SPEED, min(ANY_SPEED, velocity))
         body.motors[joint] = (velocity, effort)
         self._driven[body] = None
         pybullet.setJointMotorControl2(

@@ -13,12 +13,12 @@ from .body import Masses
 from .bullet import pybullet
 from .pose import Vector, conjugate, rotate
 
-LOOK = 10  # steps between two looks at all bodies
+LOOK = 20  # steps between two looks at all bodies
 # dt w^2 [1/s], from which on bodies of several links are put right while they touch nothing; and
 # the share of its energy that a single link gains per second, from which on it is.
 _FAST, _GAINS = 0.01, 2e-4
 _HELD = 10.0  # times as much where something holds it, as a floor does a robot on the spot
-_CALM = 200  # looks without speed, after which a multibody is left alone again
+_CALM = 100  # looks without speed, after which a multibody is left alone again
 # Share of the most kinetic energy a multibody had, by which its energy may grow. As velocities and
 # places are not of the same moment, it seems to change by less.
 _GROWS = 0.01
@@ -74,17 +74,20 @@ class FastBodies:
     def look(self) -> None:
         """Find what turns fast."""
         self.rest = LOOK
+        velocity_of, client, step_size = pybullet.getBaseVelocity, self._client, self._step_size
         for number, masses in self._bodies.items():
-            velocity = pybullet.getBaseVelocity(number, self._client)[1]
-            speed = sum(w * w for w in velocity) * self._step_size
+            velocity = x, y, z = velocity_of(number, client)[1]
+            speed = (x * x + y * y + z * z) * step_size
             if masses.unbalanced:
-                states = pybullet.getJointStates(number, masses.unbalanced, self._client)
-                speed += sum(state[1] * state[1] for state in states) * self._step_size
+                states = pybullet.getJointStates(number, masses.unbalanced, client)
+                speed += sum(state[1] * state[1] for state in states) * step_size
+            if speed <= _FAST and number not in self._swinging:
+                continue
             fast = speed / _FAST
             if fast > 1.0 and len(masses.parts) == 1 and not masses.joints:
-                _, turn = pybullet.getBasePositionAndOrientation(number, self._client)
+                _, turn = pybullet.getBasePositionAndOrientation(number, client)
                 own = rotate(conjugate(turn), velocity)
-                fast = gained_share(masses.parts[0].moments, own, self._step_size) / _GAINS
+                fast = gained_share(masses.parts[0].moments, own, step_size) / _GAINS
             self._note(number, masses, fast)
 
     def _note(self, number: int, masses: Masses, fast: float) -> None:

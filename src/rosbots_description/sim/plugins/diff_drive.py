@@ -64,17 +64,16 @@ class DiffDrive(WheeledDrive):
     def update(self, elapsed: float) -> None:
         """Set the wheels' speeds."""
         x, _, yaw_rate = self.target
-        half = yaw_rate * self.wheel_separation / 2.0
+        half, radius = yaw_rate * self.wheel_separation / 2.0, self.wheel_diameter / 2.0
         target = [x - half, x + half]
         limit = self.wheel_acceleration * elapsed
-        radius = self.wheel_diameter / 2.0
-        missing = [
-            goal - wheel.velocity * radius for goal, wheel in zip(target, self.wheels, strict=True)
-        ]
-        if limit > 0.0 and min(abs(missing[0]), abs(missing[1])) >= REACHED:
-            for i in (0, 1):
-                self._setpoint[i] += max(-limit, min(limit, missing[i]))
-            target = self._setpoint
+        if limit > 0.0:
+            missing = [goal - wheel.velocity * radius
+                       for goal, wheel in zip(target, self.wheels, strict=True)]
+            if min(map(abs, missing)) >= REACHED:
+                for i in (0, 1):
+                    self._setpoint[i] += max(-limit, min(limit, missing[i]))
+                target = self._setpoint
         for wheel, speed in zip(self.wheels, target, strict=True):
             wheel.set_motor(speed / radius, self.wheel_torque)
 
