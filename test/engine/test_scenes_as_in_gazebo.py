@@ -5,11 +5,8 @@ from support.passive import SCENES, compare_scene
 from support.recorded import exceeded
 
 # What is further from Gazebo than the tolerances of support/passive.py: how far, and why.
-SPRING = 'springs of joints are not supported'
 CORNER = 'of a box above a plane PyBullet finds one corner in a step, so it rocks by 0.015 rad'
 KNOWN = (
-    ('pendulum', 'p_spring', 70.0, SPRING),
-    ('prismatic', 'q_spring', 40.0, SPRING),
     ('slope', 'b6', 160.0, 'of two surfaces below 1 PyBullet takes the product'),
     ('mu_pairs', 'f5', 70.0, 'mu 10 is as good as 1'),
     ('roll', 'c::', 30.0, 'loose cylinders have a rolling resistance of 0.005'),

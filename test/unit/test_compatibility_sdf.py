@@ -59,7 +59,9 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
   <link name="b"/><joint name="j" type="revolute"><pose>0 0 0 0 0 0</pose><parent>a</parent>
     <child>b</child><axis><xyz>0 0 1</xyz><use_parent_model_frame>1</use_parent_model_frame>
     <limit><effort>5</effort><lower>0</lower><upper>1</upper></limit>
-    <dynamics><damping>1</damping><friction>1</friction></dynamics></axis></joint>
+    <dynamics><damping>1</damping><friction>1</friction>
+      <spring_stiffness>1</spring_stiffness><spring_reference>1</spring_reference></dynamics>
+    </axis></joint>
 </model>
 <model name="s"><static>1</static><include><uri>model://ground_plane</uri></include></model>
 </world></sdf>'''

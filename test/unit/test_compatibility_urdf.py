@@ -14,7 +14,9 @@ INERTIAL = ('<inertial><mass value="1"/>'
 SHAPES = ''.join(f'<{tag}><geometry><sphere radius="1"/></geometry></{tag}>'
                  for tag in ('collision', 'visual'))
 ROBOT = f'''<robot name="r"><link name="a">{INERTIAL}{SHAPES}</link><link name="b">{INERTIAL}</link>
-<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'''
+<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
+<link name="c">{INERTIAL}</link>
+<joint name="turning" type="continuous"><parent link="a"/><child link="c"/></joint>'''
 VALUES = dict.fromkeys(('diffuse', 'ambient'), '1 0 0 1') \
     | dict.fromkeys(('material', 'name'), 'Gazebo/Red') | {'fdir1': '1 0 0', 'gravity': '0'} \
     | dict.fromkeys(('static', 'selfCollide', 'self_collide', 'preserveFixedJoint',
@@ -35,7 +37,8 @@ ROWS = rows()
 def robot(path):
     """Return the ROBOT with the element of a row in a <gazebo> block, as a model."""
     owner, *tags = path.split('/')
-    reference = {'link': ' reference="a"', 'joint': ' reference="j"', 'model': ''}[owner]
+    joint = 'turning' if 'spring' in tags[-1] else 'j'
+    reference = {'link': ' reference="a"', 'joint': f' reference="{joint}"', 'model': ''}[owner]
     text = VALUES.get(tags[-1], '2')
     for tag in reversed(tags):
         filename = ' filename="lib.so"' if tag == 'plugin' else ''

@@ -191,10 +191,10 @@ def test_other_names_in_plugins_stay():
 
 def test_what_is_not_simulated_is_named_once(caplog):
     load('<gazebo reference="c"><glow/><glow/></gazebo>\n<gazebo><wind/></gazebo>'
-         '<gazebo reference="bc"><springStiffness>1</springStiffness><stopCfm>0</stopCfm></gazebo>')
+         '<gazebo reference="bc"><physics>1</physics><stopCfm>0</stopCfm></gazebo>')
     assert caplog.messages == [
         "model 'bot' (s): not simulated in <gazebo> blocks: <glow> (line 2), <wind> (line 3), "
-        '<springStiffness> (line 3)'
+        '<physics> (line 3)'
     ]
 
 
@@ -209,3 +209,13 @@ def test_a_block_for_nothing_is_named_with_what_might_be_meant(caplog):
 def test_a_broken_number_in_a_block_is_an_error(tag, text):
     with pytest.raises(ModelError, match=rf"^s, line 2: <gazebo reference='c'>: <{tag}> is "):
         load(f'<gazebo reference="c"><{tag}>{text}</{tag}></gazebo>')
+
+
+def test_joints_have_springs(caplog):
+    made = load('<gazebo reference="bc"><springStiffness>7.5</springStiffness>'
+                '<springReference>-0.5</springReference></gazebo>')
+    joint = next(joint for joint in made.joints if joint.name == 'bc')
+    assert (joint.stiffness, joint.reference) == (7.5, -0.5)
+    assert not caplog.messages
+    with pytest.raises(ModelError, match='<springStiffness> is -1; it must not be negative'):
+        load('<gazebo reference="bc"><springStiffness>-1</springStiffness></gazebo>')

@@ -170,3 +170,12 @@ def test_more_joints_than_the_engine_can_hold_are_refused():
     joints = ''.join(joint(f'l{i}', f'l{i + 1}') for i in range(129))
     with pytest.raises(ModelError, match='more than 127 joints'):
         load(joints, links=links)
+
+
+def test_springs_are_read_and_none_pushes():
+    inside = ('<axis><xyz>1 0 0</xyz><dynamics><spring_stiffness>{}</spring_stiffness>'
+              '<spring_reference>-0.5</spring_reference></dynamics></axis>')
+    made = only(inside=inside.format(7.5))
+    assert (made.stiffness, made.reference) == (7.5, -0.5)
+    assert '<spring_stiffness> is -1; it must not be negative' in complaint(
+        joint(inside=inside.format(-1)))

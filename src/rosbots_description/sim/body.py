@@ -41,7 +41,12 @@ class Masses(NamedTuple):
 
     parts: tuple[Mass, ...]
     joints: tuple[int, ...]  # all of them
-    damping: tuple[float, ...]  # of each joint [N m s/rad or N s/m]
+    # Of each joint: damping [N m s/rad or N s/m], stiffness of its spring [N m/rad or N/m], where
+    # that pulls to [rad or m], and how much a unit of effort accelerates it (springs.py).
+    damping: tuple[float, ...]
+    stiffness: tuple[float, ...]
+    reference: tuple[float, ...]
+    compliance: tuple[float, ...]
     unbalanced: tuple[int, ...]
     is_fixed: bool
 

@@ -14,6 +14,7 @@ from .friction_filter import FrictionFilter, Side
 from .inertia import is_balanced, principal_axes
 from .pose import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
 from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from .springs import compliance
 from .surfaces import (
     Groups,
     compliant,
@@ -61,8 +62,12 @@ def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
     joints = tuple(body.joints[joint.name][1] for joint, _ in movable)
     unbalanced = tuple(body.joints[joint.name][1] for joint, link in movable
                        if link.name in parents or not is_balanced(link.inertial, joint))
-    damping = tuple(joint.damping for joint, _ in movable)
-    return Masses(parts, joints, damping, unbalanced, tree.fixed_base)
+    links = {link.name: link for link in tree.links[tree.fixed_base:] if link.inertial}
+    given = [(joint.damping, joint.stiffness, joint.reference,
+              compliance(joint, link, links.get(joint.parent))
+              if joint.damping or joint.stiffness else 1.0) for joint, link in movable]
+    return Masses(parts, joints, *(zip(*given, strict=True) if given else ((),) * 4), unbalanced,
+                  tree.fixed_base)
 
 
 class BodyMaker:
@@ -136,7 +141,9 @@ class BodyMaker:
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
             part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i], tuple(also))
             body.parts[link.name] = part
-            self._set_inertia(part, moments[i], joint)
+            pybullet.changeDynamics(
+                number, part.index, localInertiaDiagonal=moments[i], physicsClientId=self._client
+            )
             self._set_surfaces(body, tree, i, own[i], index_of, mass)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
@@ -215,15 +222,6 @@ class BodyMaker:
         for index in range(pybullet.getNumJoints(number, self._client)):
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
         return indices
-
-    def _set_inertia(self, part: Part, inertia: Vector, joint: JointSpec | None) -> None:
-        pybullet.changeDynamics(
-            part.body,
-            part.index,
-            localInertiaDiagonal=inertia,
-            jointDamping=joint.damping if joint else 0.0,
-            physicsClientId=self._client,
-        )
 
     def _set_surfaces(
         self,

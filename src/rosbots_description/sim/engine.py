@@ -1,7 +1,7 @@
 """The physics engine: specs and names in, plain values out.
 
-This module, body_maker.py, fast_bodies.py, slipping.py, untouching.py and canvas.py alone know
-PyBullet.
+This module, body_maker.py, fast_bodies.py, slipping.py, springs.py, untouching.py and canvas.py
+alone know PyBullet.
 
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
 frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a
@@ -21,6 +21,7 @@ from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from .slipping import Slipping
 from .solver_effort import CHECK, Motor, SolverEffort
 from .spec import ModelSpec
+from .springs import Springs
 from .surfaces import overlap_share
 from .tuning import Tuning
 
@@ -59,6 +60,7 @@ class Engine:
         self._pushed = False  # since the last step
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._fast = FastBodies(self._client)
+        self._springs = Springs(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
         self._slipping = Slipping(self._client, self._maker.scale_friction, self._reach)
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
@@ -86,6 +88,7 @@ class Engine:
         self._cone = physics.friction_cone or self._tuning.friction_cone
         self._maker.set_step_size(physics.step_size)
         self._fast.set(physics.step_size, physics.gravity)
+        self._springs.set_step_size(physics.step_size)
         pybullet.setGravity(*physics.gravity, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=physics.step_size,
@@ -108,6 +111,7 @@ class Engine:
         """Remove everything; the same bodies added again then move bit for bit as before."""
         self._maker.reset()
         self._fast.clear()
+        self._springs.clear()
         self._weightless.clear()
         self._driven.clear()
         self._until_look = CHECK
@@ -143,6 +147,8 @@ class Engine:
         for _ in repeat(None, steps):
             if self._weightless:
                 self._lift_weightless()
+            if self._springs:
+                self._springs.push()
             for body, link, slip in self._slipping.links:
                 self.let_slip(body, link, *slip)
             step(client)
@@ -176,6 +182,7 @@ class Engine:
         if body.weightless:
             self._weightless.append(body)
         self._fast.add(body.masses)
+        self._springs.add(body.masses)
         self._slipping.add(body, spec)
         return body
 
@@ -187,6 +194,7 @@ class Engine:
         self._slipping.remove(body)
         self._driven.pop(body, None)
         self._fast.forget(body.bodies)
+        self._springs.forget(body.bodies)
         self.waste += body.size
         self._maker.remove(body)
 

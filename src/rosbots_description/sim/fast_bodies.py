@@ -12,6 +12,7 @@ import numpy as np
 from .body import Masses
 from .bullet import pybullet
 from .pose import Vector, conjugate, rotate
+from .springs import followed_damping, followed_stiffness
 
 LOOK = 20  # steps between two looks at all bodies
 # dt w^2 [1/s], from which on bodies of several links are put right while they touch nothing; and
@@ -115,7 +116,8 @@ class _Swinging:
 
     Work is that of its motors and dampers; what stands does none. What pushes do, and other bodies
     that move, is not known: the energy after that is taken as it is. While a body flies, only the
-    energy about its centre of mass is looked at, which gravity does not change.
+    energy about its centre of mass is looked at, which gravity does not change. Springs keep what
+    they take.
     """
 
     def __init__(self, client: int, number: int, masses: Masses) -> None:
@@ -136,32 +138,35 @@ class _Swinging:
     def hold(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
         """See that the last step did not add to the energy."""
         touched = self.touched()
-        total, kinetic, drift = self._energy(step_size, gravity)
+        total, own, kinetic, drift = self._energy(step_size, gravity)
         self._most = max(self._most, kinetic)
         slack = _GROWS * self._most
         flew, self.flies = self.flies, not (touched or self._all.is_fixed)
         flies_on = flew and self.flies
         if self.ceiling is None or not touched.isdisjoint(moving):
-            self.ceiling = slack + (kinetic if self.flies else total)
+            self.ceiling = slack + (own if self.flies else total)
         else:
             if flew and touched:
                 self.ceiling = self._total
             self.ceiling += self._work(step_size)
-            excess = min(kinetic, (kinetic if flies_on else total) - self.ceiling)
+            excess = min(kinetic, (own if flies_on else total) - self.ceiling)
             if excess > 0.0:
                 self._slow_down((1.0 - excess / kinetic) ** 0.5, drift)
-                total, kinetic = total - excess, kinetic - excess
+                total, own = total - excess, own - excess
             if touched:
                 self.ceiling = min(self.ceiling, total + slack)
             elif self.flies and not flew:
-                self.ceiling = kinetic
+                self.ceiling = own
         self._total = total
 
-    def _energy(self, step_size: float, gravity: Vector) -> tuple[float, float, np.ndarray]:
-        """Return all energy, its kinetic part [J], and how the centre of mass drifts [m/s].
+    def _energy(
+        self, step_size: float, gravity: Vector
+    ) -> tuple[float, float, float, np.ndarray]:
+        """Return energies [J], and how the centre of mass drifts [m/s].
 
-        The kinetic energy is that about a centre of mass that is free to move. Heights are taken in
-        the middle of the last step, where its velocities belong.
+        All energy, that without place and drift of the centre of mass, and the kinetic part of
+        this. Heights and springs are taken in the middle of the last step, where its velocities
+        belong.
         """
         states = pybullet.getLinkStates(self._number, self._indices, 1, 1, self._client)
         rows = [(state[0], state[1], state[6], state[7]) for state in states]
@@ -180,14 +185,26 @@ class _Swinging:
         linear = linear - drift
         kinetic = 0.5 * float((self._mass[:, None] * linear * linear).sum()
                               + (self._moments * own * own).sum())
-        return energy + kinetic, kinetic, drift
+        own = kinetic + self._strain(step_size)
+        return energy + own, own, kinetic, drift
+
+    def _strain(self, step_size: float) -> float:
+        """Return the energy in the springs of joints [J]."""
+        if not any(self._all.stiffness):
+            return 0.0
+        states = pybullet.getJointStates(self._number, self._all.joints, self._client)
+        return sum(
+            0.5 * stiffness * (state[0] - 0.5 * step_size * state[1] - reference) ** 2
+            for state, stiffness, reference in zip(
+                states, followed_stiffness(self._all, step_size), self._all.reference, strict=True)
+        )
 
     def _work(self, step_size: float) -> float:
         """Return what motors and dampers gave in the last step [J], less than 0 if they took it."""
         if not self._all.joints:
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
-        pairs = zip(states, self._all.damping, strict=True)
+        pairs = zip(states, followed_damping(self._all, step_size), strict=True)
         return step_size * sum(speed * (effort - damping * speed)
                                for (_, speed, _, effort), damping in pairs)
 

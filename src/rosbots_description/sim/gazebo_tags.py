@@ -47,7 +47,8 @@ _SURFACE_PATHS = {'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': '
                   'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
                   'surface/contact/ode/max_vel': 'max_vel',
                   'surface/contact/ode/min_depth': 'min_depth', 'laser_retro': 'laser_retro'}
-_NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor'}
+_NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor', 'springStiffness',
+                'springReference'}
 _LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
 _PARTS = ('sensor', 'light', 'projector')
 # Read and kept for whoever asks, but nothing here acts on it.
@@ -56,7 +57,8 @@ _KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', '
                'max_contacts'}
 # Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
 _SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
-                'fudgeFactor', 'springReference', 'canonicalBody'}
+                'fudgeFactor', 'canonicalBody'}
+_SPRING_TAGS = {'springStiffness': 'stiffness', 'springReference': 'reference'}
 
 
 @dataclass
@@ -75,6 +77,7 @@ class GazeboTags:
 
     links: dict[str, LinkTags] = field(default_factory=dict)
     kept_joints: dict[str, str] = field(default_factory=dict)  # fixed joint -> what it becomes
+    joints: dict[str, dict[str, float]] = field(default_factory=dict)  # fields of JointSpec
     static: bool = False
     plugins: list[PluginSpec] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # sentences to warn with
@@ -329,7 +332,7 @@ def _read_visual(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
         link.material = Material(scalar_numbers(colour, 4))
 
 
-_JOINT_TAGS = _SOLVER_TAGS | {'disableFixedJointLumping', 'preserveFixedJoint'}
+_JOINT_TAGS = {*_SOLVER_TAGS, *_SPRING_TAGS, 'disableFixedJointLumping', 'preserveFixedJoint'}
 
 
 def _read_joint_block(
@@ -344,6 +347,11 @@ def _read_joint_block(
                 if truth(child):
                     # Where both are given, preserveFixedJoint wins, whichever comes first.
                     tags.kept_joints.setdefault(joint, REVOLUTE)
+            case tag if tag in _SPRING_TAGS:
+                value = scalar_number(child)
+                if value < 0.0 and tag == 'springStiffness':
+                    raise fault(child, f'<{tag}> is {value:g}; it must not be negative')
+                tags.joints.setdefault(joint, {})[_SPRING_TAGS[tag]] = value
             case tag:
                 (tags.idle if tag in _SOLVER_TAGS else unread).append(_mention(child))
 

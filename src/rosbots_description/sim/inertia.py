@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .pose import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
-from .spec import REVOLUTE, Inertial, JointSpec
+from .spec import REVOLUTE, Inertial, JointSpec, LinkSpec
 
 # A body without any resistance to turning cannot be simulated. It gets that of a solid ball of
 # this radius [m] about the axes in question.
@@ -207,6 +207,22 @@ def _nearest_order(axes: np.ndarray) -> list[int]:
         free = [i for i in range(3) if i not in order]
         order.append(max(free, key=lambda i: row[i]))
     return order
+
+
+def mobility(link: LinkSpec, place: Vector, turn: Quaternion) -> np.ndarray:
+    """Return how a free link answers a wrench at a place (6x6): turning and moving, in its axes.
+
+    Both are in the frame of the link's model; so are the place [m], and what turns the link about
+    it.
+    """
+    com = compose(link.pose, link.inertial.pose)
+    axes = _matrix(turn) @ _matrix(com.orientation)
+    loose = axes @ np.linalg.inv(tensor(link.inertial)) @ axes.T
+    x, y, z = _matrix(turn) @ np.subtract(com.position, place)
+    arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.block([
+        [loose, -loose @ arm], [arm @ loose, np.eye(3) / link.inertial.mass - arm @ loose @ arm],
+    ])
 
 
 def _matrix(q: Quaternion) -> np.ndarray:

@@ -10,11 +10,21 @@ from .markup_values import fault, required_name
 from .pose import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames
-from .sdf_values import limit_of, not_negative_of, numbers_of, text_of, truth_of, unit_vector_of
+from .sdf_values import (
+    limit_of,
+    not_negative_of,
+    number_of,
+    numbers_of,
+    text_of,
+    truth_of,
+    unit_vector_of,
+)
 from .spec import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
 
 _TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC, 'fixed': FIXED}
 _NOT_SIMULATED = ('ball', 'universal', 'screw', 'revolute2', 'gearbox')
+_DYNAMICS = {'damping': 'damping', 'friction': 'friction', 'spring_stiffness': 'stiffness',
+             'spring_reference': 'reference'}
 _UP = (0.0, 0.0, 1.0)
 # Before SDF 1.5 axes are given in the model's frame; until 1.6 a flag may say so; since 1.7 an
 # attribute names the frame.
@@ -91,9 +101,10 @@ def _motion(
     fields = {'axis': _axis(document, axis, frame, frames)}
     limit, dynamics = axis.find('limit'), axis.find('dynamics')
     if dynamics is not None:
-        notes.check(dynamics, ('damping', 'friction'))
+        notes.check(dynamics, _DYNAMICS)
         fields |= {
-            key: not_negative_of(dynamics, key, 0.0) for key in ('damping', 'friction')
+            field: number_of(dynamics, key, 0.0) if field == 'reference'
+            else not_negative_of(dynamics, key, 0.0) for key, field in _DYNAMICS.items()
         }
     initial = axis.find('initial_position')
     if initial is not None:

@@ -179,7 +179,8 @@ class JointSpec:
     """A connection; its frame stands in the child link at `pose`, `axis` is a unit vector in it.
 
     Limits are None where there is none: position [rad or m], effort [N m or N], velocity
-    [rad/s or m/s]. Damping is [N m s/rad or N s/m], friction [N m or N].
+    [rad/s or m/s]. Damping is [N m s/rad or N s/m], friction [N m or N], the stiffness of its
+    spring [N m/rad or N/m]; that pulls towards the reference [rad or m].
     """
 
     name: str
@@ -194,6 +195,8 @@ class JointSpec:
     velocity: float | None = None
     damping: float = 0.0
     friction: float = 0.0
+    stiffness: float = 0.0
+    reference: float = 0.0
 
     @property
     def axis_in_child(self) -> Vector:

@@ -105,6 +105,10 @@ def _read(
     )
     notes += tags.notes
     joints = [read_joint(element, tags.kept_joints, notes) for element in joint_elements]
+    joints = [
+        replace(joint, spec=replace(joint.spec, **tags.joints.get(joint.spec.name, {})))
+        for joint in joints
+    ]
     reader = LinkReader(robot, check_mesh, tags.left_out, find_model)
     links = [
         apply_tags(link, tags.links.get(link.spec.name))
