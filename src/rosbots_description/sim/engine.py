@@ -139,7 +139,8 @@ class Engine:
     def _step_alike(self, steps: int) -> None:
         """Make steps in which the same bodies are fast."""
         step, client, fast = self._step, self._client, self._fast
-        if not (fast or self._weightless or self._slipping.links or self._pushed):
+        is_sprung = bool(self._springs)
+        if not (fast or is_sprung or self._weightless or self._slipping.links or self._pushed):
             while steps >= _TOGETHER:
                 self._step_together(_TOGETHER)
                 steps -= _TOGETHER
@@ -147,7 +148,7 @@ class Engine:
         for _ in repeat(None, steps):
             if self._weightless:
                 self._lift_weightless()
-            if self._springs:
+            if is_sprung:
                 self._springs.push()
             for body, link, slip in self._slipping.links:
                 self.let_slip(body, link, *slip)
