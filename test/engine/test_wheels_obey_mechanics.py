@@ -116,13 +116,28 @@ def test_slow_commands_are_obeyed_on_the_flat(spec):
         assert math.dist(model.pose.position, before) / 4.0 == pytest.approx(0.01, rel=0.05)
 
 
-@pytest.mark.parametrize('rate', [0.1, -0.1])
-def test_slow_turns_are_obeyed(rate):
+@pytest.mark.parametrize(('spec', 'rate'), [
+    (MIDDLE, 0.1), (MIDDLE, -0.1), (LIGHT, 0.1), (HEAVY, -0.1),
+    (castered(0.2, 0.12, casters=1), 0.1), (castered(20.0, 0.6, casters=1), -0.1),
+])
+def test_slow_turns_are_obeyed(spec, rate):
     with empty_world() as world:
-        model = placed(world, MIDDLE)
+        model = placed(world, spec)
         command(model, 0.0, rate)
         world.run(3000)
         assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.05)
+
+
+@pytest.mark.parametrize(('spec', 'degrees', 'yaw'), [
+    (MIDDLE, 10.0, 0.0), (LIGHT, 10.0, 0.7), (LIGHT, 3.0, 0.0), (castered(20.0, 0.6), 15.0, 0.4),
+])
+def test_a_parked_robot_does_not_creep(spec, degrees, yaw):
+    with empty_world() as world:
+        model = placed(world, spec, tilted_floor(world, pitch=-degrees), yaw)
+        world.run(1000)
+        before = model.pose.position
+        world.run(5000)
+        assert math.dist(before, model.pose.position) < 1e-4
 
 
 def tall(mass=4.0, size=0.4):
