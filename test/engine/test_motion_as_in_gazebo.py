@@ -32,7 +32,7 @@ KNOWN = (
     ('tricycle back_v-0.3_a-0.3', '', 1.5, TREMBLES),
     ('tricycle straight_v0.5', '', 1.7, TREMBLES),
     ('tricycle steer_v0.5_a0.5', 'odom', 3.6, 'speeds in the odometry frame turn with its heading'),
-    ('tricycle steer_v0.5_a0.5', 'left_joint', 1.4, 'it turns by 2 % more'),
+    ('tricycle steer_v0.5_a0.5', 'left_joint', 1.5, 'it turns by 2 % more'),
     ('tricycle steer_v0.5_a0.5', 't90', 1.6, TREMBLES),
     ('tricycle idle', 'way', 90.0, 'its plugin asks for the speed it measures; Gazebo: 44 mm'),
 )  # fmt: skip
