@@ -17,6 +17,7 @@ import pytest
 from support import box_urdf, empty_world, robot_spec, urdf_spec
 
 from rosbots_description.sim import inner_shapes, trial
+from rosbots_description.sim.built_in import GROUND_PLANE
 from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.errors import ModelError
@@ -34,7 +35,6 @@ from rosbots_description.sim.spec import (
     Surface,
 )
 from rosbots_description.sim.trial import Trials
-from rosbots_description.sim.worlds import GROUND_PLANE
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
 SHORT = 0.3  # [s] for a model that is never done with

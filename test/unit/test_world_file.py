@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from rosbots_description.sim.built_in import GROUND_PLANE
 from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.model_search import ModelSearch
 from rosbots_description.sim.physics import PhysicsSettings
@@ -13,7 +14,6 @@ from rosbots_description.sim.sdf_state import joint_positions
 from rosbots_description.sim.spec import PRISMATIC, REVOLUTE, JointSpec, LinkSpec, ModelSpec
 from rosbots_description.sim.world_file import load_world, open_world
 from rosbots_description.sim.world_spec import ModelState, SceneSpec
-from rosbots_description.sim.worlds import GROUND_PLANE
 
 SUN = '<include><uri>model://sun</uri></include>'
 GROUND = '<include><uri>model://ground_plane</uri></include>'

@@ -25,6 +25,7 @@ from dataclasses import replace
 from typing import NoReturn
 
 from .body_maker import grouped
+from .built_in import GROUND_PLANE
 from .bullet_description import MeshFile, kinematic_trees, mesh_needs
 from .engine import Engine
 from .errors import ModelError
@@ -32,7 +33,6 @@ from .guard import is_lost
 from .model import Model
 from .pose import IDENTITY, Pose, compose
 from .spec import Mesh, ModelSpec
-from .worlds import GROUND_PLANE
 
 logger = logging.getLogger(__name__)
 

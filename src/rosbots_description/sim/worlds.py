@@ -1,37 +1,8 @@
-"""The models every world can count on: ground_plane and sun, built in."""
+"""What Gazebo's empty world has."""
 
-from .pose import IDENTITY, Pose
-from .spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual
+from .built_in import GROUND_PLANE, SUN
+from .pose import IDENTITY
 from .world import World
-from .world_spec import DIRECTIONAL, LightSpec
-
-GROUND_PLANE = ModelSpec(
-    name='ground_plane',
-    static=True,
-    links=(
-        LinkSpec(
-            name='link',
-            collisions=(Collision('collision', Plane(), surface=Surface(mu=100.0, mu2=50.0)),),
-            visuals=(
-                Visual('visual', Plane(), material=Material((0.5, 0.5, 0.5, 1.0), 'Gazebo/Grey')),
-            ),
-        ),
-    ),
-)
-
-SUN = LightSpec(
-    name='sun',
-    type=DIRECTIONAL,
-    pose=Pose((0.0, 0.0, 10.0)),
-    diffuse=(0.8, 0.8, 0.8, 1.0),
-    specular=(0.2, 0.2, 0.2, 1.0),
-    range=1000.0,
-    attenuation_constant=0.9,
-    attenuation_linear=0.01,
-    attenuation_quadratic=0.001,
-    direction=(-0.5, 0.1, -0.9),
-    cast_shadows=True,
-)
 
 
 def add_empty_world(world: World) -> None:
