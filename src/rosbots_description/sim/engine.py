@@ -8,6 +8,7 @@ frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 
@@ -16,6 +17,7 @@ from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .fast_bodies import FastBodies
+from .limits import LARGEST
 from .physics import PhysicsSettings
 from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from .slipping import Slipping
@@ -29,7 +31,6 @@ from .tuning import Tuning
 # whatever a body touches is no number any more either, the ground first.
 _ANY_FORCE = 1e15  # [N or N m]
 _TOGETHER = 8  # steps in one call, which costs less than a call each
-_ANYWHERE = 1e9  # [m] there a model is lost (see guard.py)
 # Squared velocity [m^2/s^2] by which no contact or motor changes in the solver's last iteration.
 # PyBullet's own 1e-7 leaves a robot that is parked on a slope 0.01 mm/s.
 _CONVERGED = 1e-8
@@ -228,7 +229,13 @@ class Engine:
             pybullet.resetJointState(*body.joints[name], *state, self._client)
             self.set_joint_motor(body, name, *motion.motors[name])
 
-    def coordinates(self, body: Body) -> Iterator[float]:
+    def has_diverged(self, body: Body) -> bool:
+        """Tell whether any link of a model moves by numbers that are not finite, or of no world."""
+        # Also one that stands: what hits it with endless speed leaves it with a velocity of NaN.
+        return not all(
+            math.isfinite(number) and abs(number) < LARGEST for number in self._coordinates(body))
+
+    def _coordinates(self, body: Body) -> Iterator[float]:
         """Yield all that says where the links of a model are and how fast: of roots, and joints."""
         for number in body.bodies:
             for numbers in pybullet.getBasePositionAndOrientation(number, self._client):
@@ -269,7 +276,7 @@ class Engine:
         """
         for link, pose in poses.items():
             part = body.parts[link]
-            near = Pose(_at_most(pose.position, _ANYWHERE), pose.orientation)
+            near = Pose(_at_most(pose.position, LARGEST), pose.orientation)
             com = compose(near, part.com_in_origin)
             velocity = pybullet.getBaseVelocity(part.body, self._client)
             for number in (part.body, *part.also):

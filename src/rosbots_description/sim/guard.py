@@ -1,19 +1,16 @@
 """A last line of defence: what no longer moves by finite numbers is taken out of harm's way."""
 
-import math
 from typing import TYPE_CHECKING
 
 from .schedule import Hook
 
 if TYPE_CHECKING:
-    from .model import Model
     from .world import World
 
 PERIOD = 100  # steps between two looks: soon enough that nobody falls far through a broken ground
 # What bodies that are gone were read from [bytes], some 45 of the article's robots. PyBullet keeps
 # two or three times that. To build the engine anew takes 5 ms for each robot that stays.
 MOST_WASTE = 1_500_000
-LARGEST = 1e9  # [m, m/s or rad/s] nothing in a world goes that far or fast on purpose
 
 
 class Guard(Hook):
@@ -31,7 +28,7 @@ class Guard(Hook):
 
     def before_step(self) -> None:
         """Mend the world if a model is lost."""
-        lost = [model for model in self._world.models.values() if is_lost(model)]
+        lost = [model for model in self._world.models.values() if model.has_diverged()]
         if lost or self._world.engine.waste > MOST_WASTE:
             self._world.mend(lost)
         self.due = self._world.clock.steps + PERIOD
@@ -39,10 +36,3 @@ class Guard(Hook):
     def look_soon(self) -> None:
         """Look in the next step; time or the size of steps has jumped."""
         self.due = self._world.clock.steps + 1
-
-
-def is_lost(model: 'Model') -> bool:
-    """Tell whether any link of a model moves by numbers that are not finite, or of no world."""
-    # Also one that stands: what hits it with endless speed leaves it with a velocity of NaN.
-    numbers = model.engine.coordinates(model.body)
-    return not all(math.isfinite(number) and abs(number) < LARGEST for number in numbers)

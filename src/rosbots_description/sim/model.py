@@ -158,6 +158,10 @@ class Model:
         pose, twist = self.engine.link_state(self.body, self._canonical)
         return compose(pose, self._model_in_canonical), twist
 
+    def has_diverged(self) -> bool:
+        """Tell whether any of its links moves by numbers that are not finite, or of no world."""
+        return self.engine.has_diverged(self.body)
+
     def set_pose(self, pose: Pose) -> None:
         """Move the model as a whole, joints and velocities as they are."""
         shift = compose(pose, inverse(self.pose))

@@ -29,8 +29,6 @@ from .built_in import GROUND_PLANE
 from .bullet_description import MeshFile, kinematic_trees, mesh_needs
 from .engine import Engine
 from .errors import ModelError
-from .guard import is_lost
-from .model import Model
 from .pose import IDENTITY, Pose, compose
 from .spec import Mesh, ModelSpec
 
@@ -116,18 +114,18 @@ class Trials:
         engine = self._empty_engine(
             lambda mesh: files[mesh, False], lambda mesh: files[mesh, True])
         engine.add(GROUND_PLANE, IDENTITY)
-        model = Model(spec.name, spec, engine, _touching(spec))
+        body = engine.add(spec, _touching(spec))
         for _ in range(STEPS):
             engine.step(1)
             if time.process_time() > BUDGET:
                 break
-        for link in model.links.values():
-            link.state()
-        for joint in model.joints.values():
-            joint.state()
-        if is_lost(model):
+        for link in body.parts:
+            engine.link_state(body, link)
+        for joint in body.joints:
+            engine.joint_reading(body, joint)
+        if engine.has_diverged(body):
             raise ModelError(f'its pose or velocity was no finite number within {STEPS} steps')
-        engine.remove(model.body)
+        engine.remove(body)
 
 
 def _digest(spec: ModelSpec, files: EngineFiles) -> bytes:

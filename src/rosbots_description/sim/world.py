@@ -13,9 +13,10 @@ from .clock import END, SimClock
 from .engine import Engine
 from .errors import ModelError, NotFoundError, SimError
 from .gazebo_libraries import PAGE, library_remark, missing_libraries
-from .guard import LARGEST, Guard, is_lost
+from .guard import Guard
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
+from .limits import LARGEST
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
@@ -177,11 +178,11 @@ class World:
             raise NotFoundError(f"there is no model named '{name}'")
         for listener in self.listeners:
             listener.model_deleted(model)
-        lost = is_lost(model)
+        lost = model.has_diverged()
         self._remove(model)
         if lost:
             # What it was lost by would stay in the engine otherwise, and in what it touched.
-            self.mend([other for other in self.models.values() if is_lost(other)])
+            self.mend([other for other in self.models.values() if other.has_diverged()])
 
     def _remove(self, model: Model) -> None:
         self.jobs.cancel(lambda target: target.model is model)
