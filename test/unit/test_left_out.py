@@ -4,6 +4,7 @@ import logging
 
 import pytest
 
+from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.gazebo_libraries import PAGE, library_remark
 from rosbots_description.sim.model_search import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
