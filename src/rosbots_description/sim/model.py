@@ -1,16 +1,12 @@
 """Models, links, joints and collisions as they are in a world, to ask and to move by name."""
 
-from typing import TYPE_CHECKING
-
 from .body import Body
 from .engine import Engine
 from .errors import NotFoundError
+from .plugin_life import Plugin
 from .pose import Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from .spec import Collision as CollisionSpec
 from .spec import JointSpec, LinkSpec, ModelSpec
-
-if TYPE_CHECKING:
-    from .plugins.base import ModelPlugin
 
 
 class Link:
@@ -137,7 +133,7 @@ class Model:
             for joint in spec.joints
             if joint.name in self.body.joints
         }
-        self.plugins: list[ModelPlugin] = []
+        self.plugins: list[Plugin] = []
         self.left_out = list(spec.left_out)  # what it stands without, each in few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)

@@ -20,7 +20,7 @@ from .limits import LARGEST
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
-from .plugins.base import ModelPlugin
+from .plugin_life import Plugin
 from .plugins.registry import library_name, plugin_class
 from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
@@ -305,7 +305,7 @@ class World:
         model.plugins.append(plugin)
         self.schedule.add(plugin)
 
-    def _plugins(self) -> Iterator[ModelPlugin]:
+    def _plugins(self) -> Iterator[Plugin]:
         for model in self.models.values():
             yield from model.plugins
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from ..clock import NANOSECONDS
 from ..errors import NotFoundError, PluginError
+from ..plugin_life import Plugin
 from ..readings import Output
-from ..schedule import NEVER, Hook
+from ..schedule import NEVER
 from ..spec import PluginSpec
 from .params import Missing, Params, says_default
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 
-class ModelPlugin(Hook):
+class ModelPlugin(Plugin):
     """Code that lives with a model: load, run in the steps it asks for, reset, unload.
 
     A subclass reads its tags from `params` in `load`. `outputs` has by name what it gives out.
@@ -47,11 +48,7 @@ class ModelPlugin(Hook):
         return given or fallback.format(self.model.name)
 
     def start(self) -> None:
-        """Load and begin.
-
-        Raises:
-            PluginError: it cannot work; the model then lives on without it.
-        """
+        """Load and begin; say which tags are not read."""
         self.load()
         unread = self.params.unread()
         if unread:
@@ -88,16 +85,6 @@ class ModelPlugin(Hook):
             raise PluginError(
                 f"{self.log_prefix}couldn't get {what} joint named {name}: {error}"
             ) from None
-
-    def reset(self) -> None:
-        """Go on where the world stands now; all models are back at their spawn poses."""
-
-    def restart(self) -> None:
-        """Begin as after `load`: time may be zero again, and all joints are new."""
-        self.reset()
-
-    def unload(self) -> None:
-        """Let go of what the plugin holds; the model is about to be deleted."""
 
 
 class PeriodicPlugin(ModelPlugin):
