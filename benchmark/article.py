@@ -8,7 +8,7 @@ from pathlib import Path
 import xacro
 
 from rosbots_description.sim import plugins  # noqa: F401  registers
-from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.spec import ModelSpec
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.world import World

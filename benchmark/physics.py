@@ -16,8 +16,8 @@ from support.motion import compare_drive
 from support.recorded import load
 from support.scenes import SCENES, SPEED, box, forward_speed
 
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.model import Model
-from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.world import World
 

@@ -16,7 +16,7 @@ from article import OUTPUT
 
 from rosbots_description.cli import gzserver
 from rosbots_description.ros_api import node
-from rosbots_description.sim.clock import NANOSECONDS
+from rosbots_description.sim.core.clock import NANOSECONDS
 from rosbots_description.sim.model import Joint
 from rosbots_description.sim.schedule import Hook
 from rosbots_description.sim.world import World

@@ -17,7 +17,7 @@ from itertools import product
 from support import SETTLED, SPAWN_POSE, empty_world, robot_spec
 from support.scenes import HEADINGS, castered, drive
 
-from rosbots_description.sim.pose import Pose, from_rpy, yaw_of
+from rosbots_description.sim.core.transforms import Pose, from_rpy, yaw_of
 from rosbots_description.sim.tuning import Tuning
 
 SIZES = {0.2: 0.12, 5.0: 0.4, 50.0: 0.9}  # [m] by mass [kg]

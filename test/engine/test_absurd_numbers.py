@@ -3,8 +3,8 @@
 import pytest
 from support import box_urdf, empty_world, urdf_spec
 
-from rosbots_description.sim.errors import ModelError
-from rosbots_description.sim.pose import Pose, Twist
+from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.core.transforms import Pose, Twist
 
 BOX = urdf_spec(box_urdf('1 1 1', 1.0))
 STANDING = Pose((5.0, 0.0, 0.5))

@@ -6,9 +6,18 @@ import numpy as np
 import pytest
 from support import box_urdf, empty_world, robot_spec, urdf_spec
 
+from rosbots_description.sim.core.transforms import (
+    UP,
+    Pose,
+    Twist,
+    add,
+    compose,
+    conjugate,
+    cross,
+    rotate,
+)
 from rosbots_description.sim.inertia import principal_axes
 from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.pose import UP, Pose, Twist, add, compose, conjugate, cross, rotate
 from rosbots_description.sim.spec import (
     REVOLUTE,
     Box,

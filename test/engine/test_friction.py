@@ -8,8 +8,8 @@ from support import box_urdf, empty_world, urdf_spec
 from support.scenes import ball
 
 from rosbots_description.sim.bullet import pybullet
+from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy
 from rosbots_description.sim.friction_filter import FrictionFilter, Kind, Role, Side
-from rosbots_description.sim.pose import Pose, Twist, compose, from_rpy
 
 SECOND = 1000  # steps
 GRAVITY = 9.8

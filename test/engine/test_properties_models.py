@@ -11,10 +11,10 @@ from support.invariants import check_sentence, numbers_in
 from support.isolation import isolated
 from support.mutations import damaged
 
-from rosbots_description.sim.errors import SimError
+from rosbots_description.sim.core.errors import SimError
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.guard import PERIOD
 from rosbots_description.sim.markup import root_tag
-from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.uris import UnknownPackage

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from support import SPAWN_POSE, empty_world, robot_spec
 
-from rosbots_description.sim.pose import IDENTITY, Pose, Twist, from_rpy
+from rosbots_description.sim.core.transforms import IDENTITY, Pose, Twist, from_rpy
 from rosbots_description.sim.spec import Inertial, JointSpec, LinkSpec, ModelSpec
 
 SECOND_NS = 10**9

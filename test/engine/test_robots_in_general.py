@@ -7,7 +7,7 @@ import pytest
 from support import empty_world, urdf_spec
 from support.scenes import SCENES, SPEED, box, castered, drive, forward_speed, link
 
-from rosbots_description.sim.pose import Pose, Twist, from_rpy, yaw_of
+from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, yaw_of
 
 # The largest error of each scene, in its unit; measured ones are in doc/physics.md.
 # A veer is held to that of the article's robot in Gazebo: 0.42 rad in 20 s at 1 m/s.

@@ -6,8 +6,8 @@ import pytest
 from support import empty_world, urdf_spec
 from support.scenes import GRAVITY, box
 
+from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.pose import Pose, Twist
 from rosbots_description.sim.spec import (
     PRISMATIC,
     REVOLUTE,

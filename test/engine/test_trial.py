@@ -19,11 +19,11 @@ from support import box_urdf, empty_world, robot_spec, urdf_spec
 from rosbots_description.sim import inner_shapes, trial
 from rosbots_description.sim.built_in import GROUND_PLANE
 from rosbots_description.sim.bullet_description import mesh_needs
+from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.core.transforms import IDENTITY, Pose
 from rosbots_description.sim.engine import Engine
-from rosbots_description.sim.errors import ModelError
 from rosbots_description.sim.meshes import MeshStore
 from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.pose import IDENTITY, Pose
 from rosbots_description.sim.spec import (
     REVOLUTE,
     Box,

@@ -3,7 +3,7 @@
 import pytest
 from support import box_urdf, empty_world, urdf_spec
 
-from rosbots_description.sim.pose import Pose, Twist
+from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.sdf import load_sdf
 
 SECOND = 1000  # steps

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
-from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.view import View
 
 SMALL = (160, 120)  # pixels

@@ -5,7 +5,7 @@ import math
 import pytest
 from support import SETTLED, SPAWN_POSE, empty_world, package_directory, robot_urdf
 
-from rosbots_description.sim.pose import yaw_of
+from rosbots_description.sim.core.transforms import yaw_of
 from rosbots_description.sim.schedule import Hook
 from rosbots_description.sim.urdf import load_urdf
 

@@ -18,7 +18,7 @@ from support.scenes import (
 )
 
 from rosbots_description.sim.bullet import pybullet
-from rosbots_description.sim.pose import (
+from rosbots_description.sim.core.transforms import (
     UP,
     Pose,
     Twist,

@@ -16,9 +16,9 @@ from rosbots_msgs.srv import StepRequest
 from support import SETTLED, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 from support.bench import Bench
 
-from rosbots_description.sim.errors import ModelError, NotFoundError
+from rosbots_description.sim.core.errors import ModelError, NotFoundError
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.schedule import Hook
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.spec import (

@@ -10,7 +10,7 @@ import pytest
 import xacro
 
 from rosbots_description.sim import plugins  # noqa: F401  registers
-from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.spec import ModelSpec
 from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.urdf import load_urdf

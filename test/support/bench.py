@@ -16,7 +16,7 @@ from rosbots_description.ros_api.services.registry import (
     CallError,
     respond,
 )
-from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.world import World
 from rosbots_description.sim.world_spec import LightSpec

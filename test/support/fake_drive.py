@@ -2,8 +2,8 @@
 
 import math
 
+from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.pose import Pose, Twist, from_rpy
 from rosbots_description.sim.spec import (
     Collision,
     Cylinder,

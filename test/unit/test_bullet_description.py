@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 from support import robot_spec
 
 from rosbots_description.sim.bullet_description import describe_tree, kinematic_trees
-from rosbots_description.sim.pose import Pose
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.surfaces import surface_groups
 
 

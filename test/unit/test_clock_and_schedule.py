@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from rosbots_description.sim.clock import SimClock
+from rosbots_description.sim.core.clock import SimClock
 from rosbots_description.sim.schedule import LEFT_OUT, NEVER, Herald, Hook, Schedule
 
 

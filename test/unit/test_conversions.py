@@ -13,7 +13,7 @@ from rosbots_description.ros_api.conversions import (
     read_pose,
     stamp,
 )
-from rosbots_description.sim.pose import Pose, Twist
+from rosbots_description.sim.core.transforms import Pose, Twist
 
 HALF = math.sqrt(0.5)
 POSE = Pose((1.0, -2.0, 3.0), (HALF, 0.0, 0.0, HALF))

@@ -16,8 +16,8 @@ from support.fake_drive import (
     wheel_of,
 )
 
-from rosbots_description.sim.errors import PluginError
-from rosbots_description.sim.pose import Pose, Twist, from_rpy
+from rosbots_description.sim.core.errors import PluginError
+from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
 from rosbots_description.sim.readings import JointStates
 
 

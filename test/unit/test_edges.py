@@ -7,8 +7,8 @@ import pytest
 
 from rosbots_description.sim.body_maker import grouped
 from rosbots_description.sim.bullet_description import Tree
+from rosbots_description.sim.core.transforms import IDENTITY, Pose, compose, from_rpy
 from rosbots_description.sim.edges import leaning
-from rosbots_description.sim.pose import IDENTITY, Pose, compose, from_rpy
 from rosbots_description.sim.spec import (
     REVOLUTE,
     Box,

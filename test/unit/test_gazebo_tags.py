@@ -2,7 +2,7 @@
 
 import pytest
 
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.gazebo_tags import ENDLESS_FRICTION
 from rosbots_description.sim.spec import Material, Surface
 from rosbots_description.sim.urdf import load_urdf

@@ -11,7 +11,7 @@ import pytest
 from support import ROOT, package_directory
 from support.hostile import FOLDER, cases
 
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.meshes import check_mesh
 from rosbots_description.sim.model_search import ModelSearch
 from rosbots_description.sim.sdf import load_sdf

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rosbots_description.sim import inertia
+from rosbots_description.sim.core.transforms import IDENTITY, Pose, from_rpy, rotate
 from rosbots_description.sim.inertia import (
     STAND_IN_RADIUS,
     is_balanced,
@@ -16,7 +17,6 @@ from rosbots_description.sim.inertia import (
     tensor,
     turnable,
 )
-from rosbots_description.sim.pose import IDENTITY, Pose, from_rpy, rotate
 from rosbots_description.sim.spec import PRISMATIC, REVOLUTE, Inertial, JointSpec
 
 

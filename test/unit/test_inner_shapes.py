@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import robot_spec
 
+from rosbots_description.sim.core.transforms import Pose, from_rpy, rotate
 from rosbots_description.sim.inner_shapes import inner_shapes
 from rosbots_description.sim.meshes import MeshStore
-from rosbots_description.sim.pose import Pose, from_rpy, rotate
 from rosbots_description.sim.spec import Box, Collision, Cylinder, Mesh, Plane, Sphere
 
 PLATES = [

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from rosbots_description.ros_api.loop import MAX_LAG, Loop, LoopError
-from rosbots_description.sim.errors import NotFoundError
+from rosbots_description.sim.core.errors import NotFoundError
 
 JOIN = 5.0  # [s] for what takes milliseconds; slow machines are no failure
 

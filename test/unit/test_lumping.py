@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import xacro
 
+from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.inertia import tensor
-from rosbots_description.sim.pose import Pose, compose, from_rpy
 from rosbots_description.sim.urdf import load_urdf
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -3,7 +3,7 @@
 import pytest
 
 from rosbots_description.sim import markup
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.markup import line_of, parse, root_tag, source_of
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from rosbots_description.sim import mesh_reading, meshes
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.mesh_reading import GREY, read_mesh
 from rosbots_description.sim.meshes import HULL_DIRECTIONS, MeshStore, check_mesh, visual_parts
 from rosbots_description.sim.stl import read_stl

@@ -5,8 +5,8 @@ import math
 import pytest
 from support.fake_drive import collect, fake_model, make_drive, place, run
 
+from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.plugins.planar_move import PlanarMove
-from rosbots_description.sim.pose import Pose, from_rpy
 
 
 def make(**tags):

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rosbots_description.sim.pose import (
+from rosbots_description.sim.core.transforms import (
     NO_ROTATION,
     Pose,
     compose,

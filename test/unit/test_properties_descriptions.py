@@ -8,7 +8,7 @@ from support.descriptions import sdfs, urdfs
 from support.invariants import check_sentence, check_spec, total
 from support.mutations import RAW, damaged, spoiled
 
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.markup import parse, root_tag
 from rosbots_description.sim.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.urdf import load_urdf

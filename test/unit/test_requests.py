@@ -18,9 +18,9 @@ from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties
 from rosbots_description.ros_api.topics import clock_frequency
 from rosbots_description.ros_api.validity import RequestError, require_finite
-from rosbots_description.sim.errors import SimError
+from rosbots_description.sim.core.errors import SimError
+from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.physics import PhysicsSettings, check
-from rosbots_description.sim.pose import Pose, from_rpy
 from rosbots_description.sim.spec import JointSpec, ModelSpec
 
 HINGE = JointSpec('hinge', 'revolute', 'a', 'b', lower=-1.0, upper=1.0)

@@ -14,7 +14,7 @@ from support import ROOT
 from support.surroundings import unshare
 
 from rosbots_description.sim import scratch
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.scratch import ScratchFolder
 
 # Fills the places that its arguments name, in a private view of the file system, and goes on.

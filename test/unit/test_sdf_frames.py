@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.model_search import ModelSearch
-from rosbots_description.sim.pose import Pose
 from rosbots_description.sim.sdf import load_sdf
 
 QUARTER = math.pi / 2

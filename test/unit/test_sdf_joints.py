@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.core.transforms import Pose, compose
 from rosbots_description.sim.model_search import ModelSearch
-from rosbots_description.sim.pose import Pose, compose
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.spec import FIXED, PRISMATIC, REVOLUTE
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
+from rosbots_description.sim.core.transforms import NO_ROTATION, Pose, from_rpy
 from rosbots_description.sim.friction_axes import EVENLY, friction_scales, restitution
-from rosbots_description.sim.pose import NO_ROTATION, Pose, from_rpy
 from rosbots_description.sim.spec import (
     FIXED,
     REVOLUTE,

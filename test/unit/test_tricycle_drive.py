@@ -5,7 +5,7 @@ import math
 import pytest
 from support.fake_drive import collect, fake_model, make_drive, run, turn
 
-from rosbots_description.sim.errors import PluginError
+from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.plugins.tricycle_drive import TricycleDrive
 
 JOINTS = ('front_steering_joint', 'front_wheel_joint', 'left_wheel_joint', 'right_wheel_joint')

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from rosbots_description.sim.errors import ModelError
-from rosbots_description.sim.pose import Pose, from_rpy
+from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.spec import Box, Cylinder, Material, Mesh, Sphere
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.uris import UnknownPackage

@@ -3,7 +3,7 @@
 import pytest
 from lxml import etree
 
-from rosbots_description.sim.errors import ModelError
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.markup import parse
 from rosbots_description.sim.uris import (
     UnknownPackage,

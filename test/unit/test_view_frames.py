@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from rosbots_description.ros_api.view_frames import ShownFrames
-from rosbots_description.sim.pose import IDENTITY, Pose
+from rosbots_description.sim.core.transforms import IDENTITY, Pose
 
 
 def test_each_model_is_shown_once_and_again_when_it_has_moved():

@@ -9,7 +9,7 @@ from visualization_msgs.msg import Marker
 from rosbots_description.ros_api.markers import PLANE_DEPTH, visual_marker
 from rosbots_description.ros_api.shading import brightness
 from rosbots_description.ros_api.visuals import REFRESH, ShownMarkers
-from rosbots_description.sim.pose import (
+from rosbots_description.sim.core.transforms import (
     IDENTITY,
     Pose,
     cross,

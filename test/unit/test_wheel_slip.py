@@ -8,10 +8,10 @@ from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_o
 
 from rosbots_description.ros_api import slip_reconfigure
 from rosbots_description.sim.body import FrictionAxes
-from rosbots_description.sim.errors import PluginError
+from rosbots_description.sim.core.errors import PluginError
+from rosbots_description.sim.core.transforms import from_rpy
 from rosbots_description.sim.friction_axes import EVENLY
 from rosbots_description.sim.plugins.wheel_slip import WheelSlip
-from rosbots_description.sim.pose import from_rpy
 from rosbots_description.sim.slip import LEAST, Touch, shares
 from rosbots_description.sim.spec import Element
 

@@ -8,7 +8,7 @@ from support import ROOT
 
 from rosbots_description.ros_api import packages
 from rosbots_description.ros_api.world_loading import held_records, own_worlds, read_world, replay
-from rosbots_description.sim.errors import ModelError, NotFoundError
+from rosbots_description.sim.core.errors import ModelError, NotFoundError
 
 EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'
 

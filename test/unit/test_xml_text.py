@@ -3,8 +3,8 @@
 import pytest
 
 from rosbots_description.ros_api.model_source import canonical_xml
+from rosbots_description.sim.core.xml_text import plain_text
 from rosbots_description.sim.markup import parse, root_tag
-from rosbots_description.sim.xml_text import plain_text
 
 
 @pytest.mark.parametrize('text', [

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
 
-from ..sim.errors import SimError
+from ..sim.core import SimError
 
 EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'

@@ -13,7 +13,7 @@ from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
-from ..sim.pose import yaw_of
+from ..sim.core import yaw_of
 from ..sim.view import EYE, TARGET
 from .planar_sample import PlanarSample
 

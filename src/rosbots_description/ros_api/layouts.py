@@ -8,8 +8,7 @@ numbers are little-endian, and a text or a list stands behind its length.
 import struct
 from collections.abc import Sequence
 
-from ..sim.clock import NANOSECONDS
-from ..sim.pose import Pose
+from ..sim.core import NANOSECONDS, Pose
 from ..sim.readings import JointStates, Odometry
 
 _SIZE = 4  # of the number at the beginning, which does not count itself [bytes]

@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from ..sim.errors import SimError
+from ..sim.core import SimError
 from ..sim.schedule import NEVER
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..sim.pose import Pose, compose
+from ..sim.core import Pose, compose
 from ..sim.spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .conversions import fill_pose
 

@@ -9,7 +9,7 @@ from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..sim.pose import Quaternion, Vector, dot, rotate
+from ..sim.core import Quaternion, Vector, dot, rotate
 from ..sim.spec import Box, Cylinder, Geometry
 
 SUN: Vector = (0.48, -0.10, 0.87)  # towards it; unit length, from where Gazebo's sun shines

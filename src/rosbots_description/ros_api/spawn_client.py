@@ -19,7 +19,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from rosbots_msgs.srv import GetModelOmissions
 from std_srvs.srv import Empty
 
-from ..sim.pose import from_rpy
+from ..sim.core import from_rpy
 from .client_node import start_node
 from .gazebo_interface import (
     interruptibly,
@@ -28,12 +28,7 @@ from .gazebo_interface import (
     spawn_urdf_model_client,
 )
 from .master import AddressError
-from .model_source import (
-    MissingFileError,
-    SourceError,
-    canonical_xml,
-    read_file,
-)
+from .model_source import MissingFileError, SourceError, canonical_xml, read_file
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 import rospy
 from tf2_msgs.msg import TFMessage
 
-from ..sim.pose import Pose, compose, inverse
+from ..sim.core import Pose, compose, inverse
 from ..sim.readings import FrameTransform
 from .conversions import read_transform
 from .loop import Loop

@@ -16,7 +16,7 @@ from genpy import Message
 from geometry_msgs.msg import Pose, Twist
 from rosgraph_msgs.msg import Clock
 
-from ..sim.clock import NANOSECONDS
+from ..sim.core import NANOSECONDS
 from ..sim.model import Link, Model
 from ..sim.schedule import NEVER, Herald, Hook
 from .conversions import fill_pose, fill_twist

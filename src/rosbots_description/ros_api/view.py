@@ -16,7 +16,7 @@ import math
 import rospy
 from sensor_msgs.msg import Image
 
-from ..sim.pose import Vector
+from ..sim.core import Vector
 from ..sim.view import EYE, TARGET, View
 from .conversions import stamp
 from .registrar import Registrar

@@ -10,7 +10,7 @@ import rospy
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-from ..sim.pose import Pose
+from ..sim.core import Pose
 from ..sim.world import World
 from .conversions import fill_transform
 from .markers import FRAME

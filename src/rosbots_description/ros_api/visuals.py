@@ -10,8 +10,8 @@ from typing import Protocol
 import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
+from ..sim.core import Pose, compose
 from ..sim.model import Link, Model
-from ..sim.pose import Pose, compose
 from ..sim.world import World
 from .markers import clearance, place, removal, visual_marker
 from .server import Server

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..sim.errors import NotFoundError
+from ..sim.core import NotFoundError
 from ..sim.model_search import find_world, path_directories
 from ..sim.world import World
 from ..sim.world_file import open_world, populate

@@ -8,11 +8,11 @@ from .body import Body, FrictionAxes, Mass, Masses, Part, Place
 from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
+from .core import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
 from .faces import Face, faces, slab
 from .friction_axes import EVENLY, friction_scales, restitution
 from .friction_filter import FrictionFilter, Side
 from .inertia import is_balanced, principal_axes
-from .pose import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
 from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from .springs import compliance
 from .surfaces import (

@@ -1,6 +1,6 @@
 """The models every world can count on: ground_plane and sun, built in."""
 
-from .pose import Pose
+from .core import Pose
 from .spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual
 from .world_spec import DIRECTIONAL, LightSpec
 

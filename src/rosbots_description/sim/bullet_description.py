@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from .pose import Pose, compose, inverse, relative, to_rpy
+from .core import Pose, compose, inverse, relative, to_rpy
 from .spec import (
     FIXED,
     PRISMATIC,

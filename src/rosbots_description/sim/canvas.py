@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bullet import pybullet
-from .pose import Pose, Vector
+from .core import Pose, Vector
 
 _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
 

@@ -10,7 +10,7 @@ import re
 import numpy as np
 from lxml import etree
 
-from .errors import ModelError
+from .core import ModelError
 from .markup import check_bounds
 
 MAX_ELEMENTS = 1_000_000

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from .pose import Pose, Vector, compose, cross
+from .core import Pose, Vector, compose, cross
 from .spec import Box, Collision, Mesh
 
 _LEAN = 2e-4  # [rad]; half and five times as much do as well

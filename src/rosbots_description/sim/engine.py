@@ -16,10 +16,9 @@ from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
+from .core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from .fast_bodies import FastBodies
-from .limits import LARGEST
 from .physics import PhysicsSettings
-from .pose import Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from .slipping import Slipping
 from .solver_effort import CHECK, Motor, SolverEffort
 from .spec import ModelSpec

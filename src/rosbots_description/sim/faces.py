@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from .bullet_description import Tree
+from .core import Pose, compose, normalise
 from .friction_filter import Kind, Role, Side, coefficient, roles
-from .pose import Pose, compose, normalise
 from .spec import Box, Collision
 from .surfaces import Groups, is_floor
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from .body import Masses
 from .bullet import pybullet
-from .pose import Vector, conjugate, rotate
+from .core import Vector, conjugate, rotate
 from .springs import followed_damping, followed_stiffness
 
 LOOK = 20  # steps between two looks at all bodies

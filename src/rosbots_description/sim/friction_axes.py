@@ -3,8 +3,8 @@
 import math
 
 from .body import Body, FrictionAxes
+from .core import ALONG, Quaternion, Vector, conjugate, rotate
 from .friction_filter import MOST
-from .pose import ALONG, Quaternion, Vector, conjugate, rotate
 from .spec import Collision, LinkSpec, Surface
 
 EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part

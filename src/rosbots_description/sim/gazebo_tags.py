@@ -13,7 +13,7 @@ from functools import partial
 
 from lxml import etree
 
-from .errors import ModelError
+from .core import ModelError
 from .gazebo_libraries import library_remark
 from .gazebo_materials import gazebo_material
 from .kinematic_tree import TreeLink

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .pose import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
+from .core import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
 from .spec import REVOLUTE, Inertial, JointSpec, LinkSpec
 
 # A body without any resistance to turning cannot be simulated. It gets that of a solid ball of

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
+from .core import Pose, Twist, compose, inverse, relative
 from .model import Joint, Link, Model
-from .pose import Pose, Twist, compose, inverse, relative
 from .spec import ModelSpec
 
 _LEVEL = '::'

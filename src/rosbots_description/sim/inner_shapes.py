@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from .bullet_description import MeshFile
+from .core import Pose, rotate
 from .extremes import farthest
-from .pose import Pose, rotate
 from .spec import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from .stl import read_stl
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .clock import SimClock
+from .core import SimClock
 from .schedule import NEVER, Hook
 
 

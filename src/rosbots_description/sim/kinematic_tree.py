@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 from lxml import etree
 
+from .core import IDENTITY, Pose
 from .markup import line_of
 from .markup_values import fault, suggestion
-from .pose import IDENTITY, Pose
 from .spec import FIXED, JointSpec, LinkSpec
 
 WORLD = 'world'  # a root of that name stands for the world: the model is bolted to it

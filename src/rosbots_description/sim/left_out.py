@@ -5,7 +5,7 @@ from itertools import islice
 
 from lxml import etree
 
-from .errors import ModelError, ShapeError
+from .core import ModelError, ShapeError
 from .gazebo_libraries import PAGE, library_remark
 from .markup import line_of, shortened
 from .markup_values import MAX_NOTES, owner, place

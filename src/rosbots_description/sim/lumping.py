@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from .bounds import MAX_JOINTS
-from .errors import ModelError
+from .core import IDENTITY, ModelError, Pose, compose
 from .inertia import merge
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
 from .markup_values import fault
-from .pose import IDENTITY, Pose, compose
 from .repointing import move_part
 from .spec import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 

@@ -11,8 +11,7 @@ from xml.parsers import expat
 
 from lxml import etree
 
-from .errors import ModelError
-from .xml_text import is_expanded_xacro, plain_text
+from .core import ModelError, is_expanded_xacro, plain_text
 
 MAX_BYTES = 10_000_000
 MAX_DEPTH = 200

@@ -11,9 +11,8 @@ from itertools import islice
 
 from lxml import etree
 
-from .errors import ModelError, ShapeError
+from .core import IDENTITY, ModelError, Pose, ShapeError, from_rpy
 from .markup import XACRO_CURE, is_expression, line_of, shortened, source_of
-from .pose import IDENTITY, Pose, from_rpy
 from .spec import Element
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .collada_guard import ColladaError, safe_collada
-from .errors import AbsentError, ModelError
+from .core import AbsentError, ModelError
 from .files import read_file, regular_state, within
 from .markup import shortened
 from .markup_values import LONGEST

@@ -11,10 +11,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from .core import Vector
 from .extremes import farthest
 from .inertia import settle
 from .mesh_reading import MeshData, check_mesh, read_mesh, visual_parts
-from .pose import Vector
 from .scratch import HeldFile, HeldFiles
 from .spec import Mesh
 from .stl import write_stl

@@ -1,10 +1,9 @@
 """Models, links, joints and collisions as they are in a world, to ask and to move by name."""
 
 from .body import Body
+from .core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from .engine import Engine
-from .errors import NotFoundError
 from .plugin_life import Plugin
-from .pose import Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from .spec import Collision as CollisionSpec
 from .spec import JointSpec, LinkSpec, ModelSpec
 

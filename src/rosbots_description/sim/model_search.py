@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from .errors import AbsentError, NotFoundError
+from .core import AbsentError, NotFoundError
 from .files import read_file
 from .markup import MAX_BYTES, parse
 from .markup_values import fault

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from .core import IDENTITY, Pose, compose, from_rpy, to_rpy
 from .markup_values import parse_numbers
-from .pose import IDENTITY, Pose, compose, from_rpy, to_rpy
 from .spec import Element, PluginSpec
 
 _ZERO = (0.0, 0.0, 0.0)

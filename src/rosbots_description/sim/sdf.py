@@ -4,11 +4,10 @@ import logging
 
 from lxml import etree
 
-from .errors import ModelError
+from .core import IDENTITY, ModelError, Pose
 from .gazebo_tags import inject_namespace
 from .markup_values import check_name, fault
 from .model_search import FindModel
-from .pose import IDENTITY, Pose
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_light import read_light
 from .sdf_model import ModelParts, model_spec, read_include, read_model

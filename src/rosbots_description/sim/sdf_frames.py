@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from .errors import AbsentError
+from .core import IDENTITY, AbsentError, Pose, compose
 from .markup_values import fault, suggestion, tag_of
-from .pose import IDENTITY, Pose, compose
 from .sdf_values import pose_in
 
 MODEL_FRAME = '__model__'

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from lxml import etree
 
+from .core import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
 from .kinematic_tree import WORLD
 from .markup_values import fault, required_name
-from .pose import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames
 from .sdf_values import (

@@ -2,8 +2,8 @@
 
 from lxml import etree
 
+from .core import Pose
 from .markup_values import fault, required_name
-from .pose import Pose
 from .sdf_document import SdfDocument
 from .sdf_values import colour_of, number_of, numbers_of, truth_of
 from .world_spec import DIRECTIONAL, POINT, SPOT, LightSpec

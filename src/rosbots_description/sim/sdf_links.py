@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from lxml import etree
 
+from .core import IDENTITY, Pose, relative, to_rpy
 from .kinematic_tree import WORLD
 from .markup_values import fault, require_mass, required_name, to_element
-from .pose import IDENTITY, Pose, relative, to_rpy
 from .sdf_document import SdfDocument
 from .sdf_frames import Frames
 from .sdf_shapes import read_collision, read_visual

@@ -11,12 +11,11 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from .bounds import excess
-from .errors import AbsentError
+from .core import AbsentError, Pose, compose
 from .inertia import impossible, possible, turnable
 from .kinematic_tree import WORLD
 from .markup import shortened
 from .markup_values import fault, required_name, to_element
-from .pose import Pose, compose
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames
 from .sdf_joints import add_joint_frame, as_trees, read_joint

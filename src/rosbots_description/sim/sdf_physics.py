@@ -4,7 +4,7 @@ from dataclasses import fields
 
 from lxml import etree
 
-from .errors import SimError
+from .core import SimError
 from .markup_values import fault, scalar, tag_of
 from .physics import PhysicsSettings, check
 from .sdf_document import SdfDocument

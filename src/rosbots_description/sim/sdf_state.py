@@ -5,9 +5,9 @@ from collections.abc import Mapping
 
 from lxml import etree
 
+from .core import IDENTITY, Pose, compose, relative
 from .kinematic_tree import WORLD
 from .model import Model
-from .pose import IDENTITY, Pose, compose, relative
 from .sdf_document import SdfDocument
 from .sdf_values import pose_in
 from .spec import FIXED, PRISMATIC, JointSpec, ModelSpec

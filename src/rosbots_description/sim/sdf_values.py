@@ -4,6 +4,8 @@ import math
 
 from lxml import etree
 
+from .core import IDENTITY, Pose, Vector, from_rpy
+from .core import normalise as normalise_quaternion
 from .markup_values import (
     fault,
     is_endless,
@@ -15,8 +17,6 @@ from .markup_values import (
     tag_of,
     truth,
 )
-from .pose import IDENTITY, Pose, Vector, from_rpy
-from .pose import normalise as normalise_quaternion
 
 Colour = tuple[float, float, float, float]
 

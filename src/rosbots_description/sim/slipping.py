@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 
 from .body import Body, Place
 from .bullet import pybullet
+from .core import Pose, Twist, Vector, rotate, subtract
 from .friction_axes import axes_along, can_slip, first_direction
-from .pose import Pose, Twist, Vector, rotate, subtract
 from .slip import NONE_SLIPS, Touch, shares, velocity_at
 from .spec import ModelSpec
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from .body import Masses
 from .bullet import pybullet
+from .core import NO_ROTATION, compose, rotate
 from .inertia import mobility
-from .pose import NO_ROTATION, compose, rotate
 from .spec import PRISMATIC, JointSpec, LinkSpec
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from lxml import etree
 
 from .collada_guard import ColladaError, safe_collada
-from .errors import ModelError
+from .core import ModelError
 from .files import read_file, regular_state
 from .markup_values import suggestion
 from .mesh_reading import MAX_BYTES, read_mesh

@@ -27,9 +27,8 @@ from typing import NoReturn
 from .body_maker import grouped
 from .built_in import GROUND_PLANE
 from .bullet_description import MeshFile, kinematic_trees, mesh_needs
+from .core import IDENTITY, ModelError, Pose, compose
 from .engine import Engine
-from .errors import ModelError
-from .pose import IDENTITY, Pose, compose
 from .spec import Mesh, ModelSpec
 
 logger = logging.getLogger(__name__)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from lxml import etree
 
 from .bounds import excess
-from .errors import ModelError
+from .core import IDENTITY, ModelError, Pose
 from .foreign_tags import foreign_tags, remove_xacro
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
 from .inertia import impossible, possible, turnable
@@ -14,9 +14,8 @@ from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
 from .markup import XACRO_CURE, parse, shortened
 from .markup_values import check_name, fault, note, origin, required_name, tag_of
-from .meshes import check_mesh
+from .mesh_reading import check_mesh
 from .model_search import FindModel
-from .pose import IDENTITY, Pose
 from .repointing import repoint_plugin
 from .spec import LinkSpec, ModelSpec
 from .urdf_parts import LinkReader, read_joint

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 from lxml import etree
 
-from .errors import AbsentError, ModelError, ShapeError
+from .core import AbsentError, ModelError, ShapeError, Vector
 from .gazebo_materials import gazebo_material
 from .kinematic_tree import FREE, TreeJoint, TreeLink
 from .left_out import LeftOut
@@ -24,7 +24,6 @@ from .markup_values import (
     suggestion,
 )
 from .model_search import FindModel, in_models
-from .pose import Vector
 from .spec import (
     FIXED,
     PRISMATIC,

@@ -7,7 +7,7 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from .errors import AbsentError
+from .core import AbsentError
 from .markup_values import fault, place
 
 FindPackage = Callable[[str], str | None]  # package name -> its directory, None if unknown

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .canvas import Canvas, Triangles
-from .meshes import visual_parts
+from .core import Vector, compose
+from .mesh_reading import visual_parts
 from .model import Link, Model
-from .pose import Vector, compose
 from .spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .world import World
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from .pose import UP, Vector, compose, cross, dot, rotate, subtract
+from .core import UP, Vector, compose, cross, dot, rotate, subtract
 from .spec import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:

@@ -9,20 +9,17 @@ from functools import partial
 from typing import Protocol
 
 from .bullet_description import mesh_needs
-from .clock import END, SimClock
+from .core import END, IDENTITY, LARGEST, ModelError, NotFoundError, Pose, SimClock, SimError, Twist
 from .engine import Engine
-from .errors import ModelError, NotFoundError, SimError
 from .gazebo_libraries import PAGE, library_remark, missing_libraries
 from .guard import Guard
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
-from .limits import LARGEST
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .physics import PhysicsSettings
 from .plugin_life import Plugin
 from .plugins.registry import library_name, plugin_class
-from .pose import IDENTITY, Pose, Twist
 from .schedule import Schedule
 from .scratch import HeldFile
 from .spec import Mesh, ModelSpec, PluginSpec

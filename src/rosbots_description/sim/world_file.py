@@ -9,12 +9,11 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from .errors import ModelError, SimError
+from .core import ModelError, Pose, SimError
 from .files import read_file
 from .markup import MAX_BYTES
 from .markup_values import fault, required_name
 from .model_search import FindModel
-from .pose import Pose
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_frames import Frames
 from .sdf_light import read_light

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from .core import IDENTITY, Pose, Vector
 from .physics import PhysicsSettings
-from .pose import IDENTITY, Pose, Vector
 from .spec import ModelSpec, PluginSpec
 
 Colour = tuple[float, float, float, float]

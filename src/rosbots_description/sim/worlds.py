@@ -1,7 +1,7 @@
 """What Gazebo's empty world has."""
 
 from .built_in import GROUND_PLANE, SUN
-from .pose import IDENTITY
+from .core import IDENTITY
 from .world import World
 
 

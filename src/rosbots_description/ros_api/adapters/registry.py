@@ -5,7 +5,7 @@ import time
 import warnings
 from collections.abc import Callable
 
-from ...sim.errors import PluginError
+from ...sim.core import PluginError
 from ...sim.model import Model
 from ...sim.plugins.base import ModelPlugin
 from ..server import Server

@@ -1,6 +1,6 @@
 """The services of the node, grouped by what they are about; importing registers them."""
 
-from . import (  # noqa: F401
+from . import (
     joints,
     lights,
     link_properties,

@@ -15,9 +15,19 @@ from gazebo_msgs.srv import (
     SetLinkStateResponse,
 )
 
-from ...sim.errors import NotFoundError
+from ...sim.core import (
+    IDENTITY,
+    NotFoundError,
+    Pose,
+    Twist,
+    Vector,
+    add,
+    compose,
+    cross,
+    rotate,
+    subtract,
+)
 from ...sim.model import Link
-from ...sim.pose import IDENTITY, Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from ...sim.world import WORLD_FRAMES, Entity, World
 from ..conversions import fill_pose, fill_twist, read_pose, read_twist, read_vector
 from ..server import Server

@@ -12,9 +12,8 @@ from gazebo_msgs.srv import (
     SetModelStateResponse,
 )
 
-from ...sim.errors import NotFoundError
+from ...sim.core import NotFoundError, Twist, compose, rotate
 from ...sim.model import Joint
-from ...sim.pose import Twist, compose, rotate
 from ..conversions import read_pose, read_twist
 from ..server import Server
 from ..validity import require_finite

@@ -11,8 +11,7 @@ from gazebo_msgs.srv import (
     GetModelStateResponse,
 )
 
-from ...sim.errors import NotFoundError
-from ...sim.pose import Pose, Twist, conjugate, relative, rotate, subtract
+from ...sim.core import NotFoundError, Pose, Twist, conjugate, relative, rotate, subtract
 from ..conversions import fill_pose, fill_twist, stamp
 from ..server import Server
 from .registry import service

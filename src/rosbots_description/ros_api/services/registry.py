@@ -8,7 +8,7 @@ from typing import Any
 
 import rospy
 
-from ...sim.errors import SimError
+from ...sim.core import SimError
 from ..server import Server
 
 logger = logging.getLogger(__name__)

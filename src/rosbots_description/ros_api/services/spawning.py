@@ -12,10 +12,9 @@ from rosbots_msgs.srv import (
 )
 
 from ...sim.bullet_description import mesh_needs
-from ...sim.errors import ModelError, NotFoundError
+from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.markup import root_tag
 from ...sim.model import Model
-from ...sim.pose import Pose, compose
 from ...sim.scratch import HeldFile
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.spec import ModelSpec

@@ -4,8 +4,7 @@ import logging
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ..clock import NANOSECONDS
-from ..errors import NotFoundError, PluginError
+from ..core import NANOSECONDS, NotFoundError, PluginError
 from ..plugin_life import Plugin
 from ..readings import Output
 from ..schedule import NEVER

@@ -7,7 +7,7 @@ import logging
 import math
 from collections.abc import Iterable
 
-from ..pose import Pose, Twist
+from ..core import Pose, Twist
 from ..readings import FrameTransform, JointStates, Odometry
 from ..wheel_geometry import drives_towards_x, radius_of, same_way, track_of
 from .drive import Encoders, WheeledDrive, reads_encoders

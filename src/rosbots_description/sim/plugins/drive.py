@@ -6,8 +6,7 @@ from abc import abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from ..clock import NANOSECONDS
-from ..pose import Pose, Twist, compose, from_rpy, inverse, yaw_of
+from ..core import NANOSECONDS, Pose, Twist, compose, from_rpy, inverse, yaw_of
 from ..readings import FrameTransform, JointStates, Odometry, Output
 from .base import PeriodicPlugin
 from .params import Params

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..errors import PluginError
+from ..core import PluginError
 from ..spec import Element
 
 logger = logging.getLogger(__name__)

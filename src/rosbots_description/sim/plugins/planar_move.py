@@ -8,8 +8,7 @@ the command as it is.
 
 import math
 
-from ..clock import NANOSECONDS
-from ..pose import Pose, Twist, yaw_of
+from ..core import NANOSECONDS, Pose, Twist, yaw_of
 from ..readings import Odometry
 from .drive import Drive
 from .params import says_defaults_to

@@ -11,8 +11,7 @@ and the angle is to become less.
 import math
 from collections.abc import Iterable
 
-from ..errors import PluginError
-from ..pose import Pose, Twist
+from ..core import PluginError, Pose, Twist
 from ..readings import FrameTransform, JointStates, Odometry
 from .drive import Encoders, WheeledDrive, reads_encoders
 from .registry import register

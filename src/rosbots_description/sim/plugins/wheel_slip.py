@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ..errors import PluginError
+from ..core import PluginError
 from ..friction_axes import can_slip
 from ..spec import Element
 from ..wheel_geometry import radius_of
