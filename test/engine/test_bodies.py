@@ -9,12 +9,12 @@ from support import ROOT, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_sp
 
 from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, to_rpy
+from rosbots_description.sim.description.model_spec import Inertial, LinkSpec, ModelSpec
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.meshes import MeshStore
 from rosbots_description.sim.model_search import ModelSearch
-from rosbots_description.sim.physics import PhysicsSettings
 from rosbots_description.sim.sdf import load_sdf
-from rosbots_description.sim.spec import Inertial, LinkSpec, ModelSpec
 
 SECOND = 1000  # steps
 

@@ -16,9 +16,8 @@ from rosbots_description.sim.core.transforms import (
     cross,
     rotate,
 )
-from rosbots_description.sim.inertia import principal_axes
-from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.inertia import principal_axes
+from rosbots_description.sim.description.model_spec import (
     REVOLUTE,
     Box,
     Collision,
@@ -28,6 +27,7 @@ from rosbots_description.sim.spec import (
     ModelSpec,
     Surface,
 )
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.world import World
 
 SECOND = 1000  # steps

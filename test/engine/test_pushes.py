@@ -7,7 +7,7 @@ import pytest
 from support import SPAWN_POSE, empty_world, robot_spec
 
 from rosbots_description.sim.core.transforms import IDENTITY, Pose, Twist, from_rpy
-from rosbots_description.sim.spec import Inertial, JointSpec, LinkSpec, ModelSpec
+from rosbots_description.sim.description.model_spec import Inertial, JointSpec, LinkSpec, ModelSpec
 
 SECOND_NS = 10**9
 MOMENTS = (0.1, 0.2, 0.25)  # [kg m^2]

@@ -7,8 +7,7 @@ from support import empty_world, urdf_spec
 from support.scenes import GRAVITY, box
 
 from rosbots_description.sim.core.transforms import Pose, Twist
-from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.model_spec import (
     PRISMATIC,
     REVOLUTE,
     Inertial,
@@ -16,6 +15,7 @@ from rosbots_description.sim.spec import (
     LinkSpec,
     ModelSpec,
 )
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.world import World
 
 HIGH = Pose((0.0, 0.0, 100.0))

@@ -17,14 +17,11 @@ import pytest
 from support import box_urdf, empty_world, robot_spec, urdf_spec
 
 from rosbots_description.sim import inner_shapes, trial
-from rosbots_description.sim.built_in import GROUND_PLANE
 from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import IDENTITY, Pose
-from rosbots_description.sim.engine import Engine
-from rosbots_description.sim.meshes import MeshStore
-from rosbots_description.sim.physics import PhysicsSettings
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.built_in import GROUND_PLANE
+from rosbots_description.sim.description.model_spec import (
     REVOLUTE,
     Box,
     Collision,
@@ -34,6 +31,9 @@ from rosbots_description.sim.spec import (
     ModelSpec,
     Surface,
 )
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
+from rosbots_description.sim.engine import Engine
+from rosbots_description.sim.meshes import MeshStore
 from rosbots_description.sim.trial import Trials
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')

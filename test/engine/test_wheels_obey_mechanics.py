@@ -28,8 +28,8 @@ from rosbots_description.sim.core.transforms import (
     rotate,
     yaw_of,
 )
+from rosbots_description.sim.description.model_spec import Cylinder, Element
 from rosbots_description.sim.readings import FrameTransform, JointStates, Odometry
-from rosbots_description.sim.spec import Cylinder, Element
 
 LIGHT = castered(1.0, 0.2, casters=1)
 MIDDLE = castered(casters=1)

@@ -18,10 +18,7 @@ from support.bench import Bench
 
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 from rosbots_description.sim.core.transforms import Pose
-from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.schedule import Hook
-from rosbots_description.sim.sdf import load_sdf
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.model_spec import (
     Box,
     Collision,
     Element,
@@ -31,6 +28,9 @@ from rosbots_description.sim.spec import (
     ModelSpec,
     PluginSpec,
 )
+from rosbots_description.sim.plugins.diff_drive import DiffDrive
+from rosbots_description.sim.schedule import Hook
+from rosbots_description.sim.sdf import load_sdf
 
 MEGABYTE = 2**20
 LEAK_ALLOWED = 6 * MEGABYTE  # without the guard it would be 14

@@ -3,8 +3,7 @@
 import math
 
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
-from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.model_spec import (
     Collision,
     Cylinder,
     Element,
@@ -13,6 +12,7 @@ from rosbots_description.sim.spec import (
     ModelSpec,
     PluginSpec,
 )
+from rosbots_description.sim.plugins.diff_drive import DiffDrive
 from rosbots_description.sim.world import World
 
 from .fake_engine import FakeEngine

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from rosbots_description.sim.core.transforms import Pose, relative, rotate, yaw_of
-from rosbots_description.sim.spec import ModelSpec
+from rosbots_description.sim.description.model_spec import ModelSpec
 from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.urdf import load_urdf
 

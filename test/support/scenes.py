@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy, yaw_of
+from rosbots_description.sim.description.model_spec import ModelSpec, Sphere
 from rosbots_description.sim.model import Model
-from rosbots_description.sim.spec import ModelSpec, Sphere
 from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.world import World
 

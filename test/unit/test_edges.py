@@ -8,8 +8,7 @@ import pytest
 from rosbots_description.sim.body_maker import grouped
 from rosbots_description.sim.bullet_description import Tree
 from rosbots_description.sim.core.transforms import IDENTITY, Pose, compose, from_rpy
-from rosbots_description.sim.edges import leaning
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.model_spec import (
     REVOLUTE,
     Box,
     Collision,
@@ -21,6 +20,7 @@ from rosbots_description.sim.spec import (
     Sphere,
     Surface,
 )
+from rosbots_description.sim.edges import leaning
 
 AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 QUARTER = math.pi / 2.0

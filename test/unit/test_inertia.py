@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from rosbots_description.sim import inertia
 from rosbots_description.sim.core.transforms import IDENTITY, Pose, from_rpy, rotate
-from rosbots_description.sim.inertia import (
+from rosbots_description.sim.description import inertia
+from rosbots_description.sim.description.inertia import (
     STAND_IN_RADIUS,
     is_balanced,
     is_positive,
@@ -17,7 +17,7 @@ from rosbots_description.sim.inertia import (
     tensor,
     turnable,
 )
-from rosbots_description.sim.spec import PRISMATIC, REVOLUTE, Inertial, JointSpec
+from rosbots_description.sim.description.model_spec import PRISMATIC, REVOLUTE, Inertial, JointSpec
 
 
 def in_link_axes(moments, axes):

@@ -9,9 +9,16 @@ from hypothesis import strategies as st
 from support import robot_spec
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy, rotate
+from rosbots_description.sim.description.model_spec import (
+    Box,
+    Collision,
+    Cylinder,
+    Mesh,
+    Plane,
+    Sphere,
+)
 from rosbots_description.sim.inner_shapes import inner_shapes
 from rosbots_description.sim.meshes import MeshStore
-from rosbots_description.sim.spec import Box, Collision, Cylinder, Mesh, Plane, Sphere
 
 PLATES = [
     Collision('lower', Box((0.4, 0.3, 0.01)), Pose((0.0, 0.0, 0.1))),

@@ -9,7 +9,7 @@ import pytest
 import xacro
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
-from rosbots_description.sim.inertia import tensor
+from rosbots_description.sim.description.inertia import tensor
 from rosbots_description.sim.urdf import load_urdf
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -9,7 +9,7 @@ from dynamic_reconfigure.encoding import Config
 from rosbots_description.ros_api import reconfigure
 from rosbots_description.ros_api.loop import LoopError
 from rosbots_description.ros_api.reconfigure import PARAMETERS, PhysicsReconfigure
-from rosbots_description.sim.physics import PhysicsSettings
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
 
 
 class FakeServer:

@@ -20,8 +20,8 @@ from rosbots_description.ros_api.topics import clock_frequency
 from rosbots_description.ros_api.validity import RequestError, require_finite
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
-from rosbots_description.sim.physics import PhysicsSettings, check
-from rosbots_description.sim.spec import JointSpec, ModelSpec
+from rosbots_description.sim.description.model_spec import JointSpec, ModelSpec
+from rosbots_description.sim.description.physics_settings import PhysicsSettings, check
 
 HINGE = JointSpec('hinge', 'revolute', 'a', 'b', lower=-1.0, upper=1.0)
 QUARTER = from_rpy(0.0, 0.0, math.pi / 2)

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 import xacro
 
-from rosbots_description.sim.spec import Mesh
+from rosbots_description.sim.description.model_spec import Mesh
 from rosbots_description.sim.urdf import load_urdf
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,14 +6,21 @@ from pathlib import Path
 
 import pytest
 
-from rosbots_description.sim.built_in import GROUND_PLANE
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.description.built_in import GROUND_PLANE
+from rosbots_description.sim.description.model_spec import (
+    Box,
+    Cylinder,
+    Material,
+    Plane,
+    Sphere,
+    Surface,
+)
 from rosbots_description.sim.gazebo_tags import ENDLESS_FRICTION
 from rosbots_description.sim.mesh_reading import check_mesh, read_mesh
 from rosbots_description.sim.model_search import BUILT_IN_MODELS, ModelSearch
 from rosbots_description.sim.sdf import load_sdf, load_sdf_light
-from rosbots_description.sim.spec import Box, Cylinder, Material, Plane, Sphere, Surface
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'

@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 
 from rosbots_description.sim.core.transforms import NO_ROTATION, Pose, from_rpy
-from rosbots_description.sim.friction_axes import EVENLY, friction_scales, restitution
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.model_spec import (
     FIXED,
     REVOLUTE,
     Box,
@@ -17,6 +16,7 @@ from rosbots_description.sim.spec import (
     LinkSpec,
     Surface,
 )
+from rosbots_description.sim.friction_axes import EVENLY, friction_scales, restitution
 from rosbots_description.sim.surfaces import crowned, rolling_arm
 
 TYRE = Collision('tyre', Cylinder(0.1, 0.05))

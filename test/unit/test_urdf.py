@@ -7,7 +7,7 @@ import pytest
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
-from rosbots_description.sim.spec import Box, Cylinder, Material, Mesh, Sphere
+from rosbots_description.sim.description.model_spec import Box, Cylinder, Material, Mesh, Sphere
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.uris import UnknownPackage
 

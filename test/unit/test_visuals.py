@@ -18,7 +18,7 @@ from rosbots_description.sim.core.transforms import (
     rotate,
     subtract,
 )
-from rosbots_description.sim.spec import (
+from rosbots_description.sim.description.model_spec import (
     Box,
     Cylinder,
     LinkSpec,

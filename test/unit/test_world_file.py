@@ -5,15 +5,21 @@ import math
 
 import pytest
 
-from rosbots_description.sim.built_in import GROUND_PLANE
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
+from rosbots_description.sim.description.built_in import GROUND_PLANE
+from rosbots_description.sim.description.model_spec import (
+    PRISMATIC,
+    REVOLUTE,
+    JointSpec,
+    LinkSpec,
+    ModelSpec,
+)
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
+from rosbots_description.sim.description.world_spec import ModelState, SceneSpec
 from rosbots_description.sim.model_search import ModelSearch
-from rosbots_description.sim.physics import PhysicsSettings
 from rosbots_description.sim.sdf_state import joint_positions
-from rosbots_description.sim.spec import PRISMATIC, REVOLUTE, JointSpec, LinkSpec, ModelSpec
 from rosbots_description.sim.world_file import load_world, open_world
-from rosbots_description.sim.world_spec import ModelState, SceneSpec
 
 SUN = '<include><uri>model://sun</uri></include>'
 GROUND = '<include><uri>model://ground_plane</uri></include>'

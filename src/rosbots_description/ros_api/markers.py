@@ -7,7 +7,7 @@ from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
 from ..sim.core import Pose, compose
-from ..sim.spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from ..sim.description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .conversions import fill_pose
 
 FRAME = 'world'

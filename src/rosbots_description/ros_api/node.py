@@ -19,9 +19,9 @@ from dataclasses import dataclass
 import rosgraph
 import rospy
 
+from ..sim.description import WorldSpec
 from ..sim.mesh_reading import load_readers
 from ..sim.world import World
-from ..sim.world_spec import WorldSpec
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .handshake import guard_handshakes

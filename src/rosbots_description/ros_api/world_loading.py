@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..sim.core import NotFoundError
+from ..sim.description import WorldSpec
 from ..sim.model_search import find_world, path_directories
 from ..sim.world import World
 from ..sim.world_file import open_world, populate
-from ..sim.world_spec import WorldSpec
 from .packages import exported_directories, find_model, find_package
 
 _OWN = Path(__file__).resolve().parents[1]  # holds worlds/, wherever this library is installed

@@ -9,11 +9,11 @@ from .bounds import MAX_JOINTS
 from .bullet import pybullet
 from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
 from .core import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
+from .description import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from .description.inertia import is_balanced, principal_axes
 from .faces import Face, faces, slab
 from .friction_axes import EVENLY, friction_scales, restitution
 from .friction_filter import FrictionFilter, Side
-from .inertia import is_balanced, principal_axes
-from .spec import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from .springs import compliance
 from .surfaces import (
     Groups,

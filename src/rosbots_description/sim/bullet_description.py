@@ -13,7 +13,7 @@ from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
 from .core import Pose, compose, inverse, relative, to_rpy
-from .spec import (
+from .description import (
     FIXED,
     PRISMATIC,
     Box,

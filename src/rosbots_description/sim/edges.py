@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from .core import Pose, Vector, compose, cross
-from .spec import Box, Collision, Mesh
+from .description import Box, Collision, Mesh
 
 _LEAN = 2e-4  # [rad]; half and five times as much do as well
 

@@ -17,11 +17,10 @@ from .body_maker import ANY_SPEED, BodyMaker
 from .bullet import pybullet
 from .bullet_description import MeshFile, kinematic_trees
 from .core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from .description import ModelSpec, PhysicsSettings
 from .fast_bodies import FastBodies
-from .physics import PhysicsSettings
 from .slipping import Slipping
 from .solver_effort import CHECK, Motor, SolverEffort
-from .spec import ModelSpec
 from .springs import Springs
 from .surfaces import overlap_share
 from .tuning import Tuning

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from .bullet_description import Tree
 from .core import Pose, compose, normalise
+from .description import Box, Collision
 from .friction_filter import Kind, Role, Side, coefficient, roles
-from .spec import Box, Collision
 from .surfaces import Groups, is_floor
 
 # The box below a plane, 1000 km to each side [m].

@@ -4,8 +4,8 @@ import math
 
 from .body import Body, FrictionAxes
 from .core import ALONG, Quaternion, Vector, conjugate, rotate
+from .description import Collision, LinkSpec, Surface
 from .friction_filter import MOST
-from .spec import Collision, LinkSpec, Surface
 
 EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part
 _PARTS_FREELY = 1.0  # [m/s] a max_vel from which on things may bounce

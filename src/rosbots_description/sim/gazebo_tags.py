@@ -14,8 +14,8 @@ from functools import partial
 from lxml import etree
 
 from .core import ModelError
+from .description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
 from .gazebo_libraries import library_remark
-from .gazebo_materials import gazebo_material
 from .kinematic_tree import TreeLink
 from .left_out import LeftOut
 from .markup import line_of, shortened
@@ -35,7 +35,6 @@ from .markup_values import (
     to_element,
     truth,
 )
-from .spec import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec
 
 # A negative mu means endless friction in Gazebo, and so does inf.
 ENDLESS_FRICTION = 1e6

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from .core import Pose, Twist, compose, inverse, relative
+from .description import ModelSpec
 from .model import Joint, Link, Model
-from .spec import ModelSpec
 
 _LEVEL = '::'
 

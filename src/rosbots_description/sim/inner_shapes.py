@@ -14,8 +14,8 @@ import numpy as np
 
 from .bullet_description import MeshFile
 from .core import Pose, rotate
+from .description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from .extremes import farthest
-from .spec import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from .stl import read_stl
 
 _ONTO = 1e-6  # share of its size by which a body is taken for larger than it is

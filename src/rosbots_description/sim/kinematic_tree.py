@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from lxml import etree
 
 from .core import IDENTITY, Pose
+from .description import FIXED, JointSpec, LinkSpec
 from .markup import line_of
 from .markup_values import fault, suggestion
-from .spec import FIXED, JointSpec, LinkSpec
 
 WORLD = 'world'  # a root of that name stands for the world: the model is bolted to it
 FREE = 'free'  # a joint type that ties nothing: the child becomes a tree of its own

@@ -6,10 +6,10 @@ from itertools import islice
 from lxml import etree
 
 from .core import ModelError, ShapeError
+from .description import Element
 from .gazebo_libraries import PAGE, library_remark
 from .markup import line_of, shortened
 from .markup_values import MAX_NOTES, owner, place
-from .spec import Element
 
 
 class LeftOut:

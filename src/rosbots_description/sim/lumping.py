@@ -11,11 +11,11 @@ from typing import TypeVar
 
 from .bounds import MAX_JOINTS
 from .core import IDENTITY, ModelError, Pose, compose
-from .inertia import merge
+from .description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
+from .description.inertia import merge
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
 from .markup_values import fault
 from .repointing import move_part
-from .spec import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 
 _LUMPED = '_fixed_joint_lump__'
 

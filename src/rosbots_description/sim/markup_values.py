@@ -12,8 +12,8 @@ from itertools import islice
 from lxml import etree
 
 from .core import IDENTITY, ModelError, Pose, ShapeError, from_rpy
+from .description import Element
 from .markup import XACRO_CURE, is_expression, line_of, shortened, source_of
-from .spec import Element
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
 MAX_NOTES = 40  # sentences about one description; who needs more does not read them

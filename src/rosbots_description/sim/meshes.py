@@ -12,11 +12,11 @@ from functools import lru_cache
 import numpy as np
 
 from .core import Vector
+from .description import Mesh
+from .description.inertia import settle
 from .extremes import farthest
-from .inertia import settle
 from .mesh_reading import MeshData, check_mesh, read_mesh, visual_parts
 from .scratch import HeldFile, HeldFiles
-from .spec import Mesh
 from .stl import write_stl
 
 __all__ = ['MeshStore', 'check_mesh', 'visual_parts']

@@ -2,10 +2,10 @@
 
 from .body import Body
 from .core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
+from .description import Collision as CollisionSpec
+from .description import JointSpec, LinkSpec, ModelSpec
 from .engine import Engine
 from .plugin_life import Plugin
-from .spec import Collision as CollisionSpec
-from .spec import JointSpec, LinkSpec, ModelSpec
 
 
 class Link:

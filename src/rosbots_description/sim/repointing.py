@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from .core import IDENTITY, Pose, compose, from_rpy, to_rpy
+from .description import Element, PluginSpec
 from .markup_values import parse_numbers
-from .spec import Element, PluginSpec
 
 _ZERO = (0.0, 0.0, 0.0)
 

@@ -5,6 +5,7 @@ import logging
 from lxml import etree
 
 from .core import IDENTITY, ModelError, Pose
+from .description import LightSpec, ModelSpec
 from .gazebo_tags import inject_namespace
 from .markup_values import check_name, fault
 from .model_search import FindModel
@@ -12,9 +13,7 @@ from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_light import read_light
 from .sdf_model import ModelParts, model_spec, read_include, read_model
 from .sdf_values import pose_in
-from .spec import ModelSpec
 from .uris import FindPackage
-from .world_spec import LightSpec
 
 logger = logging.getLogger(__name__)
 

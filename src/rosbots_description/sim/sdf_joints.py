@@ -6,6 +6,7 @@ from dataclasses import replace
 from lxml import etree
 
 from .core import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
+from .description import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
 from .kinematic_tree import WORLD
 from .markup_values import fault, required_name
 from .sdf_document import SdfDocument
@@ -19,7 +20,6 @@ from .sdf_values import (
     truth_of,
     unit_vector_of,
 )
-from .spec import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
 
 _TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC, 'fixed': FIXED}
 _NOT_SIMULATED = ('ball', 'universal', 'screw', 'revolute2', 'gearbox')

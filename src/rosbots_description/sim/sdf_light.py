@@ -3,10 +3,10 @@
 from lxml import etree
 
 from .core import Pose
+from .description import DIRECTIONAL, POINT, SPOT, LightSpec
 from .markup_values import fault, required_name
 from .sdf_document import SdfDocument
 from .sdf_values import colour_of, number_of, numbers_of, truth_of
-from .world_spec import DIRECTIONAL, POINT, SPOT, LightSpec
 
 _TYPES = (POINT, DIRECTIONAL, SPOT)
 

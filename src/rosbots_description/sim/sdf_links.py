@@ -7,13 +7,13 @@ from dataclasses import replace
 from lxml import etree
 
 from .core import IDENTITY, Pose, relative, to_rpy
+from .description import Collision, Element, Inertial, LinkSpec, Visual
 from .kinematic_tree import WORLD
 from .markup_values import fault, require_mass, required_name, to_element
 from .sdf_document import SdfDocument
 from .sdf_frames import Frames
 from .sdf_shapes import read_collision, read_visual
 from .sdf_values import damping_of, number_of, pose_in, truth_of
-from .spec import Collision, Element, Inertial, LinkSpec, Visual
 
 _READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
          'velocity_decay', 'sensor', 'light', 'projector')

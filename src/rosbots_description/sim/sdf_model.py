@@ -12,7 +12,8 @@ from lxml import etree
 
 from .bounds import excess
 from .core import AbsentError, Pose, compose
-from .inertia import impossible, possible, turnable
+from .description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
+from .description.inertia import impossible, possible, turnable
 from .kinematic_tree import WORLD
 from .markup import shortened
 from .markup_values import fault, required_name, to_element
@@ -21,7 +22,6 @@ from .sdf_frames import MODEL_FRAME, Frames
 from .sdf_joints import add_joint_frame, as_trees, read_joint
 from .sdf_links import UNIT_INERTIAL, read_link
 from .sdf_values import text_of, truth_of
-from .spec import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
 
 _READ = ('pose', 'link', 'joint', 'frame', 'plugin', 'model', 'include', 'static', 'self_collide')
 _INCLUDE_READ = ('uri', 'name', 'pose', 'static', 'plugin')

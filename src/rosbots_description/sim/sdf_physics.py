@@ -5,8 +5,8 @@ from dataclasses import fields
 from lxml import etree
 
 from .core import SimError
+from .description import PhysicsSettings, check
 from .markup_values import fault, scalar, tag_of
-from .physics import PhysicsSettings, check
 from .sdf_document import SdfDocument
 from .sdf_values import number_of, numbers_of
 

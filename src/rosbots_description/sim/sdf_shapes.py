@@ -3,7 +3,19 @@
 from lxml import etree
 
 from .core import AbsentError, ModelError, Pose, ShapeError
-from .gazebo_materials import gazebo_material
+from .description import (
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Material,
+    Mesh,
+    Plane,
+    Sphere,
+    Surface,
+    Visual,
+    gazebo_material,
+)
 from .gazebo_tags import ENDLESS_FRICTION
 from .markup_values import fault, is_endless, owner, place, tag_of
 from .mesh_reading import check_mesh
@@ -19,7 +31,6 @@ from .sdf_values import (
     truth_of,
     unit_vector_of,
 )
-from .spec import Box, Collision, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Surface, Visual
 from .submesh import submesh_file
 
 _NOT_SIMULATED = ('heightmap', 'polyline', 'image', 'capsule', 'ellipsoid', 'cone')

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from lxml import etree
 
 from .core import IDENTITY, Pose, compose, relative
+from .description import FIXED, PRISMATIC, JointSpec, ModelSpec, ModelState
 from .kinematic_tree import WORLD
 from .model import Model
 from .sdf_document import SdfDocument
 from .sdf_values import pose_in
-from .spec import FIXED, PRISMATIC, JointSpec, ModelSpec
-from .world_spec import ModelState
 
 _NANOSECONDS = 1e9
 _IDLE = ('wall_time', 'real_time', 'iterations', 'light')

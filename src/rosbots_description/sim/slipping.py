@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from .body import Body, Place
 from .bullet import pybullet
 from .core import Pose, Twist, Vector, rotate, subtract
+from .description import ModelSpec
 from .friction_axes import axes_along, can_slip, first_direction
 from .slip import NONE_SLIPS, Touch, shares, velocity_at
-from .spec import ModelSpec
 
 Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances [m/s per N]
 

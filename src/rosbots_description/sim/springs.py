@@ -13,8 +13,8 @@ import numpy as np
 from .body import Masses
 from .bullet import pybullet
 from .core import NO_ROTATION, compose, rotate
-from .inertia import mobility
-from .spec import PRISMATIC, JointSpec, LinkSpec
+from .description import PRISMATIC, JointSpec, LinkSpec
+from .description.inertia import mobility
 
 
 class Springs:

@@ -11,10 +11,10 @@ from operator import not_
 
 from .bullet_description import MeshFile, Tree
 from .core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
+from .description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
 from .edges import leaning
 from .friction_axes import directions, restitution
 from .inner_shapes import inner_shapes
-from .spec import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
 
 Groups = list[tuple[Collision, ...]]  # of a link: what it touches with itself, then its riders
 

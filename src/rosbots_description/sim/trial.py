@@ -25,11 +25,10 @@ from dataclasses import replace
 from typing import NoReturn
 
 from .body_maker import grouped
-from .built_in import GROUND_PLANE
 from .bullet_description import MeshFile, kinematic_trees, mesh_needs
 from .core import IDENTITY, ModelError, Pose, compose
+from .description import GROUND_PLANE, Mesh, ModelSpec
 from .engine import Engine
-from .spec import Mesh, ModelSpec
 
 logger = logging.getLogger(__name__)
 

@@ -7,9 +7,10 @@ from lxml import etree
 
 from .bounds import excess
 from .core import IDENTITY, ModelError, Pose
+from .description import LinkSpec, ModelSpec
+from .description.inertia import impossible, possible, turnable
 from .foreign_tags import foreign_tags, remove_xacro
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
-from .inertia import impossible, possible, turnable
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
 from .markup import XACRO_CURE, parse, shortened
@@ -17,7 +18,6 @@ from .markup_values import check_name, fault, note, origin, required_name, tag_o
 from .mesh_reading import check_mesh
 from .model_search import FindModel
 from .repointing import repoint_plugin
-from .spec import LinkSpec, ModelSpec
 from .urdf_parts import LinkReader, read_joint
 from .uris import FindPackage, substitute_in_tree
 

@@ -6,7 +6,23 @@ from collections.abc import Callable, Mapping
 from lxml import etree
 
 from .core import AbsentError, ModelError, ShapeError, Vector
-from .gazebo_materials import gazebo_material
+from .description import (
+    FIXED,
+    PRISMATIC,
+    REVOLUTE,
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    Material,
+    Mesh,
+    Sphere,
+    Visual,
+    gazebo_material,
+)
 from .kinematic_tree import FREE, TreeJoint, TreeLink
 from .left_out import LeftOut
 from .markup import shortened
@@ -24,22 +40,6 @@ from .markup_values import (
     suggestion,
 )
 from .model_search import FindModel, in_models
-from .spec import (
-    FIXED,
-    PRISMATIC,
-    REVOLUTE,
-    Box,
-    Collision,
-    Cylinder,
-    Geometry,
-    Inertial,
-    JointSpec,
-    LinkSpec,
-    Material,
-    Mesh,
-    Sphere,
-    Visual,
-)
 from .uris import file_path, refuse_climbing
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.

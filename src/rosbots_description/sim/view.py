@@ -7,9 +7,9 @@ import numpy as np
 
 from .canvas import Canvas, Triangles
 from .core import Vector, compose
+from .description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .mesh_reading import visual_parts
 from .model import Link, Model
-from .spec import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .world import World
 
 if TYPE_CHECKING:

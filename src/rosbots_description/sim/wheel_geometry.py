@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from .core import UP, Vector, compose, cross, dot, rotate, subtract
-from .spec import Cylinder, LinkSpec, Sphere
+from .description import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:
     from .model import Joint

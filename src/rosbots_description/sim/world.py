@@ -10,6 +10,7 @@ from typing import Protocol
 
 from .bullet_description import mesh_needs
 from .core import END, IDENTITY, LARGEST, ModelError, NotFoundError, Pose, SimClock, SimError, Twist
+from .description import LightSpec, Mesh, ModelSpec, PhysicsSettings, PluginSpec
 from .engine import Engine
 from .gazebo_libraries import PAGE, library_remark, missing_libraries
 from .guard import Guard
@@ -17,14 +18,11 @@ from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
-from .physics import PhysicsSettings
 from .plugin_life import Plugin
 from .plugins.registry import library_name, plugin_class
 from .schedule import Schedule
 from .scratch import HeldFile
-from .spec import Mesh, ModelSpec, PluginSpec
 from .tuning import Tuning
-from .world_spec import LightSpec
 
 logger = logging.getLogger(__name__)
 

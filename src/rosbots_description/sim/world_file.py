@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from .core import ModelError, Pose, SimError
+from .description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
 from .files import read_file
 from .markup import MAX_BYTES
 from .markup_values import fault, required_name
@@ -21,10 +22,8 @@ from .sdf_model import ModelParts, model_spec, read_include, read_model, read_pl
 from .sdf_physics import read_physics
 from .sdf_state import apply_state, read_states
 from .sdf_values import colour_of, text_of, truth_of
-from .spec import ModelSpec, PluginSpec
 from .uris import FindPackage
 from .world import World
-from .world_spec import LightSpec, SceneSpec, WorldSpec
 
 logger = logging.getLogger(__name__)
 

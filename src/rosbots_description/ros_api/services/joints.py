@@ -19,8 +19,8 @@ from gazebo_msgs.srv import (
     SetJointPropertiesResponse,
 )
 
+from ...sim.description import JointSpec
 from ...sim.model import Joint
-from ...sim.spec import JointSpec
 from ...sim.world import World
 from ..server import Server
 from ..validity import RequestError, require_finite

@@ -15,7 +15,7 @@ from gazebo_msgs.srv import (
 )
 from std_msgs.msg import ColorRGBA
 
-from ...sim.world_spec import Colour
+from ...sim.description import Colour
 from ..conversions import read_pose, read_vector
 from ..server import Server
 from ..validity import require_finite

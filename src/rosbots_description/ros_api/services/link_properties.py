@@ -13,10 +13,10 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Point
 
 from ...sim.core import Pose
-from ...sim.inertia import in_link_axes, is_positive, turnable
+from ...sim.description import Inertial
+from ...sim.description.inertia import in_link_axes, is_positive, turnable
 from ...sim.markup_values import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
 from ...sim.model import Link
-from ...sim.spec import Inertial
 from ..conversions import read_vector
 from ..server import Server
 from ..validity import RequestError, require_finite

@@ -13,15 +13,14 @@ from rosbots_msgs.srv import (
 
 from ...sim.bullet_description import mesh_needs
 from ...sim.core import ModelError, NotFoundError, Pose, compose
+from ...sim.description import LightSpec, ModelSpec
 from ...sim.markup import root_tag
 from ...sim.model import Model
 from ...sim.scratch import HeldFile
 from ...sim.sdf import load_sdf, load_sdf_light
-from ...sim.spec import ModelSpec
 from ...sim.urdf import load_urdf
 from ...sim.uris import UnknownPackage
 from ...sim.world import World
-from ...sim.world_spec import LightSpec
 from ..conversions import read_pose
 from ..server import Server
 from .registry import EXTENSIONS, CallError, refuse, service

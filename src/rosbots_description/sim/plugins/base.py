@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ..core import NANOSECONDS, NotFoundError, PluginError
+from ..description import PluginSpec
 from ..plugin_life import Plugin
 from ..readings import Output
 from ..schedule import NEVER
-from ..spec import PluginSpec
 from .params import Missing, Params, says_default
 
 if TYPE_CHECKING:

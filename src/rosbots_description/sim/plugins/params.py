@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from ..core import PluginError
-from ..spec import Element
+from ..description import Element
 
 logger = logging.getLogger(__name__)
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..core import PluginError
+from ..description import Element
 from ..friction_axes import can_slip
-from ..spec import Element
 from ..wheel_geometry import radius_of
 from .base import PeriodicPlugin
 from .registry import register

@@ -3,7 +3,7 @@
 import math
 from dataclasses import astuple, dataclass, fields
 
-from .core import SimError, Vector
+from ..core import SimError, Vector
 
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 10.0  # [s]; the clock counts nanoseconds
 SLOWEST_RATE = 0.001  # [Hz] beside 0, which means as fast as possible

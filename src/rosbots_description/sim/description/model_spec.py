@@ -8,7 +8,7 @@ URDF, SDF, PyBullet or ROS.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from .core import IDENTITY, Pose, Vector, rotate
+from ..core import IDENTITY, Pose, Vector, rotate
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The models every world can count on: ground_plane and sun, built in."""
 
-from .core import Pose
-from .spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual
+from ..core import Pose
+from .model_spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual
 from .world_spec import DIRECTIONAL, LightSpec
 
 GROUND_PLANE = ModelSpec(

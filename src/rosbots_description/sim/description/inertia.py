@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .core import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
-from .spec import REVOLUTE, Inertial, JointSpec, LinkSpec
+from ..core import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
+from .model_spec import REVOLUTE, Inertial, JointSpec, LinkSpec
 
 # A body without any resistance to turning cannot be simulated. It gets that of a solid ball of
 # this radius [m] about the axes in question.

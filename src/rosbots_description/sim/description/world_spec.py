@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from .core import IDENTITY, Pose, Vector
-from .physics import PhysicsSettings
-from .spec import ModelSpec, PluginSpec
+from ..core import IDENTITY, Pose, Vector
+from .model_spec import ModelSpec, PluginSpec
+from .physics_settings import PhysicsSettings
 
 Colour = tuple[float, float, float, float]
 

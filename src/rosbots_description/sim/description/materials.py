@@ -1,6 +1,6 @@
 """Colours of the material scripts that come with Gazebo, by name (their diffuse part)."""
 
-from .spec import Material
+from .model_spec import Material
 
 Colour = tuple[float, float, float, float]
 

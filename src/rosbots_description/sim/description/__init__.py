@@ -1,0 +1,44 @@
+"""Models and worlds as frozen values, complete and checked, in SI units."""
+
+from .built_in import GROUND_PLANE, SUN
+from .materials import gazebo_material
+from .model_spec import (
+    FIXED,
+    PRISMATIC,
+    REVOLUTE,
+    Box,
+    Collision,
+    Cylinder,
+    Element,
+    Geometry,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    Material,
+    Mesh,
+    ModelSpec,
+    Plane,
+    PluginSpec,
+    Sphere,
+    Surface,
+    Visual,
+)
+from .physics_settings import PhysicsSettings, check
+from .world_spec import (
+    DIRECTIONAL,
+    POINT,
+    SPOT,
+    Colour,
+    LightSpec,
+    ModelState,
+    SceneSpec,
+    WorldSpec,
+)
+
+__all__ = [
+    'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN', 'Box',
+    'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial', 'JointSpec', 'LightSpec',
+    'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState', 'PhysicsSettings', 'Plane',
+    'PluginSpec', 'SceneSpec', 'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check',
+    'gazebo_material', 'inertia',
+]
