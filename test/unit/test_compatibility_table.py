@@ -15,8 +15,8 @@ from rosbots_description.ros_api.packages import find_model, find_package
 from rosbots_description.ros_api.server import Server
 from rosbots_description.ros_api.world_loading import read_world
 from rosbots_description.sim import plugins  # noqa: F401  registers
-from rosbots_description.sim.gazebo_libraries import missing_libraries
-from rosbots_description.sim.plugins.registry import known_filenames
+from rosbots_description.sim.plugin_registry.gazebo_libraries import missing_libraries
+from rosbots_description.sim.plugin_registry.registry import known_filenames
 from rosbots_description.sim.world import World
 
 TABLE = ROOT / 'doc' / 'gazebo_compatibility.md'

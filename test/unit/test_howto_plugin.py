@@ -13,7 +13,7 @@ from support.fake_drive import fake_model, make_drive
 from support.wire import Wire
 
 from rosbots_description.ros_api.adapters import registry as topics
-from rosbots_description.sim.plugins import registry as plugins
+from rosbots_description.sim.plugin_registry import registry as plugins
 
 PAGE = ROOT / 'doc' / 'howto_add_a_plugin.md'
 BLOCK = re.compile(r'```python\n# src/(\S+)\.py\n(.*?)```', re.DOTALL)

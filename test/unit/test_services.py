@@ -20,7 +20,7 @@ from rosbots_description.ros_api.services.spawning import DEEP, warn_overlap
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
-from rosbots_description.sim.plugins.registry import known_filenames, plugin_class
+from rosbots_description.sim.plugin_registry.registry import known_filenames, plugin_class
 
 SERVER = SimpleNamespace(loop=SimpleNamespace(
     **dict.fromkeys(('call', 'beside'), lambda command: command())))

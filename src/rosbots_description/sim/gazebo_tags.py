@@ -15,7 +15,6 @@ from lxml import etree
 
 from .core import ModelError
 from .description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
-from .gazebo_libraries import library_remark
 from .kinematic_tree import TreeLink
 from .left_out import LeftOut
 from .markup import line_of, shortened
@@ -35,6 +34,7 @@ from .markup_values import (
     to_element,
     truth,
 )
+from .plugin_registry import library_remark
 
 # A negative mu means endless friction in Gazebo, and so does inf.
 ENDLESS_FRICTION = 1e6

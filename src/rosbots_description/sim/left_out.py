@@ -7,9 +7,9 @@ from lxml import etree
 
 from .core import ModelError, ShapeError
 from .description import Element
-from .gazebo_libraries import PAGE, library_remark
 from .markup import line_of, shortened
 from .markup_values import MAX_NOTES, owner, place
+from .plugin_registry import PAGE, library_remark
 
 
 class LeftOut:

@@ -12,14 +12,13 @@ from .bullet_description import mesh_needs
 from .core import END, IDENTITY, LARGEST, ModelError, NotFoundError, Pose, SimClock, SimError, Twist
 from .description import LightSpec, Mesh, ModelSpec, PhysicsSettings, PluginSpec
 from .engine import Engine
-from .gazebo_libraries import PAGE, library_remark, missing_libraries
 from .guard import Guard
 from .inner_model import InnerModel, inner_models
 from .jobs import Jobs
 from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .plugin_life import Plugin
-from .plugins.registry import library_name, plugin_class
+from .plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
 from .schedule import Schedule
 from .scratch import HeldFile
 from .tuning import Tuning

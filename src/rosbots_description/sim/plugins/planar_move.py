@@ -9,10 +9,10 @@ the command as it is.
 import math
 
 from ..core import NANOSECONDS, Pose, Twist, yaw_of
+from ..plugin_registry import register
 from ..readings import Odometry
 from .drive import Drive
 from .params import says_defaults_to
-from .registry import register
 
 
 @register('libgazebo_ros_planar_move.so')

@@ -12,9 +12,9 @@ import math
 from collections.abc import Iterable
 
 from ..core import PluginError, Pose, Twist
+from ..plugin_registry import register
 from ..readings import FrameTransform, JointStates, Odometry
 from .drive import Encoders, WheeledDrive, reads_encoders
-from .registry import register
 
 STRAIGHT_ACROSS = math.pi / 2.0  # [rad] to which steering is limited
 

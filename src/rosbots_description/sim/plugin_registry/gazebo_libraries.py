@@ -2,7 +2,7 @@
 
 from difflib import get_close_matches
 
-from .plugins.registry import known_filenames, library_name
+from .registry import known_filenames, library_name
 
 PAGE = 'doc/gazebo_compatibility.md'
 _CLOSE = 0.9  # similarity of a name that is misspelt; that of somebody else's library is less
