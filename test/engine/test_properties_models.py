@@ -13,8 +13,8 @@ from support.mutations import damaged
 
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.formats.xml.parser import root_tag
 from rosbots_description.sim.guard import PERIOD
-from rosbots_description.sim.markup import root_tag
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.uris import UnknownPackage

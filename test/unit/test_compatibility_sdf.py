@@ -7,7 +7,8 @@ import pytest
 from lxml import etree
 from support import ROOT
 
-from rosbots_description.sim import markup, sdf_joints
+from rosbots_description.sim import sdf_joints
+from rosbots_description.sim.formats.xml import parser as xml_parser
 from rosbots_description.sim.model_search import ModelSearch
 from rosbots_description.sim.sdf_notes import Notes
 from rosbots_description.sim.world_file import load_world
@@ -101,7 +102,7 @@ def leaves(paths):
 def asked(monkeypatch):
     """Return two sets that fill with the paths that the readers look for, and call idle."""
     wanted, idle = set(), set()
-    check, parser = Notes.check, markup._parser
+    check, parser = Notes.check, xml_parser._parser
 
     class Element(etree.ElementBase):
         """An element that remembers what it is asked for."""
@@ -130,7 +131,7 @@ def asked(monkeypatch):
     for method in ('find', 'findall', 'findtext', 'iterfind'):
         setattr(Element, method, asking(method))
     monkeypatch.setattr(Notes, 'check', checking)
-    monkeypatch.setattr(markup, '_parser', remembering)
+    monkeypatch.setattr(xml_parser, '_parser', remembering)
     return wanted, idle
 
 

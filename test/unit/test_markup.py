@@ -2,9 +2,9 @@
 
 import pytest
 
-from rosbots_description.sim import markup
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.markup import line_of, parse, root_tag, source_of
+from rosbots_description.sim.formats.xml import parser
+from rosbots_description.sim.formats.xml.parser import line_of, parse, root_tag, source_of
 
 
 def complaint(text):
@@ -135,12 +135,12 @@ def test_the_deepest_accepted_nesting_is_accepted():
 
 
 def test_too_much_text_is_refused(monkeypatch):
-    monkeypatch.setattr(markup, 'MAX_BYTES', 100)
+    monkeypatch.setattr(parser, 'MAX_BYTES', 100)
     assert 'at most 100' in complaint('<a>' + ' ' * 100 + '</a>')
 
 
 def test_too_many_elements_are_refused(monkeypatch):
-    monkeypatch.setattr(markup, 'MAX_ELEMENTS', 10)
+    monkeypatch.setattr(parser, 'MAX_ELEMENTS', 10)
     assert 'more than 10 elements' in complaint('<a>' + '<b/>' * 10 + '</a>')
 
 

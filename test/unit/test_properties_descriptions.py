@@ -9,7 +9,7 @@ from support.invariants import check_sentence, check_spec, total
 from support.mutations import RAW, damaged, spoiled
 
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.markup import parse, root_tag
+from rosbots_description.sim.formats.xml.parser import parse, root_tag
 from rosbots_description.sim.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.uris import UnknownPackage

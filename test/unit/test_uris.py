@@ -4,7 +4,7 @@ import pytest
 from lxml import etree
 
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.markup import parse
+from rosbots_description.sim.formats.xml.parser import parse
 from rosbots_description.sim.uris import (
     UnknownPackage,
     file_path,

@@ -4,7 +4,7 @@ import pytest
 
 from rosbots_description.ros_api.model_source import canonical_xml
 from rosbots_description.sim.core.xml_text import plain_text
-from rosbots_description.sim.markup import parse, root_tag
+from rosbots_description.sim.formats.xml.parser import parse, root_tag
 
 
 @pytest.mark.parametrize('text', [

@@ -11,7 +11,7 @@ import numpy as np
 from lxml import etree
 
 from .core import ModelError
-from .markup import check_bounds
+from .formats.xml import check_bounds
 
 MAX_ELEMENTS = 1_000_000
 MAX_INSTANCES = 10_000  # of geometries, all nodes expanded

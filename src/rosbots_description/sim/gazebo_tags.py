@@ -15,13 +15,12 @@ from lxml import etree
 
 from .core import ModelError
 from .description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
-from .kinematic_tree import TreeLink
-from .left_out import LeftOut
-from .markup import line_of, shortened
-from .markup_values import (
+from .formats.xml import (
     MAX_NOTES,
+    LeftOut,
     fault,
     is_endless,
+    line_of,
     note,
     parse_numbers,
     place,
@@ -29,11 +28,13 @@ from .markup_values import (
     scalar,
     scalar_number,
     scalar_numbers,
+    shortened,
     suggestion,
     tag_of,
     to_element,
     truth,
 )
+from .kinematic_tree import TreeLink
 from .plugin_registry import library_remark
 
 # A negative mu means endless friction in Gazebo, and so does inf.

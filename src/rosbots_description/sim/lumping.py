@@ -13,8 +13,8 @@ from .bounds import MAX_JOINTS
 from .core import IDENTITY, ModelError, Pose, compose
 from .description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 from .description.inertia import merge
+from .formats.xml import fault
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
-from .markup_values import fault
 from .repointing import move_part
 
 _LUMPED = '_fixed_joint_lump__'

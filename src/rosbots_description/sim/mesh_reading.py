@@ -19,8 +19,7 @@ import numpy as np
 from .collada_guard import ColladaError, safe_collada
 from .core import AbsentError, ModelError
 from .files import read_file, regular_state, within
-from .markup import shortened
-from .markup_values import LONGEST
+from .formats.xml import LONGEST, shortened
 from .mesh_thinning import thinned
 from .stl import read_stl
 from .wavefront import ObjPart, read_obj

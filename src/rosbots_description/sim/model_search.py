@@ -8,8 +8,7 @@ from lxml import etree
 
 from .core import AbsentError, NotFoundError
 from .files import read_file
-from .markup import MAX_BYTES, parse
-from .markup_values import fault
+from .formats.xml import MAX_BYTES, fault, parse
 
 # Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
 FindModel = Callable[[str], str | None]

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from .core import IDENTITY, Pose, compose, from_rpy, to_rpy
 from .description import Element, PluginSpec
-from .markup_values import parse_numbers
+from .formats.xml import parse_numbers
 
 _ZERO = (0.0, 0.0, 0.0)
 

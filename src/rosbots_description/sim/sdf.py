@@ -6,8 +6,8 @@ from lxml import etree
 
 from .core import IDENTITY, ModelError, Pose
 from .description import LightSpec, ModelSpec
+from .formats.xml import check_name, fault
 from .gazebo_tags import inject_namespace
-from .markup_values import check_name, fault
 from .model_search import FindModel
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_light import read_light

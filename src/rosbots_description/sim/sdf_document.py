@@ -7,9 +7,7 @@ from lxml import etree
 
 from .core import ModelError
 from .files import read_file, within
-from .foreign_tags import remove_xacro
-from .markup import MAX_BYTES, parse
-from .markup_values import fault, scalar, tag_of
+from .formats.xml import MAX_BYTES, fault, parse, remove_xacro, scalar, tag_of
 from .model_search import BUILT_IN_MODELS, FindModel, below_model_path, description_file, in_models
 from .sdf_notes import Notes
 from .sdf_poses import complete_poses

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from lxml import etree
 
 from .core import IDENTITY, AbsentError, Pose, compose
-from .markup_values import fault, suggestion, tag_of
+from .formats.xml import fault, suggestion, tag_of
 from .sdf_values import pose_in
 
 MODEL_FRAME = '__model__'

@@ -4,7 +4,7 @@ from lxml import etree
 
 from .core import Pose
 from .description import DIRECTIONAL, POINT, SPOT, LightSpec
-from .markup_values import fault, required_name
+from .formats.xml import fault, required_name
 from .sdf_document import SdfDocument
 from .sdf_values import colour_of, number_of, numbers_of, truth_of
 

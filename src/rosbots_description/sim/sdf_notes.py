@@ -6,9 +6,16 @@ from itertools import islice
 
 from lxml import etree
 
-from .left_out import LeftOut
-from .markup import line_of, shortened
-from .markup_values import MAX_NOTES, parse_numbers, place, scalar, tag_of
+from .formats.xml import (
+    MAX_NOTES,
+    LeftOut,
+    line_of,
+    parse_numbers,
+    place,
+    scalar,
+    shortened,
+    tag_of,
+)
 
 logger = logging.getLogger(__name__)
 

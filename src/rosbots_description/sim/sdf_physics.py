@@ -6,7 +6,7 @@ from lxml import etree
 
 from .core import SimError
 from .description import PhysicsSettings, check
-from .markup_values import fault, scalar, tag_of
+from .formats.xml import fault, scalar, tag_of
 from .sdf_document import SdfDocument
 from .sdf_values import number_of, numbers_of
 

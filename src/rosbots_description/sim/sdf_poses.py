@@ -2,8 +2,7 @@
 
 from lxml import etree
 
-from .markup import line_of, shortened
-from .markup_values import parse_numbers, scalar
+from .formats.xml import line_of, parse_numbers, scalar, shortened
 
 _NUMBERS = 6  # x y z roll pitch yaw
 _FOREIGN = ('plugin',)  # what stands in these is the business of who reads them

@@ -16,8 +16,8 @@ from .description import (
     Visual,
     gazebo_material,
 )
+from .formats.xml import fault, is_endless, owner, place, tag_of
 from .gazebo_tags import ENDLESS_FRICTION
-from .markup_values import fault, is_endless, owner, place, tag_of
 from .mesh_reading import check_mesh
 from .sdf_document import SdfDocument
 from .sdf_values import (

@@ -6,7 +6,7 @@ from lxml import etree
 
 from .core import IDENTITY, Pose, Vector, from_rpy
 from .core import normalise as normalise_quaternion
-from .markup_values import (
+from .formats.xml import (
     fault,
     is_endless,
     require_damping,

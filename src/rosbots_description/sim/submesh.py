@@ -12,7 +12,7 @@ from lxml import etree
 from .collada_guard import ColladaError, safe_collada
 from .core import ModelError
 from .files import read_file, regular_state
-from .markup_values import suggestion
+from .formats.xml import suggestion
 from .mesh_reading import MAX_BYTES, read_mesh
 from .scratch import HeldFile, HeldFiles
 

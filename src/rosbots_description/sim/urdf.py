@@ -9,12 +9,22 @@ from .bounds import excess
 from .core import IDENTITY, ModelError, Pose
 from .description import LinkSpec, ModelSpec
 from .description.inertia import impossible, possible, turnable
-from .foreign_tags import foreign_tags, remove_xacro
+from .formats.xml import (
+    XACRO_CURE,
+    check_name,
+    fault,
+    foreign_tags,
+    note,
+    origin,
+    parse,
+    remove_xacro,
+    required_name,
+    shortened,
+    tag_of,
+)
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
-from .markup import XACRO_CURE, parse, shortened
-from .markup_values import check_name, fault, note, origin, required_name, tag_of
 from .mesh_reading import check_mesh
 from .model_search import FindModel
 from .repointing import repoint_plugin

@@ -23,10 +23,8 @@ from .description import (
     Visual,
     gazebo_material,
 )
-from .kinematic_tree import FREE, TreeJoint, TreeLink
-from .left_out import LeftOut
-from .markup import shortened
-from .markup_values import (
+from .formats.xml import (
+    LeftOut,
     fault,
     limit_number,
     note,
@@ -37,8 +35,10 @@ from .markup_values import (
     positive,
     require_mass,
     required_name,
+    shortened,
     suggestion,
 )
+from .kinematic_tree import FREE, TreeJoint, TreeLink
 from .model_search import FindModel, in_models
 from .uris import file_path, refuse_climbing
 

@@ -8,7 +8,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from .core import AbsentError
-from .markup_values import fault, place
+from .formats.xml import fault, place
 
 FindPackage = Callable[[str], str | None]  # package name -> its directory, None if unknown
 

@@ -12,8 +12,7 @@ from lxml import etree
 from .core import ModelError, Pose, SimError
 from .description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
 from .files import read_file
-from .markup import MAX_BYTES
-from .markup_values import fault, required_name
+from .formats.xml import MAX_BYTES, fault, required_name
 from .model_search import FindModel
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_frames import Frames

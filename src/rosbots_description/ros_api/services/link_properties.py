@@ -15,7 +15,7 @@ from geometry_msgs.msg import Point
 from ...sim.core import Pose
 from ...sim.description import Inertial
 from ...sim.description.inertia import in_link_axes, is_positive, turnable
-from ...sim.markup_values import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
+from ...sim.formats.xml import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
 from ...sim.model import Link
 from ..conversions import read_vector
 from ..server import Server

@@ -14,7 +14,7 @@ from rosbots_msgs.srv import (
 from ...sim.bullet_description import mesh_needs
 from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
-from ...sim.markup import root_tag
+from ...sim.formats.xml import root_tag
 from ...sim.model import Model
 from ...sim.scratch import HeldFile
 from ...sim.sdf import load_sdf, load_sdf_light

@@ -6,8 +6,8 @@ text that it is. Only where a number is needed is there none; see `markup_values
 
 from lxml import etree
 
-from .markup import XACRO_CURE, is_expression, line_of, shortened
-from .markup_values import tag_of
+from .parser import XACRO_CURE, is_expression, line_of, shortened
+from .values import tag_of
 
 _XACRO = 'xacro:'
 _OWN = ('gazebo', 'plugin', 'sensor')  # whatever stands in these is the business of who reads them

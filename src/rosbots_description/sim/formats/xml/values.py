@@ -11,9 +11,9 @@ from itertools import islice
 
 from lxml import etree
 
-from .core import IDENTITY, ModelError, Pose, ShapeError, from_rpy
-from .description import Element
-from .markup import XACRO_CURE, is_expression, line_of, shortened, source_of
+from ...core import IDENTITY, ModelError, Pose, ShapeError, from_rpy
+from ...description import Element
+from .parser import XACRO_CURE, is_expression, line_of, shortened, source_of
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
 MAX_NOTES = 40  # sentences about one description; who needs more does not read them

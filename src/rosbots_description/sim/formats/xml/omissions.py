@@ -5,11 +5,11 @@ from itertools import islice
 
 from lxml import etree
 
-from .core import ModelError, ShapeError
-from .description import Element
-from .markup import line_of, shortened
-from .markup_values import MAX_NOTES, owner, place
-from .plugin_registry import PAGE, library_remark
+from ...core import ModelError, ShapeError
+from ...description import Element
+from ...plugin_registry import PAGE, library_remark
+from .parser import line_of, shortened
+from .values import MAX_NOTES, owner, place
 
 
 class LeftOut:

@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 from lxml import etree
 
-from .core import ModelError, is_expanded_xacro, plain_text
+from ...core import ModelError, is_expanded_xacro, plain_text
 
 MAX_BYTES = 10_000_000
 MAX_DEPTH = 200

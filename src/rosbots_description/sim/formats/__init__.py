@@ -1,0 +1,1 @@
+"""From text to description: one folder for each language, each fault with file and line."""
