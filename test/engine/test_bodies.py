@@ -13,7 +13,7 @@ from rosbots_description.sim.description.model_spec import Inertial, LinkSpec, M
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.meshes import MeshStore
-from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 
 SECOND = 1000  # steps

@@ -6,7 +6,7 @@ import pytest
 from support import ROOT, empty_world
 
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, relative, rotate, yaw_of
-from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 

@@ -4,7 +4,7 @@ import pytest
 from support import empty_world
 
 from rosbots_description.sim.core.transforms import Pose
-from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 

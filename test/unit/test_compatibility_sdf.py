@@ -9,7 +9,7 @@ from support import ROOT
 
 from rosbots_description.sim import sdf_joints
 from rosbots_description.sim.formats.xml import parser as xml_parser
-from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf_notes import Notes
 from rosbots_description.sim.world_file import load_world
 

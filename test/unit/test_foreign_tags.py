@@ -6,7 +6,7 @@ import pytest
 
 from rosbots_description.ros_api.model_source import canonical_xml
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 

@@ -6,8 +6,8 @@ import pytest
 
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.description.model_spec import Box
-from rosbots_description.sim.model_search import ModelSearch
 from rosbots_description.sim.plugin_registry.gazebo_libraries import PAGE, library_remark
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 

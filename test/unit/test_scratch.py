@@ -13,9 +13,9 @@ import pytest
 from support import ROOT
 from support.surroundings import unshare
 
-from rosbots_description.sim import scratch
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.scratch import ScratchFolder
+from rosbots_description.sim.resources import scratch
+from rosbots_description.sim.resources.scratch import ScratchFolder
 
 # Fills the places that its arguments name, in a private view of the file system, and goes on.
 FILL = """
@@ -27,7 +27,7 @@ exec "$PYTHON" -c "$PROGRAM"
 NOT_PERMITTED = 77
 WRITE = """
 import os, resource, tempfile
-from rosbots_description.sim.scratch import ScratchFolder
+from rosbots_description.sim.resources.scratch import ScratchFolder
 tempfile.tempdir = os.environ.get('TMPDIR')  # chosen when there was still room
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(os.environ.get('LARGEST', -1)),) * 2)
 folder = ScratchFolder('test_')

@@ -19,7 +19,7 @@ from rosbots_description.sim.description.model_spec import (
 )
 from rosbots_description.sim.gazebo_tags import ENDLESS_FRICTION
 from rosbots_description.sim.mesh_reading import check_mesh, read_mesh
-from rosbots_description.sim.model_search import BUILT_IN_MODELS, ModelSearch
+from rosbots_description.sim.resources.search_path import BUILT_IN_MODELS, ModelSearch
 from rosbots_description.sim.sdf import load_sdf, load_sdf_light
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'

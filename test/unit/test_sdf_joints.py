@@ -7,7 +7,7 @@ import pytest
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, compose
 from rosbots_description.sim.description.model_spec import FIXED, PRISMATIC, REVOLUTE
-from rosbots_description.sim.model_search import ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 
 # b stands a metre along x, turned by a quarter about z: its x axis is the model's y axis.

@@ -5,7 +5,7 @@ from lxml import etree
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.formats.xml.parser import parse
-from rosbots_description.sim.uris import (
+from rosbots_description.sim.resources.uris import (
     UnknownPackage,
     file_path,
     refuse_climbing,

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ..sim.meshes import MeshStore
-from ..sim.model_search import FindModel
+from ..sim.resources import FindModel, FindPackage
 from ..sim.trial import Trials
-from ..sim.uris import FindPackage
 from ..sim.world import World
 from .loop import Loop
 from .registrar import Registrar

@@ -18,9 +18,9 @@ import numpy as np
 
 from .collada_guard import ColladaError, safe_collada
 from .core import AbsentError, ModelError
-from .files import read_file, regular_state, within
 from .formats.xml import LONGEST, shortened
 from .mesh_thinning import thinned
+from .resources import read_file, regular_state, within
 from .stl import read_stl
 from .wavefront import ObjPart, read_obj
 

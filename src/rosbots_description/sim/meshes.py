@@ -16,7 +16,7 @@ from .description import Mesh
 from .description.inertia import settle
 from .extremes import farthest
 from .mesh_reading import MeshData, check_mesh, read_mesh, visual_parts
-from .scratch import HeldFile, HeldFiles
+from .resources import HeldFile, HeldFiles
 from .stl import write_stl
 
 __all__ = ['MeshStore', 'check_mesh', 'visual_parts']

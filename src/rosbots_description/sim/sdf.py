@@ -8,12 +8,11 @@ from .core import IDENTITY, ModelError, Pose
 from .description import LightSpec, ModelSpec
 from .formats.xml import check_name, fault
 from .gazebo_tags import inject_namespace
-from .model_search import FindModel
+from .resources import FindModel, FindPackage
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_light import read_light
 from .sdf_model import ModelParts, model_spec, read_include, read_model
 from .sdf_values import pose_in
-from .uris import FindPackage
 
 logger = logging.getLogger(__name__)
 

@@ -6,12 +6,22 @@ from collections.abc import Callable
 from lxml import etree
 
 from .core import ModelError
-from .files import read_file, within
 from .formats.xml import MAX_BYTES, fault, parse, remove_xacro, scalar, tag_of
-from .model_search import BUILT_IN_MODELS, FindModel, below_model_path, description_file, in_models
+from .resources import (
+    BUILT_IN_MODELS,
+    FindModel,
+    FindPackage,
+    below_model_path,
+    description_file,
+    file_path,
+    in_models,
+    read_file,
+    refuse_climbing,
+    substitute_packages,
+    within,
+)
 from .sdf_notes import Notes
 from .sdf_poses import complete_poses
-from .uris import FindPackage, file_path, refuse_climbing, substitute_packages
 
 NEWEST = (1, 7)
 _UNVERSIONED = (1, 6)

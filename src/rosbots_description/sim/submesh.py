@@ -11,10 +11,9 @@ from lxml import etree
 
 from .collada_guard import ColladaError, safe_collada
 from .core import ModelError
-from .files import read_file, regular_state
 from .formats.xml import suggestion
 from .mesh_reading import MAX_BYTES, read_mesh
-from .scratch import HeldFile, HeldFiles
+from .resources import HeldFile, HeldFiles, read_file, regular_state
 
 _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
 _files = HeldFiles('rosbots_submeshes_')

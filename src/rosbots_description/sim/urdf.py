@@ -26,10 +26,9 @@ from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_t
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
 from .mesh_reading import check_mesh
-from .model_search import FindModel
 from .repointing import repoint_plugin
+from .resources import FindModel, FindPackage, substitute_in_tree
 from .urdf_parts import LinkReader, read_joint
-from .uris import FindPackage, substitute_in_tree
 
 logger = logging.getLogger(__name__)
 

@@ -39,8 +39,7 @@ from .formats.xml import (
     suggestion,
 )
 from .kinematic_tree import FREE, TreeJoint, TreeLink
-from .model_search import FindModel, in_models
-from .uris import file_path, refuse_climbing
+from .resources import FindModel, file_path, in_models, refuse_climbing
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
 _JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC,

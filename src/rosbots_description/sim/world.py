@@ -19,8 +19,8 @@ from .meshes import MeshStore
 from .model import Collision, Joint, Link, Model
 from .plugin_life import Plugin
 from .plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
+from .resources import HeldFile
 from .schedule import Schedule
-from .scratch import HeldFile
 from .tuning import Tuning
 
 logger = logging.getLogger(__name__)

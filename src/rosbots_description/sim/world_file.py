@@ -11,9 +11,8 @@ from lxml import etree
 
 from .core import ModelError, Pose, SimError
 from .description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
-from .files import read_file
 from .formats.xml import MAX_BYTES, fault, required_name
-from .model_search import FindModel
+from .resources import FindModel, FindPackage, read_file
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_frames import Frames
 from .sdf_light import read_light
@@ -21,7 +20,6 @@ from .sdf_model import ModelParts, model_spec, read_include, read_model, read_pl
 from .sdf_physics import read_physics
 from .sdf_state import apply_state, read_states
 from .sdf_values import colour_of, text_of, truth_of
-from .uris import FindPackage
 from .world import World
 
 logger = logging.getLogger(__name__)

@@ -16,10 +16,9 @@ from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats.xml import root_tag
 from ...sim.model import Model
-from ...sim.scratch import HeldFile
+from ...sim.resources import HeldFile, UnknownPackage
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.urdf import load_urdf
-from ...sim.uris import UnknownPackage
 from ...sim.world import World
 from ..conversions import read_pose
 from ..server import Server

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from lxml import etree
 
-from .core import AbsentError, NotFoundError
-from .files import read_file
-from .formats.xml import MAX_BYTES, fault, parse
+from ..core import AbsentError, NotFoundError
+from ..formats.xml import MAX_BYTES, fault, parse
+from .safe_io import read_file
 
 # Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
 FindModel = Callable[[str], str | None]

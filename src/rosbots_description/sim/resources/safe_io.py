@@ -7,7 +7,7 @@ the memory or do something. Only regular files are opened, and no more is read t
 import os
 import stat
 
-from .core import ModelError
+from ..core import ModelError
 
 _OTHERS = {
     stat.S_IFDIR: 'folder', stat.S_IFIFO: 'pipe', stat.S_IFSOCK: 'socket',

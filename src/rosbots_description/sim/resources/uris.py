@@ -7,8 +7,8 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from .core import AbsentError
-from .formats.xml import fault, place
+from ..core import AbsentError
+from ..formats.xml import fault, place
 
 FindPackage = Callable[[str], str | None]  # package name -> its directory, None if unknown
 

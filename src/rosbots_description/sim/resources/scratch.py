@@ -8,7 +8,7 @@ import weakref
 from collections import Counter
 from pathlib import Path
 
-from .core import ModelError
+from ..core import ModelError
 
 MEMORY = '/dev/shm'  # a folder that needs no disk; Linux has it
 

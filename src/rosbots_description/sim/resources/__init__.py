@@ -1,0 +1,29 @@
+"""Where files are found by their addresses, and how they are opened."""
+
+from .safe_io import read_file, regular_state, within
+from .scratch import HeldFile, HeldFiles
+from .search_path import (
+    BUILT_IN_MODELS,
+    FindModel,
+    ModelSearch,
+    below_model_path,
+    description_file,
+    find_world,
+    in_models,
+    path_directories,
+)
+from .uris import (
+    FindPackage,
+    UnknownPackage,
+    file_path,
+    refuse_climbing,
+    substitute_in_tree,
+    substitute_packages,
+)
+
+__all__ = [
+    'BUILT_IN_MODELS', 'FindModel', 'FindPackage', 'HeldFile', 'HeldFiles', 'ModelSearch',
+    'UnknownPackage', 'below_model_path', 'description_file', 'file_path', 'find_world',
+    'in_models', 'path_directories', 'read_file', 'refuse_climbing', 'regular_state',
+    'substitute_in_tree', 'substitute_packages', 'within',
+]
