@@ -12,7 +12,7 @@ from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, to_rp
 from rosbots_description.sim.description.model_spec import Inertial, LinkSpec, ModelSpec
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.engine import Engine
-from rosbots_description.sim.meshes import MeshStore
+from rosbots_description.sim.meshes.store import MeshStore
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 

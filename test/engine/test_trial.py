@@ -33,7 +33,7 @@ from rosbots_description.sim.description.model_spec import (
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.engine import Engine
-from rosbots_description.sim.meshes import MeshStore
+from rosbots_description.sim.meshes.store import MeshStore
 from rosbots_description.sim.trial import Trials
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')

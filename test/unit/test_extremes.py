@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rosbots_description.sim import extremes
-from rosbots_description.sim.extremes import farthest
+from rosbots_description.sim.meshes import support_points
+from rosbots_description.sim.meshes.support_points import farthest
 
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 
@@ -24,5 +24,5 @@ def test_how_many_are_looked_at_in_one_go_does_not_matter(at_once, monkeypatch):
     points, ways = random.normal(size=(50, 3)), random.normal(size=(40, 3))
     expected = sorted({int(np.argmax(a * points[:, 0] + b * points[:, 1] + c * points[:, 2]))
                        for a, b, c in ways})
-    monkeypatch.setattr(extremes, '_AT_ONCE', at_once)
+    monkeypatch.setattr(support_points, '_AT_ONCE', at_once)
     assert farthest(points, ways) == expected

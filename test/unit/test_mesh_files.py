@@ -12,11 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rosbots_description.sim import mesh_reading, meshes
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.mesh_reading import GREY, read_mesh
-from rosbots_description.sim.meshes import HULL_DIRECTIONS, MeshStore, check_mesh, visual_parts
-from rosbots_description.sim.stl import read_stl
+from rosbots_description.sim.meshes import loader
+from rosbots_description.sim.meshes import store as mesh_store
+from rosbots_description.sim.meshes.loader import GREY, read_mesh
+from rosbots_description.sim.meshes.stl import read_stl
+from rosbots_description.sim.meshes.store import (
+    HULL_DIRECTIONS,
+    MeshStore,
+    check_mesh,
+    visual_parts,
+)
 
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 ASCII_STL = ('solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n'
@@ -195,10 +201,10 @@ def test_another_format_is_named_with_those_that_are_read(write):
 
 
 def test_a_file_too_big_or_too_fine_is_refused(write, monkeypatch):
-    monkeypatch.setattr(mesh_reading, 'MAX_BYTES', 10)
+    monkeypatch.setattr(loader, 'MAX_BYTES', 10)
     assert 'at most 10 are accepted' in complaint(write('a.obj', TRIANGLE))
     monkeypatch.undo()
-    monkeypatch.setattr(mesh_reading, 'MAX_TRIANGLES', 1)
+    monkeypatch.setattr(loader, 'MAX_TRIANGLES', 1)
     assert 'has 2 triangles; at most 1' in complaint(write('b.obj', TRIANGLE + 'f 3 2 1\n'))
 
 
@@ -259,8 +265,8 @@ def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, s
 def test_points_that_coincide_count_once():
     random = np.random.default_rng(1)
     points = random.integers(-2, 3, size=(200, 3)).astype(float)
-    np.testing.assert_array_equal(meshes._distinct(points), np.unique(points, axis=0))
-    assert len(meshes._distinct(points[:1])) == 1
+    np.testing.assert_array_equal(mesh_store._distinct(points), np.unique(points, axis=0))
+    assert len(mesh_store._distinct(points[:1])) == 1
 
 
 def test_the_hull_leaves_out_points_no_triangle_uses(write, store):

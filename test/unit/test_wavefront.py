@@ -5,8 +5,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rosbots_description.sim.mesh_thinning import thinned
-from rosbots_description.sim.wavefront import read_obj
+from rosbots_description.sim.meshes.decimation import thinned
+from rosbots_description.sim.meshes.obj import read_obj
 
 CORNERS = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\nv -1 0.2 0\n'
 

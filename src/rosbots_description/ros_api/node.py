@@ -20,7 +20,7 @@ import rosgraph
 import rospy
 
 from ..sim.description import WorldSpec
-from ..sim.mesh_reading import load_readers
+from ..sim.meshes import load_readers
 from ..sim.world import World
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters

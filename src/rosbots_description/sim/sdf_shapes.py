@@ -18,7 +18,7 @@ from .description import (
 )
 from .formats.xml import fault, is_endless, owner, place, tag_of
 from .gazebo_tags import ENDLESS_FRICTION
-from .mesh_reading import check_mesh
+from .meshes import check_mesh, submesh_file
 from .sdf_document import SdfDocument
 from .sdf_values import (
     colour_of,
@@ -31,7 +31,6 @@ from .sdf_values import (
     truth_of,
     unit_vector_of,
 )
-from .submesh import submesh_file
 
 _NOT_SIMULATED = ('heightmap', 'polyline', 'image', 'capsule', 'ellipsoid', 'cone')
 _UP = (0.0, 0.0, 1.0)

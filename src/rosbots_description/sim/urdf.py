@@ -25,7 +25,7 @@ from .formats.xml import (
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
-from .mesh_reading import check_mesh
+from .meshes import check_mesh
 from .repointing import repoint_plugin
 from .resources import FindModel, FindPackage, substitute_in_tree
 from .urdf_parts import LinkReader, read_joint

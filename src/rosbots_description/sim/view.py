@@ -8,7 +8,7 @@ import numpy as np
 from .canvas import Canvas, Triangles
 from .core import Vector, compose
 from .description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
-from .mesh_reading import visual_parts
+from .meshes import visual_parts
 from .model import Link, Model
 from .world import World
 

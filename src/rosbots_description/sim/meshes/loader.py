@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .collada_guard import ColladaError, safe_collada
-from .core import AbsentError, ModelError
-from .formats.xml import LONGEST, shortened
-from .mesh_thinning import thinned
-from .resources import read_file, regular_state, within
+from ..core import AbsentError, ModelError
+from ..formats.xml import LONGEST, shortened
+from ..resources import read_file, regular_state, within
+from .collada_limits import ColladaError, safe_collada
+from .decimation import thinned
+from .obj import ObjPart, read_obj
 from .stl import read_stl
-from .wavefront import ObjPart, read_obj
 
 if TYPE_CHECKING:
-    from .collada_reading import ColladaPart
+    from .collada import ColladaPart
 
 logger = logging.getLogger(__name__)
 
@@ -110,7 +110,7 @@ def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | 
 
 def load_readers() -> None:
     """Load what reading Collada files takes, so that the first one need not wait for it."""
-    from . import collada_reading  # noqa: F401, PLC0415  as it says
+    from . import collada  # noqa: F401, PLC0415  as it says
 
 
 def _state(path: str) -> tuple[int, int]:
@@ -156,7 +156,7 @@ def _parse(path: str, extension: str, content: bytes) -> list[Part]:
 
 
 def _parse_collada(content: bytes, path: str) -> list[Part]:
-    from .collada_reading import read_collada  # noqa: PLC0415  as it says
+    from .collada import read_collada  # noqa: PLC0415  as it says
 
     parts, unit = read_collada(safe_collada(content))
     return [_collada_part(part, unit) for part in parts]

@@ -10,8 +10,8 @@ import re
 import numpy as np
 from lxml import etree
 
-from .core import ModelError
-from .formats.xml import check_bounds
+from ..core import ModelError
+from ..formats.xml import check_bounds
 
 MAX_ELEMENTS = 1_000_000
 MAX_INSTANCES = 10_000  # of geometries, all nodes expanded

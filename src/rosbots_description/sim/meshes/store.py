@@ -11,13 +11,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from .core import Vector
-from .description import Mesh
-from .description.inertia import settle
-from .extremes import farthest
-from .mesh_reading import MeshData, check_mesh, read_mesh, visual_parts
-from .resources import HeldFile, HeldFiles
+from ..core import Vector
+from ..description import Mesh
+from ..description.inertia import settle
+from ..resources import HeldFile, HeldFiles
+from .loader import MeshData, check_mesh, read_mesh, visual_parts
 from .stl import write_stl
+from .support_points import farthest
 
 __all__ = ['MeshStore', 'check_mesh', 'visual_parts']
 

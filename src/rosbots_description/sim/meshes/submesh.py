@@ -9,11 +9,11 @@ from pathlib import Path
 
 from lxml import etree
 
-from .collada_guard import ColladaError, safe_collada
-from .core import ModelError
-from .formats.xml import suggestion
-from .mesh_reading import MAX_BYTES, read_mesh
-from .resources import HeldFile, HeldFiles, read_file, regular_state
+from ..core import ModelError
+from ..formats.xml import suggestion
+from ..resources import HeldFile, HeldFiles, read_file, regular_state
+from .collada_limits import ColladaError, safe_collada
+from .loader import MAX_BYTES, read_mesh
 
 _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
 _files = HeldFiles('rosbots_submeshes_')

@@ -1,0 +1,12 @@
+"""From mesh files to clean triangles, and to the files that a physics engine gets."""
+
+from .loader import check_mesh, load_readers, visual_parts
+from .stl import read_stl
+from .store import MeshStore
+from .submesh import submesh_file
+from .support_points import farthest
+
+__all__ = [
+    'MeshStore', 'check_mesh', 'farthest', 'load_readers', 'read_stl', 'submesh_file',
+    'visual_parts',
+]
