@@ -21,8 +21,8 @@ from collections.abc import Callable, Iterator
 
 from article import driven_world, robot_urdf
 
-from rosbots_description.sim.bullet import pybullet
-from rosbots_description.sim.silence import silent
+from rosbots_description.sim.physics.bullet.client import pybullet
+from rosbots_description.sim.physics.bullet.silence import silent
 
 STANDING = 1000  # steps after which robots have fallen and stand
 DISTANCE = 3.0  # [m] between robots

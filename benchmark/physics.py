@@ -18,7 +18,7 @@ from support.scenes import SCENES, SPEED, box, forward_speed
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.model import Model
-from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.world import World
 
 USUAL = Tuning()

@@ -24,8 +24,8 @@ from lateness import STEP, report
 from loops import Loop
 from server import Server, in_a_process_of_its_own
 
-from rosbots_description.sim.bullet_description import mesh_needs
-from rosbots_description.sim.trial import Trials
+from rosbots_description.sim.physics.bullet.crash_sandbox import Trials
+from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
 from rosbots_description.sim.world import World
 
 WINDOW = 3.0  # [s, wall]

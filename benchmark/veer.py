@@ -18,7 +18,7 @@ from support import SETTLED, SPAWN_POSE, empty_world, robot_spec
 from support.scenes import HEADINGS, castered, drive
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy, yaw_of
-from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.physics.bullet.tuning import Tuning
 
 SIZES = {0.2: 0.12, 5.0: 0.4, 50.0: 0.9}  # [m] by mass [kg]
 ARTICLE = "the article's"

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from support import ROOT, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
-from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, to_rpy
 from rosbots_description.sim.description.model_spec import Inertial, LinkSpec, ModelSpec
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.meshes.store import MeshStore
+from rosbots_description.sim.physics.bullet.engine import Engine
+from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.sdf import load_sdf
 

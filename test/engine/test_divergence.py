@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from support import box_urdf, empty_world, urdf_spec
 
-from rosbots_description.sim.bullet import pybullet
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.guard import PERIOD
+from rosbots_description.sim.physics.bullet.client import pybullet
 
 CRANE = """<link name="world"/>
   <link name="arm"><inertial><mass value="1"/>

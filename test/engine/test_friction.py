@@ -7,9 +7,9 @@ import pytest
 from support import box_urdf, empty_world, urdf_spec
 from support.scenes import ball
 
-from rosbots_description.sim.bullet import pybullet
 from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy
-from rosbots_description.sim.friction_filter import FrictionFilter, Kind, Role, Side
+from rosbots_description.sim.physics.bullet.client import pybullet
+from rosbots_description.sim.physics.bullet.friction_filter import FrictionFilter, Kind, Role, Side
 
 SECOND = 1000  # steps
 GRAVITY = 9.8

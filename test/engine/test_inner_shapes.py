@@ -8,8 +8,8 @@ import pytest
 from support import empty_world, urdf_spec
 from support.scenes import ball, box, wheel
 
-from rosbots_description.sim.bullet import pybullet
 from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy
+from rosbots_description.sim.physics.bullet.client import pybullet
 
 CORNERS = list(product((-0.2, 0.2), (-0.15, 0.15), (0.145, 0.355)))  # of the plates [m]
 

@@ -16,8 +16,6 @@ from functools import partial
 import pytest
 from support import box_urdf, empty_world, robot_spec, urdf_spec
 
-from rosbots_description.sim import inner_shapes, trial
-from rosbots_description.sim.bullet_description import mesh_needs
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import IDENTITY, Pose
 from rosbots_description.sim.description.built_in import GROUND_PLANE
@@ -32,9 +30,11 @@ from rosbots_description.sim.description.model_spec import (
     Surface,
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.engine import Engine
 from rosbots_description.sim.meshes.store import MeshStore
-from rosbots_description.sim.trial import Trials
+from rosbots_description.sim.physics.bullet import crash_sandbox, occluded_shapes
+from rosbots_description.sim.physics.bullet.crash_sandbox import Trials
+from rosbots_description.sim.physics.bullet.engine import Engine
+from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
 SHORT = 0.3  # [s] for a model that is never done with
@@ -67,10 +67,10 @@ def burn(seconds):
 
 def allow(monkeypatch, processor, wall):
     """Let a trial take so much time [s], whatever it is of."""
-    monkeypatch.setattr(trial, 'LEAST', processor)
-    monkeypatch.setattr(trial, 'FOR_A_PART', 0.0)
-    monkeypatch.setattr(trial, 'FOR_A_BYTE', 0.0)
-    monkeypatch.setattr(trial, 'PATIENCE', wall / processor)
+    monkeypatch.setattr(crash_sandbox, 'LEAST', processor)
+    monkeypatch.setattr(crash_sandbox, 'FOR_A_PART', 0.0)
+    monkeypatch.setattr(crash_sandbox, 'FOR_A_BYTE', 0.0)
+    monkeypatch.setattr(crash_sandbox, 'PATIENCE', wall / processor)
 
 
 def steps_of_a_trial(at_start=lambda: None, at_step=lambda: None):
@@ -106,7 +106,7 @@ def fixture_forks(monkeypatch):
             made.append(child)
         return child
 
-    monkeypatch.setattr(trial.os, 'fork', counted)
+    monkeypatch.setattr(crash_sandbox.os, 'fork', counted)
     return made
 
 
@@ -158,7 +158,7 @@ def tetrahedron(height):
 
 
 def test_the_contents_that_passed_first_are_forgotten_first(forks, monkeypatch):
-    monkeypatch.setattr(trial, 'REMEMBERED', 1)
+    monkeypatch.setattr(crash_sandbox, 'REMEMBERED', 1)
     trials = Trials(engine_that())
     static = replace(CRATE, static=True)
     for spec, tried in ((CRATE, 1), (static, 2), (static, 2), (CRATE, 3)):
@@ -211,21 +211,21 @@ def test_a_model_may_take_the_longer_the_more_it_holds(share, monkeypatch, tmp_p
     allow(monkeypatch, SHORT, LONG)
     with pytest.raises(ModelError, match='of processor time'):
         require(trials, spec, files)
-    monkeypatch.setattr(trial, share, LONG)
+    monkeypatch.setattr(crash_sandbox, share, LONG)
     require(trials, spec, files)
 
 
 def test_a_model_makes_twenty_steps(monkeypatch):
-    monkeypatch.setattr(trial, 'BUDGET', math.inf)
+    monkeypatch.setattr(crash_sandbox, 'BUDGET', math.inf)
     assert steps_of_a_trial() == 20
 
 
 def test_a_model_that_is_slow_to_step_makes_fewer():
-    assert steps_of_a_trial(at_step=lambda: burn(trial.BUDGET)) == 1
+    assert steps_of_a_trial(at_step=lambda: burn(crash_sandbox.BUDGET)) == 1
 
 
 def test_a_model_that_is_slow_to_bring_in_makes_a_step_all_the_same():
-    assert steps_of_a_trial(at_start=lambda: burn(trial.BUDGET)) == 1
+    assert steps_of_a_trial(at_start=lambda: burn(crash_sandbox.BUDGET)) == 1
 
 
 def test_a_model_that_passed_does_not_wait_for_the_trial_of_another(tmp_path, forks):
@@ -281,7 +281,7 @@ def test_nothing_of_a_trial_is_seen(capfd, caplog):
     def chatter():
         os.write(1, b'b3Warning: no inertial')
         os.write(2, b'Fatal Python error')
-        trial.logger.error('lost')
+        crash_sandbox.logger.error('lost')
 
     require(Trials(engine_that(chatter)))
     assert capfd.readouterr() == ('', '')
@@ -312,7 +312,7 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(monkeypatch,
     def full():
         raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
 
-    monkeypatch.setattr(trial.os, 'fork', full)
+    monkeypatch.setattr(crash_sandbox.os, 'fork', full)
     require(Trials(engine_that()))
     assert "model 'crate' comes in without being tested, since the operating system failed " \
         '(Resource temporarily unavailable)' in caplog.text
@@ -378,7 +378,7 @@ def test_a_model_whose_trial_the_system_disturbed_is_tried_again(tmp_path):
 
 def test_a_long_complaint_comes_through_as_far_as_there_is_room():
     def complain():
-        raise ModelError('x' * 2 * trial._ROOM)
+        raise ModelError('x' * 2 * crash_sandbox._ROOM)
 
     assert 'xxx' in fault_of(complain)
 
@@ -435,23 +435,23 @@ def test_models_are_tried_while_the_world_goes_on():
 
 
 def test_what_takes_long_to_find_out_is_found_out_before_the_trial():
-    inner_shapes._inner.cache_clear()
+    occluded_shapes._inner.cache_clear()
     with empty_world() as world:
         spec = robot_spec()
         files = {(mesh, exact): world.meshes.collision_hull(mesh.path, mesh.scale)
                  for mesh, exact in mesh_needs(spec)}
         require(Trials(world.engine.emptied), spec, files)
-        known = inner_shapes._inner.cache_info().currsize
+        known = occluded_shapes._inner.cache_info().currsize
         world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.5)))
-        assert inner_shapes._inner.cache_info().currsize == known > 0
+        assert occluded_shapes._inner.cache_info().currsize == known > 0
 
 
 def test_what_cannot_be_found_out_before_is_left_to_the_trial(monkeypatch):
     def fails(*_):
         raise ValueError
 
-    monkeypatch.setattr(trial, 'grouped', fails)
+    monkeypatch.setattr(crash_sandbox, 'grouped', fails)
     require(Trials(engine_that()))
-    monkeypatch.setattr('rosbots_description.sim.body_maker.grouped', fails)
+    monkeypatch.setattr('rosbots_description.sim.physics.bullet.body_maker.grouped', fails)
     with pytest.raises(ModelError, match='the physics engine failed: ValueError'):
         require(Trials(engine_that()), replace(CRATE, static=True))

@@ -17,7 +17,6 @@ from support.scenes import (
     wheel,
 )
 
-from rosbots_description.sim.bullet import pybullet
 from rosbots_description.sim.core.transforms import (
     UP,
     Pose,
@@ -29,6 +28,7 @@ from rosbots_description.sim.core.transforms import (
     yaw_of,
 )
 from rosbots_description.sim.description.model_spec import Cylinder, Element
+from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.readings import FrameTransform, JointStates, Odometry
 
 LIGHT = castered(1.0, 0.2, casters=1)

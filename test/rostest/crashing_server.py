@@ -10,7 +10,7 @@ import sys
 import time
 
 from rosbots_description.cli.gzserver import main
-from rosbots_description.sim.engine import Engine
+from rosbots_description.sim.physics.bullet.engine import Engine
 
 DOOM = 'doom'  # a model with a link of this name crashes the engine
 SLUMBER = 'slumber'  # and one with a link of this name keeps it waiting

@@ -12,7 +12,7 @@ import xacro
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.model_spec import ModelSpec
-from rosbots_description.sim.tuning import Tuning
+from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.urdf import load_urdf
 from rosbots_description.sim.world import World
 from rosbots_description.sim.worlds import add_empty_world

@@ -1,8 +1,8 @@
 """A physics engine whose motors obey at once, whose joints turn, and whose bodies stay put."""
 
-from rosbots_description.sim.body import Body, FrictionAxes, Place
 from rosbots_description.sim.core.transforms import NO_ROTATION, Twist, compose
-from rosbots_description.sim.friction_axes import EVENLY
+from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
+from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
 
 
 class FakeEngine:

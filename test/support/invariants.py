@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rosbots_description.sim.bullet_description import kinematic_trees
 from rosbots_description.sim.description.model_spec import ModelSpec
+from rosbots_description.sim.physics.bullet.generated_urdf import kinematic_trees
 
 LONGEST_SENTENCE = 2000  # characters; a name may have 1000, and the places are told
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator
 
 from rosbots_description.sim.core.transforms import Twist
 from rosbots_description.sim.model import Joint, Link
+from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.tuning import Tuning
 from rosbots_description.sim.world import World
 from rosbots_description.sim.world_file import open_world, populate
 

@@ -5,8 +5,6 @@ from itertools import product
 
 import pytest
 
-from rosbots_description.sim.body_maker import grouped
-from rosbots_description.sim.bullet_description import Tree
 from rosbots_description.sim.core.transforms import IDENTITY, Pose, compose, from_rpy
 from rosbots_description.sim.description.model_spec import (
     REVOLUTE,
@@ -20,7 +18,9 @@ from rosbots_description.sim.description.model_spec import (
     Sphere,
     Surface,
 )
-from rosbots_description.sim.edges import leaning
+from rosbots_description.sim.physics.bullet.body_maker import grouped
+from rosbots_description.sim.physics.bullet.generated_urdf import Tree
+from rosbots_description.sim.physics.bullet.split_edge_contacts import leaning
 
 AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 QUARTER = math.pi / 2.0

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rosbots_description.sim.fast_bodies import gained_share
+from rosbots_description.sim.physics.bullet.fast_rotation import gained_share
 
 MOMENTS = (0.1, 0.2, 0.3)
 

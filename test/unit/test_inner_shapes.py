@@ -17,8 +17,8 @@ from rosbots_description.sim.description.model_spec import (
     Plane,
     Sphere,
 )
-from rosbots_description.sim.inner_shapes import inner_shapes
 from rosbots_description.sim.meshes.store import MeshStore
+from rosbots_description.sim.physics.bullet.occluded_shapes import inner_shapes
 
 PLATES = [
     Collision('lower', Box((0.4, 0.3, 0.01)), Pose((0.0, 0.0, 0.1))),

@@ -43,7 +43,7 @@ def imported_layers(tree):
 
 def test_pybullet_is_imported_in_one_place():
     assert [path for path, tree in files().items() if 'pybullet' in imported(tree)] == [
-        'sim/bullet.py']
+        'sim/physics/bullet/client.py']
 
 
 def test_only_what_makes_moves_and_draws_bodies_uses_pybullet():
@@ -52,8 +52,8 @@ def test_only_what_makes_moves_and_draws_bodies_uses_pybullet():
                     or isinstance(node, ast.alias) and node.name == 'pybullet'
                     for node in ast.walk(tree))]
     assert using == [
-        'sim/body_maker.py', 'sim/bullet.py', 'sim/canvas.py', 'sim/engine.py',
-        'sim/fast_bodies.py', 'sim/slipping.py', 'sim/untouching.py',
+        'sim/physics/bullet/body_maker.py', 'sim/physics/bullet/client.py', 'sim/canvas.py', 'sim/physics/bullet/engine.py',
+        'sim/physics/bullet/fast_rotation.py', 'sim/physics/bullet/contact_slip.py', 'sim/physics/bullet/collision_filter.py',
     ]
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rosbots_description.sim.solver_effort import SolverEffort
+from rosbots_description.sim.physics.bullet.solver_iterations import SolverEffort
 
 LOOKS = 100
 

@@ -16,8 +16,12 @@ from rosbots_description.sim.description.model_spec import (
     LinkSpec,
     Surface,
 )
-from rosbots_description.sim.friction_axes import EVENLY, friction_scales, restitution
-from rosbots_description.sim.surfaces import crowned, rolling_arm
+from rosbots_description.sim.physics.bullet.friction_axes import (
+    EVENLY,
+    friction_scales,
+    restitution,
+)
+from rosbots_description.sim.physics.bullet.surfaces import crowned, rolling_arm
 
 TYRE = Collision('tyre', Cylinder(0.1, 0.05))
 AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')

@@ -7,13 +7,13 @@ from dynamic_reconfigure.encoding import Config
 from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_of
 
 from rosbots_description.ros_api import slip_reconfigure
-from rosbots_description.sim.body import FrictionAxes
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.core.transforms import from_rpy
 from rosbots_description.sim.description.model_spec import Element
-from rosbots_description.sim.friction_axes import EVENLY
+from rosbots_description.sim.physics.bullet.body import FrictionAxes
+from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
+from rosbots_description.sim.physics.bullet.slip_compliance import LEAST, Touch, shares
 from rosbots_description.sim.plugins.wheel_slip import WheelSlip
-from rosbots_description.sim.slip import LEAST, Touch, shares
 
 AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
 LOAD, LIMIT = 10.0, 8.0  # [N]

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ..sim.meshes import MeshStore
+from ..sim.physics.bullet import Trials
 from ..sim.resources import FindModel, FindPackage
-from ..sim.trial import Trials
 from ..sim.world import World
 from .loop import Loop
 from .registrar import Registrar

@@ -10,12 +10,12 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from .bounds import excess
 from .core import AbsentError, Pose, compose
 from .description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
 from .description.inertia import impossible, possible, turnable
 from .formats.xml import fault, required_name, shortened, to_element
 from .kinematic_tree import WORLD
+from .physics.bullet import excess
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames
 from .sdf_joints import add_joint_frame, as_trees, read_joint

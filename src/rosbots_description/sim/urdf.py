@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from lxml import etree
 
-from .bounds import excess
 from .core import IDENTITY, ModelError, Pose
 from .description import LinkSpec, ModelSpec
 from .description.inertia import impossible, possible, turnable
@@ -26,6 +25,7 @@ from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_t
 from .kinematic_tree import WORLD, Tree, build_tree
 from .lumping import Lumped, lump, require_links
 from .meshes import check_mesh
+from .physics.bullet import excess
 from .repointing import repoint_plugin
 from .resources import FindModel, FindPackage, substitute_in_tree
 from .urdf_parts import LinkReader, read_joint

@@ -11,11 +11,11 @@ from rosbots_msgs.srv import (
     GetModelOmissionsResponse,
 )
 
-from ...sim.bullet_description import mesh_needs
 from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats.xml import root_tag
 from ...sim.model import Model
+from ...sim.physics.bullet import mesh_needs
 from ...sim.resources import HeldFile, UnknownPackage
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.urdf import load_urdf

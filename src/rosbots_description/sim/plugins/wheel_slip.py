@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ..core import PluginError
 from ..description import Element
-from ..friction_axes import can_slip
+from ..physics.bullet import can_slip
 from ..plugin_registry import register
 from ..wheel_geometry import radius_of
 from .base import PeriodicPlugin

@@ -1,19 +1,20 @@
-"""Makes PyBullet's bodies of links and joints; their text is that of bullet_description.py."""
+"""Makes PyBullet's bodies of links and joints; their text is that of generated_urdf.py."""
 
 import os
 from collections.abc import Sequence
 from itertools import combinations, product
 
+from ...core import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
+from ...description import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from ...description.inertia import is_balanced, principal_axes
 from .body import Body, FrictionAxes, Mass, Masses, Part, Place
-from .bounds import MAX_JOINTS
-from .bullet import pybullet
-from .bullet_description import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
-from .core import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
-from .description import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
-from .description.inertia import is_balanced, principal_axes
+from .client import pybullet
+from .collision_filter import Untouching
 from .faces import Face, faces, slab
 from .friction_axes import EVENLY, friction_scales, restitution
 from .friction_filter import FrictionFilter, Side
+from .generated_urdf import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
+from .size_limits import MAX_JOINTS
 from .springs import compliance
 from .surfaces import (
     Groups,
@@ -28,7 +29,6 @@ from .surfaces import (
     with_inner_first,
 )
 from .tuning import Tuning
-from .untouching import Untouching
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 _MASSLESS = Inertial(0.0)

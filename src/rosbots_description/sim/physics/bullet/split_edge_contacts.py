@@ -10,8 +10,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from .core import Pose, Vector, compose, cross
-from .description import Box, Collision, Mesh
+from ...core import Pose, Vector, compose, cross
+from ...description import Box, Collision, Mesh
 
 _LEAN = 2e-4  # [rad]; half and five times as much do as well
 

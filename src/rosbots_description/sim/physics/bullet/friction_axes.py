@@ -2,9 +2,9 @@
 
 import math
 
+from ...core import ALONG, Quaternion, Vector, conjugate, rotate
+from ...description import Collision, LinkSpec, Surface
 from .body import Body, FrictionAxes
-from .core import ALONG, Quaternion, Vector, conjugate, rotate
-from .description import Collision, LinkSpec, Surface
 from .friction_filter import MOST
 
 EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from .core import Vector, add, cross, dot, subtract
+from ...core import Vector, add, cross, dot, subtract
 
 GRAVITY = 9.8  # [m/s^2] that makes a weight of the mass which a contact carries
 NONE_SLIPS = (1.0, 1.0)  # shares of the friction that a tyre without slip holds

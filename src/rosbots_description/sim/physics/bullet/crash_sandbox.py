@@ -24,11 +24,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NoReturn
 
+from ...core import IDENTITY, ModelError, Pose, compose
+from ...description import GROUND_PLANE, Mesh, ModelSpec
 from .body_maker import grouped
-from .bullet_description import MeshFile, kinematic_trees, mesh_needs
-from .core import IDENTITY, ModelError, Pose, compose
-from .description import GROUND_PLANE, Mesh, ModelSpec
 from .engine import Engine
+from .generated_urdf import MeshFile, kinematic_trees, mesh_needs
 
 logger = logging.getLogger(__name__)
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .core import Pose, Quaternion, Twist, Vector
+from ...core import Pose, Quaternion, Twist, Vector
 
 
 @dataclass(frozen=True)

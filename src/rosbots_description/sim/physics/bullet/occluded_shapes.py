@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .bullet_description import MeshFile
-from .core import Pose, rotate
-from .description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
-from .meshes import farthest, read_stl
+from ...core import Pose, rotate
+from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
+from ...meshes import farthest, read_stl
+from .generated_urdf import MeshFile
 
 _ONTO = 1e-6  # share of its size by which a body is taken for larger than it is
 _MOST = 40  # points of a hull, whose sides take time with the cube of it

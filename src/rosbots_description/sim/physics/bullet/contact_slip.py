@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 
+from ...core import Pose, Twist, Vector, rotate, subtract
+from ...description import ModelSpec
 from .body import Body, Place
-from .bullet import pybullet
-from .core import Pose, Twist, Vector, rotate, subtract
-from .description import ModelSpec
+from .client import pybullet
 from .friction_axes import axes_along, can_slip, first_direction
-from .slip import NONE_SLIPS, Touch, shares, velocity_at
+from .slip_compliance import NONE_SLIPS, Touch, shares, velocity_at
 
 Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances [m/s per N]
 

@@ -12,8 +12,8 @@ from itertools import combinations
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from .core import Pose, compose, inverse, relative, to_rpy
-from .description import (
+from ...core import Pose, compose, inverse, relative, to_rpy
+from ...description import (
     FIXED,
     PRISMATIC,
     Box,

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from .bullet_description import Tree
-from .core import Pose, compose, normalise
-from .description import Box, Collision
+from ...core import Pose, compose, normalise
+from ...description import Box, Collision
 from .friction_filter import Kind, Role, Side, coefficient, roles
+from .generated_urdf import Tree
 from .surfaces import Groups, is_floor
 
 # The box below a plane, 1000 km to each side [m].

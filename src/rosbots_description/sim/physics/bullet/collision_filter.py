@@ -1,7 +1,7 @@
 """Which of PyBullet's bodies pass through each other, for as long as both of them are there."""
 
 from .body import Place
-from .bullet import pybullet
+from .client import pybullet
 
 
 class Untouching:

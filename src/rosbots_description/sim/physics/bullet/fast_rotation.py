@@ -9,9 +9,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ...core import Vector, conjugate, rotate
 from .body import Masses
-from .bullet import pybullet
-from .core import Vector, conjugate, rotate
+from .client import pybullet
 from .springs import followed_damping, followed_stiffness
 
 LOOK = 20  # steps between two looks at all bodies

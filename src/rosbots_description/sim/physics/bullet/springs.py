@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from ...core import NO_ROTATION, compose, rotate
+from ...description import PRISMATIC, JointSpec, LinkSpec
+from ...description.inertia import mobility
 from .body import Masses
-from .bullet import pybullet
-from .core import NO_ROTATION, compose, rotate
-from .description import PRISMATIC, JointSpec, LinkSpec
-from .description.inertia import mobility
+from .client import pybullet
 
 
 class Springs:

@@ -1,6 +1,6 @@
 """The physics engine: specs and names in, plain values out.
 
-This module, body_maker.py, fast_bodies.py, slipping.py, springs.py, untouching.py and canvas.py
+This module, body_maker.py, fast_rotation.py, contact_slip.py, springs.py, collision_filter.py and canvas.py
 alone know PyBullet.
 
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
@@ -12,15 +12,15 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 
+from ...core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from ...description import ModelSpec, PhysicsSettings
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
-from .bullet import pybullet
-from .bullet_description import MeshFile, kinematic_trees
-from .core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
-from .description import ModelSpec, PhysicsSettings
-from .fast_bodies import FastBodies
-from .slipping import Slipping
-from .solver_effort import CHECK, Motor, SolverEffort
+from .client import pybullet
+from .contact_slip import Slipping
+from .fast_rotation import FastBodies
+from .generated_urdf import MeshFile, kinematic_trees
+from .solver_iterations import CHECK, Motor, SolverEffort
 from .springs import Springs
 from .surfaces import overlap_share
 from .tuning import Tuning

@@ -9,12 +9,12 @@ from dataclasses import replace
 from itertools import compress
 from operator import not_
 
-from .bullet_description import MeshFile, Tree
-from .core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
-from .description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
-from .edges import leaning
+from ...core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
+from ...description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
 from .friction_axes import directions, restitution
-from .inner_shapes import inner_shapes
+from .generated_urdf import MeshFile, Tree
+from .occluded_shapes import inner_shapes
+from .split_edge_contacts import leaning
 
 Groups = list[tuple[Collision, ...]]  # of a link: what it touches with itself, then its riders
 

@@ -1,7 +1,7 @@
 """How much of everything a model may consist of, so that adding it ends in good time."""
 
-from .bullet_description import Tree, kinematic_trees
-from .description import ModelSpec
+from ...description import ModelSpec
+from .generated_urdf import Tree, kinematic_trees
 from .surfaces import surface_groups
 
 # PyBullet handles a tree of more joints only up to the first question about it.
