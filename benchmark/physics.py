@@ -17,9 +17,9 @@ from support.recorded import load
 from support.scenes import SCENES, SPEED, box, forward_speed
 
 from rosbots_description.sim.core.transforms import Pose
-from rosbots_description.sim.model import Model
 from rosbots_description.sim.physics.bullet.tuning import Tuning
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.model import Model
+from rosbots_description.sim.runtime.world import World
 
 USUAL = Tuning()
 SETTINGS = {

@@ -26,7 +26,7 @@ from server import Server, in_a_process_of_its_own
 
 from rosbots_description.sim.physics.bullet.crash_sandbox import Trials
 from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.world import World
 
 WINDOW = 3.0  # [s, wall]
 ROUNDS = 4

@@ -17,9 +17,9 @@ from article import OUTPUT
 from rosbots_description.cli import gzserver
 from rosbots_description.ros_api import node
 from rosbots_description.sim.core.clock import NANOSECONDS
-from rosbots_description.sim.model import Joint
-from rosbots_description.sim.schedule import Hook
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.model import Joint
+from rosbots_description.sim.runtime.scheduler import Hook
+from rosbots_description.sim.runtime.world import World
 
 _FILE = OUTPUT / 'recorded.json'
 

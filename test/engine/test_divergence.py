@@ -7,8 +7,8 @@ import pytest
 from support import box_urdf, empty_world, urdf_spec
 
 from rosbots_description.sim.core.transforms import Pose, Twist
-from rosbots_description.sim.guard import PERIOD
 from rosbots_description.sim.physics.bullet.client import pybullet
+from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
 CRANE = """<link name="world"/>
   <link name="arm"><inertial><mass value="1"/>

@@ -28,7 +28,7 @@ from rosbots_description.sim.description.model_spec import (
     Surface,
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.world import World
 
 SECOND = 1000  # steps
 GRAVITY = 9.8

@@ -14,8 +14,8 @@ from support.mutations import damaged
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.formats.xml.parser import root_tag
-from rosbots_description.sim.guard import PERIOD
 from rosbots_description.sim.resources.uris import UnknownPackage
+from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 from rosbots_description.sim.sdf import load_sdf
 from rosbots_description.sim.urdf import load_urdf
 

@@ -23,7 +23,7 @@ from support.mutations import damaged
 from support.requests import TEXTS, messages
 
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.guard import PERIOD
+from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
 MOST_STEPS = 50  # as many as are asked for are made, so not too many
 NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood

@@ -16,7 +16,7 @@ from rosbots_description.sim.description.model_spec import (
     ModelSpec,
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.world import World
 
 HIGH = Pose((0.0, 0.0, 100.0))
 SPRUNG = '<gazebo reference="{}"><springStiffness>{}</springStiffness></gazebo>'

@@ -29,7 +29,7 @@ from rosbots_description.sim.core.transforms import (
 )
 from rosbots_description.sim.description.model_spec import Cylinder, Element
 from rosbots_description.sim.physics.bullet.client import pybullet
-from rosbots_description.sim.readings import FrameTransform, JointStates, Odometry
+from rosbots_description.sim.runtime.outputs import FrameTransform, JointStates, Odometry
 
 LIGHT = castered(1.0, 0.2, casters=1)
 MIDDLE = castered(casters=1)

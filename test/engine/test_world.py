@@ -29,7 +29,7 @@ from rosbots_description.sim.description.model_spec import (
     PluginSpec,
 )
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.schedule import Hook
+from rosbots_description.sim.runtime.scheduler import Hook
 from rosbots_description.sim.sdf import load_sdf
 
 MEGABYTE = 2**20

@@ -11,7 +11,7 @@ from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, compose, to_rpy
 from rosbots_description.sim.description.model_spec import Box
 from rosbots_description.sim.resources.search_path import ModelSearch, find_world
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.world import World
 from rosbots_description.sim.world_file import load_world, open_world, populate
 
 STILL = 0.001  # [m] that something at rest may creep in the time below

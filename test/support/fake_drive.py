@@ -13,7 +13,7 @@ from rosbots_description.sim.description.model_spec import (
     PluginSpec,
 )
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.world import World
 
 from .fake_engine import FakeEngine
 

@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Iterator
 
 from rosbots_description.sim.core.transforms import Twist
-from rosbots_description.sim.model import Joint, Link
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.model import Joint, Link
+from rosbots_description.sim.runtime.world import World
 from rosbots_description.sim.world_file import open_world, populate
 
 from .recorded import DATA, Difference, load

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy, yaw_of
 from rosbots_description.sim.description.model_spec import ModelSpec, Sphere
-from rosbots_description.sim.model import Model
 from rosbots_description.sim.physics.bullet.tuning import Tuning
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.model import Model
+from rosbots_description.sim.runtime.world import World
 
 from . import SETTLED, empty_world, robot_spec, urdf_spec
 

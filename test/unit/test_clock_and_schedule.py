@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from rosbots_description.sim.core.clock import SimClock
-from rosbots_description.sim.schedule import LEFT_OUT, NEVER, Herald, Hook, Schedule
+from rosbots_description.sim.runtime.scheduler import LEFT_OUT, NEVER, Herald, Hook, Schedule
 
 
 def test_time_is_exact_after_a_million_steps():

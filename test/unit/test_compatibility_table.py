@@ -17,7 +17,7 @@ from rosbots_description.ros_api.world_loading import read_world
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.plugin_registry.gazebo_libraries import missing_libraries
 from rosbots_description.sim.plugin_registry.registry import known_filenames
-from rosbots_description.sim.world import World
+from rosbots_description.sim.runtime.world import World
 
 TABLE = ROOT / 'doc' / 'gazebo_compatibility.md'
 EMPTY_WORLD = ROOT / 'companions' / 'gazebo_ros' / 'launch' / 'empty_world.launch'

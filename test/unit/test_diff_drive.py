@@ -18,7 +18,7 @@ from support.fake_drive import (
 
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
-from rosbots_description.sim.readings import JointStates
+from rosbots_description.sim.runtime.outputs import JointStates
 
 
 def test_the_first_update_comes_one_step_late_and_the_mean_rate_is_exact():

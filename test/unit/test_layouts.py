@@ -20,7 +20,7 @@ from rosbots_description.ros_api.layouts import (
 )
 from rosbots_description.ros_api.sending import next_number
 from rosbots_description.sim.core.transforms import Pose, Twist
-from rosbots_description.sim.readings import JointStates, Odometry
+from rosbots_description.sim.runtime.outputs import JointStates, Odometry
 
 SEQ, NOW_NS = 258, 12_000_000_345
 STAMP = Time(12, 345)

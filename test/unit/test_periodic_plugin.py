@@ -6,7 +6,7 @@ import pytest
 from support.fake_drive import fake_model, make_drive
 
 from rosbots_description.sim.plugins.base import ModelPlugin, PeriodicPlugin
-from rosbots_description.sim.schedule import NEVER
+from rosbots_description.sim.runtime.scheduler import NEVER
 
 
 class Watcher(PeriodicPlugin):

@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 from rosbots_description.ros_api.conversions import fill_transform
 from rosbots_description.ros_api.static_frames import StaticFrames, from_root
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
-from rosbots_description.sim.readings import FrameTransform
+from rosbots_description.sim.runtime.outputs import FrameTransform
 
 HELD = Pose((0.0, 0.1, 0.05), from_rpy(0.0, 0.0, 0.3))
 MOVED = Pose((1.0, 2.0, 0.0), from_rpy(0.1, 0.0, 1.2))

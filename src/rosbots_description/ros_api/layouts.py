@@ -9,7 +9,7 @@ import struct
 from collections.abc import Sequence
 
 from ..sim.core import NANOSECONDS, Pose
-from ..sim.readings import JointStates, Odometry
+from ..sim.runtime import JointStates, Odometry
 
 _SIZE = 4  # of the number at the beginning, which does not count itself [bytes]
 _COVARIANCE = struct.Struct('<36d')  # row-major 6x6: x, y, z, then rotations about x, y, z

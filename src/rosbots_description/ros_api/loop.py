@@ -11,10 +11,10 @@ from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 from ..sim.core import SimError
-from ..sim.schedule import NEVER
+from ..sim.runtime import NEVER
 
 if TYPE_CHECKING:
-    from ..sim.world import World
+    from ..sim.runtime import World
 
 logger = logging.getLogger(__name__)
 

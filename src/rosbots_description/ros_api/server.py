@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from ..sim.meshes import MeshStore
 from ..sim.physics.bullet import Trials
 from ..sim.resources import FindModel, FindPackage
-from ..sim.world import World
+from ..sim.runtime import World
 from .loop import Loop
 from .registrar import Registrar
 from .static_frames import StaticFrames

@@ -16,7 +16,7 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from ..sim.core import Pose, compose, inverse
-from ..sim.readings import FrameTransform
+from ..sim.runtime import FrameTransform
 from .conversions import read_transform
 from .loop import Loop
 

@@ -17,8 +17,7 @@ from geometry_msgs.msg import Pose, Twist
 from rosgraph_msgs.msg import Clock
 
 from ..sim.core import NANOSECONDS
-from ..sim.model import Link, Model
-from ..sim.schedule import NEVER, Herald, Hook
+from ..sim.runtime import NEVER, Herald, Hook, Link, Model
 from .conversions import fill_pose, fill_twist
 from .sending import publish_serialized
 from .server import Server

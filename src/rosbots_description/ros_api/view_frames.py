@@ -11,7 +11,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from ..sim.core import Pose
-from ..sim.world import World
+from ..sim.runtime import World
 from .conversions import fill_transform
 from .markers import FRAME
 from .server import Server

@@ -11,8 +11,7 @@ import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ..sim.core import Pose, compose
-from ..sim.model import Link, Model
-from ..sim.world import World
+from ..sim.runtime import Link, Model, World
 from .markers import clearance, place, removal, visual_marker
 from .server import Server
 from .shading import shade

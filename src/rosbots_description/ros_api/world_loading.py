@@ -9,7 +9,7 @@ from pathlib import Path
 from ..sim.core import NotFoundError
 from ..sim.description import WorldSpec
 from ..sim.resources import find_world, path_directories
-from ..sim.world import World
+from ..sim.runtime import World
 from ..sim.world_file import open_world, populate
 from .packages import exported_directories, find_model, find_package
 

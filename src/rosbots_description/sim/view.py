@@ -9,8 +9,7 @@ from .canvas import Canvas, Triangles
 from .core import Vector, compose
 from .description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from .meshes import visual_parts
-from .model import Link, Model
-from .world import World
+from .runtime import Link, Model, World
 
 if TYPE_CHECKING:
     import trimesh

@@ -6,7 +6,7 @@ from .core import UP, Vector, compose, cross, dot, rotate, subtract
 from .description import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:
-    from .model import Joint
+    from .runtime import Joint
 
 
 def radius_of(joint: 'Joint') -> float | None:

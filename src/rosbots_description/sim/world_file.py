@@ -13,6 +13,7 @@ from .core import ModelError, Pose, SimError
 from .description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
 from .formats.xml import MAX_BYTES, fault, required_name
 from .resources import FindModel, FindPackage, read_file
+from .runtime import World
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_frames import Frames
 from .sdf_light import read_light
@@ -20,7 +21,6 @@ from .sdf_model import ModelParts, model_spec, read_include, read_model, read_pl
 from .sdf_physics import read_physics
 from .sdf_state import apply_state, read_states
 from .sdf_values import colour_of, text_of, truth_of
-from .world import World
 
 logger = logging.getLogger(__name__)
 

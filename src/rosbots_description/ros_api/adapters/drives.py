@@ -26,7 +26,7 @@ from ...sim.plugins.diff_drive import DiffDrive
 from ...sim.plugins.planar_move import PlanarMove
 from ...sim.plugins.skid_steer_drive import SkidSteerDrive
 from ...sim.plugins.tricycle_drive import TricycleDrive
-from ...sim.readings import FrameTransform
+from ...sim.runtime import FrameTransform
 from ..log_bridge import set_level
 from ..master import subscribers
 from ..sending import reader_names

@@ -2,7 +2,7 @@
 
 import logging
 
-from ...sim.readings import FrameTransform, JointStates
+from ...sim.runtime import FrameTransform, JointStates
 from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
 from ..static_frames import from_root
 from .adapter import Adapter

@@ -6,8 +6,8 @@ import warnings
 from collections.abc import Callable
 
 from ...sim.core import PluginError
-from ...sim.model import Model
 from ...sim.plugins.base import ModelPlugin
+from ...sim.runtime import Model
 from ..server import Server
 from .adapter import Adapter, where
 from .declarations import Declaration

@@ -20,8 +20,7 @@ from gazebo_msgs.srv import (
 )
 
 from ...sim.description import JointSpec
-from ...sim.model import Joint
-from ...sim.world import World
+from ...sim.runtime import Joint, World
 from ..server import Server
 from ..validity import RequestError, require_finite
 from .registry import refuse, service

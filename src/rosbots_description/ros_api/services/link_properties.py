@@ -16,7 +16,7 @@ from ...sim.core import Pose
 from ...sim.description import Inertial
 from ...sim.description.inertia import in_link_axes, is_positive, turnable
 from ...sim.formats.xml import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
-from ...sim.model import Link
+from ...sim.runtime import Link
 from ..conversions import read_vector
 from ..server import Server
 from ..validity import RequestError, require_finite

@@ -27,8 +27,7 @@ from ...sim.core import (
     rotate,
     subtract,
 )
-from ...sim.model import Link
-from ...sim.world import WORLD_FRAMES, Entity, World
+from ...sim.runtime import WORLD_FRAMES, Entity, Link, World
 from ..conversions import fill_pose, fill_twist, read_pose, read_twist, read_vector
 from ..server import Server
 from ..validity import require_finite

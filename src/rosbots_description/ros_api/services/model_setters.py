@@ -13,7 +13,7 @@ from gazebo_msgs.srv import (
 )
 
 from ...sim.core import NotFoundError, Twist, compose, rotate
-from ...sim.model import Joint
+from ...sim.runtime import Joint
 from ..conversions import read_pose, read_twist
 from ..server import Server
 from ..validity import require_finite

@@ -14,12 +14,11 @@ from rosbots_msgs.srv import (
 from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats.xml import root_tag
-from ...sim.model import Model
 from ...sim.physics.bullet import mesh_needs
 from ...sim.resources import HeldFile, UnknownPackage
+from ...sim.runtime import Model, World
 from ...sim.sdf import load_sdf, load_sdf_light
 from ...sim.urdf import load_urdf
-from ...sim.world import World
 from ..conversions import read_pose
 from ..server import Server
 from .registry import EXTENSIONS, CallError, refuse, service

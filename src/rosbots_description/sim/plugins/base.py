@@ -6,14 +6,11 @@ from typing import TYPE_CHECKING
 
 from ..core import NANOSECONDS, NotFoundError, PluginError
 from ..description import PluginSpec
-from ..plugin_life import Plugin
-from ..readings import Output
-from ..schedule import NEVER
+from ..runtime import NEVER, Output, Plugin
 from .params import Missing, Params, says_default
 
 if TYPE_CHECKING:
-    from ..model import Joint, Model
-    from ..world import World
+    from ..runtime import Joint, Model, World
 
 logger = logging.getLogger(__name__)
 

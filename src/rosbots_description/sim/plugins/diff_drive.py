@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from ..core import Pose, Twist
 from ..plugin_registry import register
-from ..readings import FrameTransform, JointStates, Odometry
+from ..runtime import FrameTransform, JointStates, Odometry
 from ..wheel_geometry import drives_towards_x, radius_of, same_way, track_of
 from .drive import Encoders, WheeledDrive, reads_encoders
 

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..core import NANOSECONDS, Pose, Twist, compose, from_rpy, inverse, yaw_of
-from ..readings import FrameTransform, JointStates, Odometry, Output
+from ..runtime import FrameTransform, JointStates, Odometry, Output
 from .base import PeriodicPlugin
 from .params import Params
 
 if TYPE_CHECKING:
-    from ..model import Joint
+    from ..runtime import Joint
 
 logger = logging.getLogger(__name__)
 

@@ -10,7 +10,7 @@ import math
 
 from ..core import NANOSECONDS, Pose, Twist, yaw_of
 from ..plugin_registry import register
-from ..readings import Odometry
+from ..runtime import Odometry
 from .drive import Drive
 from .params import says_defaults_to
 

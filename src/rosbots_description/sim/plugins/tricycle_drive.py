@@ -13,7 +13,7 @@ from collections.abc import Iterable
 
 from ..core import PluginError, Pose, Twist
 from ..plugin_registry import register
-from ..readings import FrameTransform, JointStates, Odometry
+from ..runtime import FrameTransform, JointStates, Odometry
 from .drive import Encoders, WheeledDrive, reads_encoders
 
 STRAIGHT_ACROSS = math.pi / 2.0  # [rad] to which steering is limited

@@ -18,7 +18,7 @@ from ..wheel_geometry import radius_of
 from .base import PeriodicPlugin
 
 if TYPE_CHECKING:
-    from ..model import Joint
+    from ..runtime import Joint
 
 logger = logging.getLogger(__name__)
 

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from .core import Pose, Twist, compose, inverse, relative
-from .description import ModelSpec
+from ..core import Pose, Twist, compose, inverse, relative
+from ..description import ModelSpec
 from .model import Joint, Link, Model
 
 _LEVEL = '::'

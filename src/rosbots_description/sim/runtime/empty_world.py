@@ -1,7 +1,7 @@
 """What Gazebo's empty world has."""
 
-from .core import IDENTITY
-from .description import GROUND_PLANE, SUN
+from ..core import IDENTITY
+from ..description import GROUND_PLANE, SUN
 from .world import World
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .core import SimClock
-from .schedule import NEVER, Hook
+from ..core import SimClock
+from .scheduler import NEVER, Hook
 
 
 @dataclass(frozen=True)

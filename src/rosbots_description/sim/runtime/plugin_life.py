@@ -1,6 +1,6 @@
 """What a world asks of the plugins of its models."""
 
-from .schedule import Hook
+from .scheduler import Hook
 
 
 class Plugin(Hook):

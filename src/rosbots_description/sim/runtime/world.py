@@ -8,18 +8,28 @@ from fractions import Fraction
 from functools import partial
 from typing import Protocol
 
-from .core import END, IDENTITY, LARGEST, ModelError, NotFoundError, Pose, SimClock, SimError, Twist
-from .description import LightSpec, Mesh, ModelSpec, PhysicsSettings, PluginSpec
-from .guard import Guard
-from .inner_model import InnerModel, inner_models
-from .jobs import Jobs
-from .meshes import MeshStore
+from ..core import (
+    END,
+    IDENTITY,
+    LARGEST,
+    ModelError,
+    NotFoundError,
+    Pose,
+    SimClock,
+    SimError,
+    Twist,
+)
+from ..description import LightSpec, Mesh, ModelSpec, PhysicsSettings, PluginSpec
+from ..meshes import MeshStore
+from ..physics.bullet import Engine, Tuning, mesh_needs
+from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
+from ..resources import HeldFile
+from .divergence_watchdog import Guard
+from .external_forces import Jobs
 from .model import Collision, Joint, Link, Model
-from .physics.bullet import Engine, Tuning, mesh_needs
+from .nested_model import InnerModel, inner_models
 from .plugin_life import Plugin
-from .plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
-from .resources import HeldFile
-from .schedule import Schedule
+from .scheduler import Schedule
 
 logger = logging.getLogger(__name__)
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from .schedule import Hook
+from .scheduler import Hook
 
 if TYPE_CHECKING:
     from .world import World

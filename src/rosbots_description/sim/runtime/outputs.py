@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 
-from .core import Pose, Twist
+from ..core import Pose, Twist
 
 Reading = TypeVar('Reading')
 

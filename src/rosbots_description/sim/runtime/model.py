@@ -1,9 +1,9 @@
 """Models, links, joints and collisions as they are in a world, to ask and to move by name."""
 
-from .core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
-from .description import Collision as CollisionSpec
-from .description import JointSpec, LinkSpec, ModelSpec
-from .physics.bullet import Body, Engine
+from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
+from ..description import Collision as CollisionSpec
+from ..description import JointSpec, LinkSpec, ModelSpec
+from ..physics.bullet import Body, Engine
 from .plugin_life import Plugin
 
 

@@ -1,0 +1,12 @@
+"""The world as it runs: models, what happens at which step, and what comes out."""
+
+from .model import Joint, Link, Model
+from .outputs import FrameTransform, JointStates, Odometry, Output
+from .plugin_life import Plugin
+from .scheduler import NEVER, Herald, Hook
+from .world import WORLD_FRAMES, Entity, World
+
+__all__ = [
+    'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Herald', 'Hook', 'Joint', 'JointStates',
+    'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'World',
+]
