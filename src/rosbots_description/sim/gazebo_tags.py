@@ -15,6 +15,7 @@ from lxml import etree
 
 from .core import ModelError
 from .description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
+from .formats.kinematics import TreeLink
 from .formats.xml import (
     MAX_NOTES,
     LeftOut,
@@ -34,7 +35,6 @@ from .formats.xml import (
     to_element,
     truth,
 )
-from .kinematic_tree import TreeLink
 from .plugin_registry import library_remark
 
 # A negative mu means endless friction in Gazebo, and so does inf.

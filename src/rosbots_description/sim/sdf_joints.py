@@ -7,8 +7,8 @@ from lxml import etree
 
 from .core import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
 from .description import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
+from .formats.kinematics import WORLD
 from .formats.xml import fault, required_name
-from .kinematic_tree import WORLD
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames
 from .sdf_values import (

@@ -8,8 +8,8 @@ from lxml import etree
 
 from .core import IDENTITY, Pose, relative, to_rpy
 from .description import Collision, Element, Inertial, LinkSpec, Visual
+from .formats.kinematics import WORLD
 from .formats.xml import fault, require_mass, required_name, to_element
-from .kinematic_tree import WORLD
 from .sdf_document import SdfDocument
 from .sdf_frames import Frames
 from .sdf_shapes import read_collision, read_visual

@@ -13,8 +13,8 @@ from lxml import etree
 from .core import AbsentError, Pose, compose
 from .description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
 from .description.inertia import impossible, possible, turnable
+from .formats.kinematics import WORLD
 from .formats.xml import fault, required_name, shortened, to_element
-from .kinematic_tree import WORLD
 from .physics.bullet import excess
 from .sdf_document import SdfDocument
 from .sdf_frames import MODEL_FRAME, Frames

@@ -7,7 +7,7 @@ from lxml import etree
 
 from .core import IDENTITY, Pose, compose, relative
 from .description import FIXED, PRISMATIC, JointSpec, ModelSpec, ModelState
-from .kinematic_tree import WORLD
+from .formats.kinematics import WORLD
 from .runtime import Model
 from .sdf_document import SdfDocument
 from .sdf_values import pose_in

@@ -8,6 +8,7 @@ from lxml import etree
 from .core import IDENTITY, ModelError, Pose
 from .description import LinkSpec, ModelSpec
 from .description.inertia import impossible, possible, turnable
+from .formats.kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
 from .formats.xml import (
     XACRO_CURE,
     check_name,
@@ -22,11 +23,8 @@ from .formats.xml import (
     tag_of,
 )
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
-from .kinematic_tree import WORLD, Tree, build_tree
-from .lumping import Lumped, lump, require_links
 from .meshes import check_mesh
 from .physics.bullet import excess
-from .repointing import repoint_plugin
 from .resources import FindModel, FindPackage, substitute_in_tree
 from .urdf_parts import LinkReader, read_joint
 

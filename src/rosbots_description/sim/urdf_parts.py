@@ -23,6 +23,7 @@ from .description import (
     Visual,
     gazebo_material,
 )
+from .formats.kinematics import FREE, TreeJoint, TreeLink
 from .formats.xml import (
     LeftOut,
     fault,
@@ -38,7 +39,6 @@ from .formats.xml import (
     shortened,
     suggestion,
 )
-from .kinematic_tree import FREE, TreeJoint, TreeLink
 from .resources import FindModel, file_path, in_models, refuse_climbing
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.

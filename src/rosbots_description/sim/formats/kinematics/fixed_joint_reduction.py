@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from .core import IDENTITY, ModelError, Pose, compose
-from .description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
-from .description.inertia import merge
-from .formats.xml import fault
+from ...core import IDENTITY, ModelError, Pose, compose
+from ...description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
+from ...description.inertia import merge
+from ...physics.bullet import MAX_JOINTS
+from ..xml import fault
+from .frame_references import move_part
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
-from .physics.bullet import MAX_JOINTS
-from .repointing import move_part
 
 _LUMPED = '_fixed_joint_lump__'
 

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from .core import IDENTITY, Pose, compose, from_rpy, to_rpy
-from .description import Element, PluginSpec
-from .formats.xml import parse_numbers
+from ...core import IDENTITY, Pose, compose, from_rpy, to_rpy
+from ...description import Element, PluginSpec
+from ..xml import parse_numbers
 
 _ZERO = (0.0, 0.0, 0.0)
 

@@ -1,0 +1,10 @@
+"""Links and joints as a tree, before and after fixed joints are reduced."""
+
+from .fixed_joint_reduction import Lumped, lump, require_links
+from .frame_references import repoint_plugin
+from .kinematic_tree import FREE, WORLD, Tree, TreeJoint, TreeLink, build_tree
+
+__all__ = [
+    'FREE', 'WORLD', 'Lumped', 'Tree', 'TreeJoint', 'TreeLink', 'build_tree', 'lump',
+    'repoint_plugin', 'require_links',
+]
