@@ -6,8 +6,8 @@ import pytest
 from support import SETTLED, SPAWN_POSE, empty_world, package_directory, robot_urdf
 
 from rosbots_description.sim.core.transforms import yaw_of
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.scheduler import Hook
-from rosbots_description.sim.urdf import load_urdf
 
 EXACT = 1e-6  # [m and rad]
 

@@ -12,10 +12,10 @@ import xacro
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.model_spec import ModelSpec
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
-from rosbots_description.sim.urdf import load_urdf
 
 ROOT = Path(__file__).resolve().parents[2]
 LIBRARY = ROOT / 'src' / 'rosbots_description'

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from rosbots_description.sim.core.transforms import Pose, relative, rotate, yaw_of
 from rosbots_description.sim.description.model_spec import ModelSpec
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.physics.bullet.tuning import Tuning
-from rosbots_description.sim.urdf import load_urdf
 
 from . import empty_world, robot_spec
 from .recorded import DATA, Difference, load

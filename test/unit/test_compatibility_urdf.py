@@ -5,8 +5,8 @@ import logging
 import pytest
 from support import ROOT
 
-from rosbots_description.sim import gazebo_tags
-from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.formats.urdf import gazebo_tags
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
 MISSING = 'not supported'
 INERTIAL = ('<inertial><mass value="1"/>'

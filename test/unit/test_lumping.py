@@ -10,7 +10,7 @@ import xacro
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.description.inertia import tensor
-from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
 ROOT = Path(__file__).resolve().parents[2]
 BALL = '<geometry><sphere radius="1"/></geometry>'

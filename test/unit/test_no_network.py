@@ -19,7 +19,7 @@ def forbid(event, arguments):
 
 sys.addaudithook(forbid)
 """
-LOAD_URDF = 'from rosbots_description.sim.urdf import load_urdf; load_urdf(TEXT, "m")'
+LOAD_URDF = 'from rosbots_description.sim.formats.urdf.urdf import load_urdf; load_urdf(TEXT, "m")'
 LOAD_SDF = ('from rosbots_description.ros_api.packages import find_model, find_package; '
             'from rosbots_description.sim.sdf import load_sdf; '
             'load_sdf(TEXT, "m", find_model=find_model, find_package=find_package)')

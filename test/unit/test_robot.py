@@ -11,7 +11,7 @@ import pytest
 import xacro
 
 from rosbots_description.sim.description.model_spec import Mesh
-from rosbots_description.sim.urdf import load_urdf
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
 ROOT = Path(__file__).resolve().parents[2]
 XACRO = ROOT / 'urdf' / 'rosbots.xacro'

@@ -8,8 +8,8 @@ import pytest
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description.model_spec import Box, Cylinder, Material, Mesh, Sphere
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.uris import UnknownPackage
-from rosbots_description.sim.urdf import load_urdf
 
 MASS = ('<inertial><mass value="1"/>'
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')

@@ -6,8 +6,8 @@ from lxml import etree
 
 from .core import IDENTITY, ModelError, Pose
 from .description import LightSpec, ModelSpec
+from .formats.urdf import inject_namespace
 from .formats.xml import check_name, fault
-from .gazebo_tags import inject_namespace
 from .resources import FindModel, FindPackage
 from .sdf_document import SdfDocument, SdfLibrary
 from .sdf_light import read_light

@@ -16,8 +16,8 @@ from .description import (
     Visual,
     gazebo_material,
 )
+from .formats.urdf import ENDLESS_FRICTION
 from .formats.xml import fault, is_endless, owner, place, tag_of
-from .gazebo_tags import ENDLESS_FRICTION
 from .meshes import check_mesh, submesh_file
 from .sdf_document import SdfDocument
 from .sdf_values import (

@@ -13,10 +13,11 @@ from functools import partial
 
 from lxml import etree
 
-from .core import ModelError
-from .description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
-from .formats.kinematics import TreeLink
-from .formats.xml import (
+from ...core import ModelError
+from ...description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
+from ...plugin_registry import library_remark
+from ..kinematics import TreeLink
+from ..xml import (
     MAX_NOTES,
     LeftOut,
     fault,
@@ -35,7 +36,6 @@ from .formats.xml import (
     to_element,
     truth,
 )
-from .plugin_registry import library_remark
 
 # A negative mu means endless friction in Gazebo, and so does inf.
 ENDLESS_FRICTION = 1e6

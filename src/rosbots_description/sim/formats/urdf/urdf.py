@@ -5,11 +5,14 @@ from dataclasses import replace
 
 from lxml import etree
 
-from .core import IDENTITY, ModelError, Pose
-from .description import LinkSpec, ModelSpec
-from .description.inertia import impossible, possible, turnable
-from .formats.kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
-from .formats.xml import (
+from ...core import IDENTITY, ModelError, Pose
+from ...description import LinkSpec, ModelSpec
+from ...description.inertia import impossible, possible, turnable
+from ...meshes import check_mesh
+from ...physics.bullet import excess
+from ...resources import FindModel, FindPackage, substitute_in_tree
+from ..kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
+from ..xml import (
     XACRO_CURE,
     check_name,
     fault,
@@ -22,11 +25,8 @@ from .formats.xml import (
     shortened,
     tag_of,
 )
+from .elements import LinkReader, read_joint
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
-from .meshes import check_mesh
-from .physics.bullet import excess
-from .resources import FindModel, FindPackage, substitute_in_tree
-from .urdf_parts import LinkReader, read_joint
 
 logger = logging.getLogger(__name__)
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 
 from lxml import etree
 
-from .core import AbsentError, ModelError, ShapeError, Vector
-from .description import (
+from ...core import AbsentError, ModelError, ShapeError, Vector
+from ...description import (
     FIXED,
     PRISMATIC,
     REVOLUTE,
@@ -23,8 +23,9 @@ from .description import (
     Visual,
     gazebo_material,
 )
-from .formats.kinematics import FREE, TreeJoint, TreeLink
-from .formats.xml import (
+from ...resources import FindModel, file_path, in_models, refuse_climbing
+from ..kinematics import FREE, TreeJoint, TreeLink
+from ..xml import (
     LeftOut,
     fault,
     limit_number,
@@ -39,7 +40,6 @@ from .formats.xml import (
     shortened,
     suggestion,
 )
-from .resources import FindModel, file_path, in_models, refuse_climbing
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
 _JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC,
