@@ -10,11 +10,11 @@ from support import ROOT, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_sp
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, to_rpy
 from rosbots_description.sim.description.model_spec import Inertial, LinkSpec, ModelSpec
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.meshes.store import MeshStore
 from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 SECOND = 1000  # steps
 

@@ -6,9 +6,9 @@ import pytest
 from support import ROOT, empty_world
 
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, relative, rotate, yaw_of
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 SKID4 = ROOT / 'test' / 'data' / 'gazebo' / 'robots' / 'skid4.urdf'
 GRAVITY = 9.8

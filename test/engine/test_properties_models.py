@@ -13,11 +13,11 @@ from support.mutations import damaged
 
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.formats.xml.parser import root_tag
 from rosbots_description.sim.resources.uris import UnknownPackage
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
-from rosbots_description.sim.sdf import load_sdf
 
 STEPS = 20
 ASIDE = Pose((1e4, 1e4, 0.5))  # [m] further away than anything that moves gets

@@ -4,9 +4,9 @@ import pytest
 from support import empty_world
 
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 DROP, STEPS = 0.5, 1000  # [m], [ms] it has fallen and stands
 THICK = 0.1  # [m]

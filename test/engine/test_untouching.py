@@ -4,7 +4,7 @@ import pytest
 from support import box_urdf, empty_world, urdf_spec
 
 from rosbots_description.sim.core.transforms import Pose, Twist
-from rosbots_description.sim.sdf import load_sdf
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 
 SECOND = 1000  # steps
 

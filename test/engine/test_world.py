@@ -28,9 +28,9 @@ from rosbots_description.sim.description.model_spec import (
     ModelSpec,
     PluginSpec,
 )
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.plugins.diff_drive import DiffDrive
 from rosbots_description.sim.runtime.scheduler import Hook
-from rosbots_description.sim.sdf import load_sdf
 
 MEGABYTE = 2**20
 LEAK_ALLOWED = 6 * MEGABYTE  # without the guard it would be 14

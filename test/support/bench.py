@@ -18,8 +18,8 @@ from rosbots_description.ros_api.services.registry import (
 )
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.world_spec import LightSpec
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.runtime.world import World
-from rosbots_description.sim.sdf import load_sdf
 
 from . import SPAWN_POSE, box_urdf, empty_world, package_directory, robot_spec, urdf_spec
 

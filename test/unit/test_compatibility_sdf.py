@@ -7,11 +7,11 @@ import pytest
 from lxml import etree
 from support import ROOT
 
-from rosbots_description.sim import sdf_joints
+from rosbots_description.sim.formats.sdf import joints
+from rosbots_description.sim.formats.sdf.omissions import Notes
+from rosbots_description.sim.formats.sdf.world_file import load_world
 from rosbots_description.sim.formats.xml import parser as xml_parser
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf_notes import Notes
-from rosbots_description.sim.world_file import load_world
 
 OFFERED = ('same', 'better')
 MISSING, QUIET = 'not supported', 'level debug'
@@ -188,7 +188,7 @@ def test_what_is_not_supported_is_named_at_the_level_that_its_row_says(name, cap
 
 
 def test_every_type_of_joint_has_a_row():
-    assert set(TYPES) == {*sdf_joints._TYPES, *sdf_joints._NOT_SIMULATED}
+    assert set(TYPES) == {*joints._TYPES, *joints._NOT_SIMULATED}
 
 
 @pytest.mark.parametrize('kind', TYPES)

@@ -6,9 +6,9 @@ import pytest
 
 from rosbots_description.ros_api.model_source import canonical_xml
 from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 LINK = '<link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'

@@ -12,11 +12,11 @@ from support import ROOT, package_directory
 from support.hostile import FOLDER, cases
 
 from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
+from rosbots_description.sim.formats.sdf.world_file import open_world
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.meshes.store import check_mesh
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
-from rosbots_description.sim.world_file import open_world
 
 LONGEST = 2500  # characters of a sentence
 CASES = cases()

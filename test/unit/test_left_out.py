@@ -6,10 +6,10 @@ import pytest
 
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.description.model_spec import Box
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.plugin_registry.gazebo_libraries import PAGE, library_remark
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 MASS = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'

@@ -9,10 +9,10 @@ from support.invariants import check_sentence, check_spec, total
 from support.mutations import RAW, damaged, spoiled
 
 from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.formats.sdf.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.formats.xml.parser import parse, root_tag
 from rosbots_description.sim.resources.uris import UnknownPackage
-from rosbots_description.sim.sdf import load_sdf, load_sdf_light
 
 ROUNDING = 1e-6  # relative; masses differ by up to six orders of magnitude
 

@@ -17,10 +17,10 @@ from rosbots_description.sim.description.model_spec import (
     Sphere,
     Surface,
 )
+from rosbots_description.sim.formats.sdf.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.formats.urdf.gazebo_tags import ENDLESS_FRICTION
 from rosbots_description.sim.meshes.loader import check_mesh, read_mesh
 from rosbots_description.sim.resources.search_path import BUILT_IN_MODELS, ModelSearch
-from rosbots_description.sim.sdf import load_sdf, load_sdf_light
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'

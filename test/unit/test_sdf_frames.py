@@ -6,8 +6,8 @@ import pytest
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 QUARTER = math.pi / 2
 

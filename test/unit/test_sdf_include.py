@@ -6,8 +6,8 @@ import pytest
 
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch, find_world, path_directories
-from rosbots_description.sim.sdf import load_sdf
 
 CONE = ('<sdf version="1.6"><model name="cone"><pose>0 0 7 0 0 0</pose>'
         '<link name="body"/></model></sdf>')

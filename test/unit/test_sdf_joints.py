@@ -7,8 +7,8 @@ import pytest
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, compose
 from rosbots_description.sim.description.model_spec import FIXED, PRISMATIC, REVOLUTE
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf import load_sdf
 
 # b stands a metre along x, turned by a quarter about z: its x axis is the model's y axis.
 LINKS = f'''<link name="a"/><link name="b"><pose>1 0 0 0 0 {math.pi / 2}</pose></link>

@@ -10,7 +10,7 @@ from rosbots_description.ros_api.model_source import (
     canonical_xml,
     read_file,
 )
-from rosbots_description.sim.sdf import load_sdf
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
 
 MINIMAL = ['-urdf', '-param', 'robot_description', '-model', 'rosbots']
 

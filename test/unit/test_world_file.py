@@ -17,9 +17,9 @@ from rosbots_description.sim.description.model_spec import (
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.description.world_spec import ModelState, SceneSpec
+from rosbots_description.sim.formats.sdf.state import joint_positions
+from rosbots_description.sim.formats.sdf.world_file import load_world, open_world
 from rosbots_description.sim.resources.search_path import ModelSearch
-from rosbots_description.sim.sdf_state import joint_positions
-from rosbots_description.sim.world_file import load_world, open_world
 
 SUN = '<include><uri>model://sun</uri></include>'
 GROUND = '<include><uri>model://ground_plane</uri></include>'

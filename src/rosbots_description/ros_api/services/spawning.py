@@ -13,12 +13,12 @@ from rosbots_msgs.srv import (
 
 from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
+from ...sim.formats.sdf import load_sdf, load_sdf_light
 from ...sim.formats.urdf import load_urdf
 from ...sim.formats.xml import root_tag
 from ...sim.physics.bullet import mesh_needs
 from ...sim.resources import HeldFile, UnknownPackage
 from ...sim.runtime import Model, World
-from ...sim.sdf import load_sdf, load_sdf_light
 from ..conversions import read_pose
 from ..server import Server
 from .registry import EXTENSIONS, CallError, refuse, service

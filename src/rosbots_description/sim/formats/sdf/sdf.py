@@ -4,15 +4,15 @@ import logging
 
 from lxml import etree
 
-from .core import IDENTITY, ModelError, Pose
-from .description import LightSpec, ModelSpec
-from .formats.urdf import inject_namespace
-from .formats.xml import check_name, fault
-from .resources import FindModel, FindPackage
-from .sdf_document import SdfDocument, SdfLibrary
-from .sdf_light import read_light
-from .sdf_model import ModelParts, model_spec, read_include, read_model
-from .sdf_values import pose_in
+from ...core import IDENTITY, ModelError, Pose
+from ...description import LightSpec, ModelSpec
+from ...resources import FindModel, FindPackage
+from ..urdf import inject_namespace
+from ..xml import check_name, fault
+from .document import SdfDocument, SdfLibrary
+from .lights import read_light
+from .models import ModelParts, model_spec, read_include, read_model
+from .values import pose_in
 
 logger = logging.getLogger(__name__)
 

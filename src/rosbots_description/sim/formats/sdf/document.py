@@ -5,9 +5,8 @@ from collections.abc import Callable
 
 from lxml import etree
 
-from .core import ModelError
-from .formats.xml import MAX_BYTES, fault, parse, remove_xacro, scalar, tag_of
-from .resources import (
+from ...core import ModelError
+from ...resources import (
     BUILT_IN_MODELS,
     FindModel,
     FindPackage,
@@ -20,8 +19,9 @@ from .resources import (
     substitute_packages,
     within,
 )
-from .sdf_notes import Notes
-from .sdf_poses import complete_poses
+from ..xml import MAX_BYTES, fault, parse, remove_xacro, scalar, tag_of
+from .omissions import Notes
+from .pose_repair import complete_poses
 
 NEWEST = (1, 7)
 _UNVERSIONED = (1, 6)

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 from lxml import etree
 
-from .core import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
-from .description import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
-from .formats.kinematics import WORLD
-from .formats.xml import fault, required_name
-from .sdf_document import SdfDocument
-from .sdf_frames import MODEL_FRAME, Frames
-from .sdf_values import (
+from ...core import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
+from ...description import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
+from ..kinematics import WORLD
+from ..xml import fault, required_name
+from .document import SdfDocument
+from .frames import MODEL_FRAME, Frames
+from .values import (
     limit_of,
     not_negative_of,
     number_of,

@@ -2,11 +2,11 @@
 
 from lxml import etree
 
-from .core import Pose
-from .description import DIRECTIONAL, POINT, SPOT, LightSpec
-from .formats.xml import fault, required_name
-from .sdf_document import SdfDocument
-from .sdf_values import colour_of, number_of, numbers_of, truth_of
+from ...core import Pose
+from ...description import DIRECTIONAL, POINT, SPOT, LightSpec
+from ..xml import fault, required_name
+from .document import SdfDocument
+from .values import colour_of, number_of, numbers_of, truth_of
 
 _TYPES = (POINT, DIRECTIONAL, SPOT)
 

@@ -9,18 +9,18 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from .core import ModelError, Pose, SimError
-from .description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
-from .formats.xml import MAX_BYTES, fault, required_name
-from .resources import FindModel, FindPackage, read_file
-from .runtime import World
-from .sdf_document import SdfDocument, SdfLibrary
-from .sdf_frames import Frames
-from .sdf_light import read_light
-from .sdf_model import ModelParts, model_spec, read_include, read_model, read_plugin
-from .sdf_physics import read_physics
-from .sdf_state import apply_state, read_states
-from .sdf_values import colour_of, text_of, truth_of
+from ...core import ModelError, Pose, SimError
+from ...description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
+from ...resources import FindModel, FindPackage, read_file
+from ...runtime import World
+from ..xml import MAX_BYTES, fault, required_name
+from .document import SdfDocument, SdfLibrary
+from .frames import Frames
+from .lights import read_light
+from .models import ModelParts, model_spec, read_include, read_model, read_plugin
+from .physics import read_physics
+from .state import apply_state, read_states
+from .values import colour_of, text_of, truth_of
 
 logger = logging.getLogger(__name__)
 

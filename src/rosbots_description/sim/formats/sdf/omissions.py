@@ -6,16 +6,7 @@ from itertools import islice
 
 from lxml import etree
 
-from .formats.xml import (
-    MAX_NOTES,
-    LeftOut,
-    line_of,
-    parse_numbers,
-    place,
-    scalar,
-    shortened,
-    tag_of,
-)
+from ..xml import MAX_NOTES, LeftOut, line_of, parse_numbers, place, scalar, shortened, tag_of
 
 logger = logging.getLogger(__name__)
 

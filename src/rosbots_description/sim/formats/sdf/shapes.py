@@ -2,8 +2,8 @@
 
 from lxml import etree
 
-from .core import AbsentError, ModelError, Pose, ShapeError
-from .description import (
+from ...core import AbsentError, ModelError, Pose, ShapeError
+from ...description import (
     Box,
     Collision,
     Cylinder,
@@ -16,11 +16,11 @@ from .description import (
     Visual,
     gazebo_material,
 )
-from .formats.urdf import ENDLESS_FRICTION
-from .formats.xml import fault, is_endless, owner, place, tag_of
-from .meshes import check_mesh, submesh_file
-from .sdf_document import SdfDocument
-from .sdf_values import (
+from ...meshes import check_mesh, submesh_file
+from ..urdf import ENDLESS_FRICTION
+from ..xml import fault, is_endless, owner, place, tag_of
+from .document import SdfDocument
+from .values import (
     colour_of,
     limit_of,
     not_negative_of,

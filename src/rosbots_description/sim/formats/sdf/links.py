@@ -6,14 +6,14 @@ from dataclasses import replace
 
 from lxml import etree
 
-from .core import IDENTITY, Pose, relative, to_rpy
-from .description import Collision, Element, Inertial, LinkSpec, Visual
-from .formats.kinematics import WORLD
-from .formats.xml import fault, require_mass, required_name, to_element
-from .sdf_document import SdfDocument
-from .sdf_frames import Frames
-from .sdf_shapes import read_collision, read_visual
-from .sdf_values import damping_of, number_of, pose_in, truth_of
+from ...core import IDENTITY, Pose, relative, to_rpy
+from ...description import Collision, Element, Inertial, LinkSpec, Visual
+from ..kinematics import WORLD
+from ..xml import fault, require_mass, required_name, to_element
+from .document import SdfDocument
+from .frames import Frames
+from .shapes import read_collision, read_visual
+from .values import damping_of, number_of, pose_in, truth_of
 
 _READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
          'velocity_decay', 'sensor', 'light', 'projector')

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from .core import IDENTITY, AbsentError, Pose, compose
-from .formats.xml import fault, suggestion, tag_of
-from .sdf_values import pose_in
+from ...core import IDENTITY, AbsentError, Pose, compose
+from ..xml import fault, suggestion, tag_of
+from .values import pose_in
 
 MODEL_FRAME = '__model__'
 

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 
 from lxml import etree
 
-from .core import IDENTITY, Pose, compose, relative
-from .description import FIXED, PRISMATIC, JointSpec, ModelSpec, ModelState
-from .formats.kinematics import WORLD
-from .runtime import Model
-from .sdf_document import SdfDocument
-from .sdf_values import pose_in
+from ...core import IDENTITY, Pose, compose, relative
+from ...description import FIXED, PRISMATIC, JointSpec, ModelSpec, ModelState
+from ...runtime import Model
+from ..kinematics import WORLD
+from .document import SdfDocument
+from .values import pose_in
 
 _NANOSECONDS = 1e9
 _IDLE = ('wall_time', 'real_time', 'iterations', 'light')

@@ -4,11 +4,11 @@ from dataclasses import fields
 
 from lxml import etree
 
-from .core import SimError
-from .description import PhysicsSettings, check
-from .formats.xml import fault, scalar, tag_of
-from .sdf_document import SdfDocument
-from .sdf_values import number_of, numbers_of
+from ...core import SimError
+from ...description import PhysicsSettings, check
+from ..xml import fault, scalar, tag_of
+from .document import SdfDocument
+from .values import number_of, numbers_of
 
 # Where each setting stands in <physics>; later paths, of older versions, count less.
 _PATHS: dict[str, tuple[str, ...]] = {

@@ -2,7 +2,7 @@
 
 from lxml import etree
 
-from .formats.xml import line_of, parse_numbers, scalar, shortened
+from ..xml import line_of, parse_numbers, scalar, shortened
 
 _NUMBERS = 6  # x y z roll pitch yaw
 _FOREIGN = ('plugin',)  # what stands in these is the business of who reads them

@@ -10,17 +10,17 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from .core import AbsentError, Pose, compose
-from .description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
-from .description.inertia import impossible, possible, turnable
-from .formats.kinematics import WORLD
-from .formats.xml import fault, required_name, shortened, to_element
-from .physics.bullet import excess
-from .sdf_document import SdfDocument
-from .sdf_frames import MODEL_FRAME, Frames
-from .sdf_joints import add_joint_frame, as_trees, read_joint
-from .sdf_links import UNIT_INERTIAL, read_link
-from .sdf_values import text_of, truth_of
+from ...core import AbsentError, Pose, compose
+from ...description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
+from ...description.inertia import impossible, possible, turnable
+from ...physics.bullet import excess
+from ..kinematics import WORLD
+from ..xml import fault, required_name, shortened, to_element
+from .document import SdfDocument
+from .frames import MODEL_FRAME, Frames
+from .joints import add_joint_frame, as_trees, read_joint
+from .links import UNIT_INERTIAL, read_link
+from .values import text_of, truth_of
 
 _READ = ('pose', 'link', 'joint', 'frame', 'plugin', 'model', 'include', 'static', 'self_collide')
 _INCLUDE_READ = ('uri', 'name', 'pose', 'static', 'plugin')
