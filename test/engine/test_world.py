@@ -29,7 +29,7 @@ from rosbots_description.sim.description.model_spec import (
     PluginSpec,
 )
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
-from rosbots_description.sim.plugins.diff_drive import DiffDrive
+from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 from rosbots_description.sim.runtime.scheduler import Hook
 
 MEGABYTE = 2**20

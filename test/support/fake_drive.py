@@ -12,7 +12,7 @@ from rosbots_description.sim.description.model_spec import (
     ModelSpec,
     PluginSpec,
 )
-from rosbots_description.sim.plugins.diff_drive import DiffDrive
+from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 from rosbots_description.sim.runtime.world import World
 
 from .fake_engine import FakeEngine

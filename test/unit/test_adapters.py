@@ -20,7 +20,7 @@ from rosbots_description.ros_api.adapters.declarations import Offers, Publishes
 from rosbots_description.ros_api.adapters.registry import Adapters, topics_of
 from rosbots_description.ros_api.static_frames import StaticFrames
 from rosbots_description.sim.plugins.base import PeriodicPlugin
-from rosbots_description.sim.plugins.diff_drive import DiffDrive
+from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 
 
 def _model(plugin):

@@ -6,7 +6,7 @@ import pytest
 from support.fake_drive import collect, fake_model, make_drive, place, run
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy
-from rosbots_description.sim.plugins.planar_move import PlanarMove
+from rosbots_description.sim.plugins.drive.planar_move import PlanarMove
 
 
 def make(**tags):

@@ -5,7 +5,7 @@ from support.fake_drive import collect, fake_model, make_drive, place, run
 
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
-from rosbots_description.sim.plugins.skid_steer_drive import SkidSteerDrive
+from rosbots_description.sim.plugins.drive.skid_steer_drive import SkidSteerDrive
 
 JOINTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_rear_joint')
 

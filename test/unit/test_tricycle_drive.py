@@ -6,7 +6,7 @@ import pytest
 from support.fake_drive import collect, fake_model, make_drive, run, turn
 
 from rosbots_description.sim.core.errors import PluginError
-from rosbots_description.sim.plugins.tricycle_drive import TricycleDrive
+from rosbots_description.sim.plugins.drive.tricycle_drive import TricycleDrive
 
 JOINTS = ('front_steering_joint', 'front_wheel_joint', 'left_wheel_joint', 'right_wheel_joint')
 

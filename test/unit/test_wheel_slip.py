@@ -13,7 +13,7 @@ from rosbots_description.sim.description.model_spec import Element
 from rosbots_description.sim.physics.bullet.body import FrictionAxes
 from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
 from rosbots_description.sim.physics.bullet.slip_compliance import LEAST, Touch, shares
-from rosbots_description.sim.plugins.wheel_slip import WheelSlip
+from rosbots_description.sim.plugins.force.wheel_slip import WheelSlip
 
 AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
 LOAD, LIMIT = 10.0, 8.0  # [N]

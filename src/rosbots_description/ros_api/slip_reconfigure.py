@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dynamic_reconfigure.encoding import Config
 from dynamic_reconfigure.server import Server as ReconfigureServer
 
-from ..sim.plugins.wheel_slip import WheelSlip
+from ..sim.plugins.force import WheelSlip
 from .master import NO_MASTER
 from .reconfigure import Parameter, description
 

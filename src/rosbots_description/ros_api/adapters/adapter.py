@@ -10,7 +10,7 @@ import rospy
 from genpy import Message
 from rospy.impl.registration import get_topic_manager
 
-from ...sim.plugins.base import ModelPlugin
+from ...sim.plugins import ModelPlugin
 from ..names import find_tf_prefix, frame_name, is_for_all
 from ..sending import ReaderWatch, stop_publishing
 from ..server import Server

@@ -22,10 +22,7 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from ...sim.plugins.diff_drive import DiffDrive
-from ...sim.plugins.planar_move import PlanarMove
-from ...sim.plugins.skid_steer_drive import SkidSteerDrive
-from ...sim.plugins.tricycle_drive import TricycleDrive
+from ...sim.plugins.drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from ...sim.runtime import FrameTransform
 from ..log_bridge import set_level
 from ..master import subscribers

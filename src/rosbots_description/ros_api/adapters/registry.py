@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable
 
 from ...sim.core import PluginError
-from ...sim.plugins.base import ModelPlugin
+from ...sim.plugins import ModelPlugin
 from ...sim.runtime import Model
 from ..server import Server
 from .adapter import Adapter, where

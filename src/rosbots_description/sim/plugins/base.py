@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..core import NANOSECONDS, NotFoundError, PluginError
 from ..description import PluginSpec
 from ..runtime import NEVER, Output, Plugin
-from .params import Missing, Params, says_default
+from .parameters import Missing, Params, says_default
 
 if TYPE_CHECKING:
     from ..runtime import Joint, Model, World

@@ -10,15 +10,15 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ..core import PluginError
-from ..description import Element
-from ..physics.bullet import can_slip
-from ..plugin_registry import register
+from ...core import PluginError
+from ...description import Element
+from ...physics.bullet import can_slip
+from ...plugin_registry import register
+from ..base import PeriodicPlugin
 from ..wheel_geometry import radius_of
-from .base import PeriodicPlugin
 
 if TYPE_CHECKING:
-    from ..runtime import Joint
+    from ...runtime import Joint
 
 logger = logging.getLogger(__name__)
 

@@ -4,9 +4,9 @@ Behaviour, defaults and timing are those of libgazebo_ros_skid_steer_drive.so in
 2.9.2. It has no reset of its own upstream, so that a reset leaves the command as it is.
 """
 
-from ..plugin_registry import register
-from .drive import Drive, world_odometry
-from .params import says_defaults_to
+from ...plugin_registry import register
+from ..parameters import says_defaults_to
+from .base import Drive, world_odometry
 
 JOINTS = ('leftFront', 'rightFront', 'leftRear', 'rightRear')
 DEFAULTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_rear_joint')

@@ -6,13 +6,13 @@ from abc import abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from ..core import NANOSECONDS, Pose, Twist, compose, from_rpy, inverse, yaw_of
-from ..runtime import FrameTransform, JointStates, Odometry, Output
-from .base import PeriodicPlugin
-from .params import Params
+from ...core import NANOSECONDS, Pose, Twist, compose, from_rpy, inverse, yaw_of
+from ...runtime import FrameTransform, JointStates, Odometry, Output
+from ..base import PeriodicPlugin
+from ..parameters import Params
 
 if TYPE_CHECKING:
-    from ..runtime import Joint
+    from ...runtime import Joint
 
 logger = logging.getLogger(__name__)
 

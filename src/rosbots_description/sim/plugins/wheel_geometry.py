@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING
 
-from .core import UP, Vector, compose, cross, dot, rotate, subtract
-from .description import Cylinder, LinkSpec, Sphere
+from ..core import UP, Vector, compose, cross, dot, rotate, subtract
+from ..description import Cylinder, LinkSpec, Sphere
 
 if TYPE_CHECKING:
-    from .runtime import Joint
+    from ..runtime import Joint
 
 
 def radius_of(joint: 'Joint') -> float | None:

@@ -8,11 +8,11 @@ the command as it is.
 
 import math
 
-from ..core import NANOSECONDS, Pose, Twist, yaw_of
-from ..plugin_registry import register
-from ..runtime import Odometry
-from .drive import Drive
-from .params import says_defaults_to
+from ...core import NANOSECONDS, Pose, Twist, yaw_of
+from ...plugin_registry import register
+from ...runtime import Odometry
+from ..parameters import says_defaults_to
+from .base import Drive
 
 
 @register('libgazebo_ros_planar_move.so')

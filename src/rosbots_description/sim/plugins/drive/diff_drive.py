@@ -7,11 +7,11 @@ import logging
 import math
 from collections.abc import Iterable
 
-from ..core import Pose, Twist
-from ..plugin_registry import register
-from ..runtime import FrameTransform, JointStates, Odometry
+from ...core import Pose, Twist
+from ...plugin_registry import register
+from ...runtime import FrameTransform, JointStates, Odometry
 from ..wheel_geometry import drives_towards_x, radius_of, same_way, track_of
-from .drive import Encoders, WheeledDrive, reads_encoders
+from .base import Encoders, WheeledDrive, reads_encoders
 
 logger = logging.getLogger(__name__)
 

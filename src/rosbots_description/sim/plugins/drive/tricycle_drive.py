@@ -11,10 +11,10 @@ and the angle is to become less.
 import math
 from collections.abc import Iterable
 
-from ..core import PluginError, Pose, Twist
-from ..plugin_registry import register
-from ..runtime import FrameTransform, JointStates, Odometry
-from .drive import Encoders, WheeledDrive, reads_encoders
+from ...core import PluginError, Pose, Twist
+from ...plugin_registry import register
+from ...runtime import FrameTransform, JointStates, Odometry
+from .base import Encoders, WheeledDrive, reads_encoders
 
 STRAIGHT_ACROSS = math.pi / 2.0  # [rad] to which steering is limited
 
