@@ -5,7 +5,7 @@ import pytest
 from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
 from rosbots_description.sim.core.transforms import Pose
-from rosbots_description.sim.view import View
+from rosbots_description.sim.rendering.camera import View
 
 SMALL = (160, 120)  # pixels
 RED_BOX = box_urdf('1 1 1', 1.0, '<gazebo reference="box"><material>Gazebo/Red</material></gazebo>')

@@ -7,7 +7,7 @@ import rospy
 
 from rosbots_description.ros_api.validity import RequestError
 from rosbots_description.ros_api.view import Camera, line_of_sight
-from rosbots_description.sim.view import EYE, TARGET
+from rosbots_description.sim.rendering.camera import EYE, TARGET
 
 
 class FakeRegistrar:

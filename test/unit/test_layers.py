@@ -52,7 +52,7 @@ def test_only_what_makes_moves_and_draws_bodies_uses_pybullet():
                     or isinstance(node, ast.alias) and node.name == 'pybullet'
                     for node in ast.walk(tree))]
     assert using == [
-        'sim/physics/bullet/body_maker.py', 'sim/physics/bullet/client.py', 'sim/canvas.py', 'sim/physics/bullet/engine.py',
+        'sim/physics/bullet/body_maker.py', 'sim/physics/bullet/client.py', 'sim/rendering/canvas.py', 'sim/physics/bullet/engine.py',
         'sim/physics/bullet/fast_rotation.py', 'sim/physics/bullet/contact_slip.py', 'sim/physics/bullet/collision_filter.py',
     ]
 

@@ -17,7 +17,7 @@ import rospy
 from sensor_msgs.msg import Image
 
 from ..sim.core import Vector
-from ..sim.view import EYE, TARGET, View
+from ..sim.rendering import EYE, TARGET, View
 from .conversions import stamp
 from .registrar import Registrar
 from .server import Server

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .core import Pose, Vector
-from .physics.bullet import pybullet
+from ..core import Pose, Vector
+from ..physics.bullet import pybullet
 
 _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
 

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..core import Vector, compose
+from ..description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from ..meshes import visual_parts
+from ..runtime import Link, Model, World
 from .canvas import Canvas, Triangles
-from .core import Vector, compose
-from .description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
-from .meshes import visual_parts
-from .runtime import Link, Model, World
 
 if TYPE_CHECKING:
     import trimesh
