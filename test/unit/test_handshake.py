@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from rosbots_description.ros_api.handshake import (
+from rosbots_description.ros_api.transport.handshake import (
     LONGEST_HEADER,
     accept_connections,
     speaks_tcpros,

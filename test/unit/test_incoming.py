@@ -11,7 +11,7 @@ from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_service import ServiceImpl
 
-from rosbots_description.ros_api.incoming import (
+from rosbots_description.ros_api.transport.incoming import (
     LONGEST_MESSAGE,
     answer,
     complain,

@@ -18,7 +18,7 @@ from rosbots_description.ros_api.layouts import (
     OdometryLayout,
     TransformLayout,
 )
-from rosbots_description.ros_api.sending import next_number
+from rosbots_description.ros_api.transport.sending import next_number
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.runtime.outputs import JointStates, Odometry
 

@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from rosbots_description.ros_api.log_bridge import Preparation, Unrepeated
+from rosbots_description.ros_api.transport.log_bridge import Preparation, Unrepeated
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rosbots_description.ros_api.log_file import (
+from rosbots_description.ros_api.transport.log_file import (
     log_file,
     log_to_nowhere,
     obstacle,

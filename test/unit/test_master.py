@@ -7,8 +7,9 @@ import pytest
 import rosgraph
 import rospy
 
-from rosbots_description.ros_api import master, master_watch, spawn_client
-from rosbots_description.ros_api.master import (
+from rosbots_description.ros_api import master_watch, spawn_client
+from rosbots_description.ros_api.transport import master
+from rosbots_description.ros_api.transport.master import (
     AddressError,
     once_there,
     require_address,

@@ -10,8 +10,9 @@ from xmlrpc.server import SimpleXMLRPCServer
 import pytest
 import rosgraph
 
-from rosbots_description.ros_api import name_conflict, node
-from rosbots_description.ros_api.name_conflict import (
+from rosbots_description.ros_api import node
+from rosbots_description.ros_api.transport import name_conflict
+from rosbots_description.ros_api.transport.name_conflict import (
     Holder,
     NameTakenError,
     holder,

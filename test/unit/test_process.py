@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import rospy.impl.init
 
-from rosbots_description.ros_api import process
+from rosbots_description.ros_api.transport import process
 
 
 def test_a_node_that_the_master_has_taken_in_goes_on_at_once(monkeypatch):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rosbots_description.ros_api.names import frame_name, is_for_all, topic_name
+from rosbots_description.ros_api.transport.names import frame_name, is_for_all, topic_name
 from rosbots_description.sim.core.errors import PluginError
 
 

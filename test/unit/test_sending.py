@@ -7,7 +7,7 @@ import pytest
 from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
 
-from rosbots_description.ros_api.sending import Outlet, Outlets
+from rosbots_description.ros_api.transport.sending import Outlet, Outlets
 
 DEADLINE = 5.0  # [s] for what takes milliseconds; slow machines are no failure
 SIZE = 1000  # of a message [bytes]; each is one number again and again

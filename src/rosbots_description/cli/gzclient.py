@@ -93,8 +93,11 @@ def _another_name(remappings: Sequence[str]) -> list[str]:
 
     The ROS master would close that one: it allows one node per name.
     """
-    from ..ros_api.master import NO_MASTER  # noqa: PLC0415  only a window needs these
-    from ..ros_api.name_conflict import holder, node_name  # noqa: PLC0415
+    from ..ros_api.transport import (  # noqa: PLC0415
+        NO_MASTER,  # noqa: PLC0415  only a window needs these
+        holder,
+        node_name,
+    )
 
     if not any(word.startswith('__name:=') for word in remappings):
         return []  # RViz makes up a name that nobody has

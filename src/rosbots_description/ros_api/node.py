@@ -24,22 +24,31 @@ from ..sim.meshes import load_readers
 from ..sim.runtime import World
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
-from .handshake import guard_handshakes
-from .incoming import guard_messages, wait_for_answers
-from .log_bridge import connect_logging, leave_rosout, set_level
 from .loop import Loop
-from .master import NO_MASTER, require_address
 from .master_watch import watch_master
-from .name_conflict import holder, node_name, require_free, successor
 from .packages import find_model, find_package
 from .performance import advertise_performance
-from .process import init_node
-from .registrar import Registrar
-from .sending import Outlets
 from .server import Server
 from .services.registry import EXTENSIONS, SERVICES, advertise
 from .state_commands import subscribe_states
 from .topics import advertise_clock, advertise_states
+from .transport import (
+    NO_MASTER,
+    Outlets,
+    Registrar,
+    connect_logging,
+    guard_handshakes,
+    guard_messages,
+    holder,
+    init_node,
+    leave_rosout,
+    node_name,
+    require_address,
+    require_free,
+    set_level,
+    successor,
+    wait_for_answers,
+)
 from .view import advertise_view
 from .view_frames import advertise_frames
 from .visuals import advertise_visuals

@@ -10,8 +10,8 @@ from ..sim.physics.bullet import Trials
 from ..sim.resources import FindModel, FindPackage
 from ..sim.runtime import World
 from .loop import Loop
-from .registrar import Registrar
 from .static_frames import StaticFrames
+from .transport import Registrar
 
 
 @dataclass

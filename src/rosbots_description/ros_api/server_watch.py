@@ -13,7 +13,7 @@ import rosgraph
 import rosgraph.names
 from rosgraph.names import resolve_name
 
-from .master import NO_MASTER
+from .transport import NO_MASTER
 
 TIMEOUT = 2.0  # for the simulator to take a connection [s, wall]
 NOTICE = 'the simulator has gone'
@@ -79,7 +79,7 @@ class Notice:
         from visualization_msgs.msg import MarkerArray  # noqa: PLC0415
 
         from .markers import notice  # noqa: PLC0415
-        from .process import init_node  # noqa: PLC0415
+        from .transport import init_node  # noqa: PLC0415
 
         if not rospy.core.is_initialized():
             init_node('gzclient_notice', [], anonymous=True, disable_signals=True,

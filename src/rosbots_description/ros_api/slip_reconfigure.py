@@ -17,8 +17,8 @@ from dynamic_reconfigure.encoding import Config
 from dynamic_reconfigure.server import Server as ReconfigureServer
 
 from ..sim.plugins.force import WheelSlip
-from .master import NO_MASTER
 from .reconfigure import Parameter, description
+from .transport import NO_MASTER
 
 logger = logging.getLogger(__name__)
 

@@ -20,15 +20,14 @@ from rosbots_msgs.srv import GetModelOmissions
 from std_srvs.srv import Empty
 
 from ..sim.core import from_rpy
-from .client_node import start_node
 from .gazebo_interface import (
     interruptibly,
     set_model_configuration_client,
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
-from .master import AddressError
 from .model_source import MissingFileError, SourceError, canonical_xml, read_file
+from .transport import AddressError, start_node
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 

@@ -19,8 +19,8 @@ from rosgraph_msgs.msg import Clock
 from ..sim.core import NANOSECONDS
 from ..sim.runtime import NEVER, Herald, Hook, Link, Model
 from .conversions import fill_pose, fill_twist
-from .sending import publish_serialized
 from .server import Server
+from .transport import publish_serialized
 
 logger = logging.getLogger(__name__)
 

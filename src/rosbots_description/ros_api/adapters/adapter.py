@@ -11,9 +11,8 @@ from genpy import Message
 from rospy.impl.registration import get_topic_manager
 
 from ...sim.plugins import ModelPlugin
-from ..names import find_tf_prefix, frame_name, is_for_all
-from ..sending import ReaderWatch, stop_publishing
 from ..server import Server
+from ..transport import ReaderWatch, find_tf_prefix, frame_name, is_for_all, stop_publishing
 
 if TYPE_CHECKING:
     from .declarations import Declaration

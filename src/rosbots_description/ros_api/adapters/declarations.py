@@ -14,8 +14,7 @@ from typing import Any, Protocol
 from genpy import Message
 
 from ..conversions import stamp
-from ..names import topic_name
-from ..sending import has_readers, next_number, publish_serialized
+from ..transport import has_readers, next_number, publish_serialized, topic_name
 from .adapter import Adapter
 
 logger = logging.getLogger(__name__)

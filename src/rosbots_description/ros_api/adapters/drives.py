@@ -24,10 +24,8 @@ from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins.drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from ...sim.runtime import FrameTransform
-from ..log_bridge import set_level
-from ..master import subscribers
-from ..sending import reader_names
 from ..static_frames import TOPIC as STATIC_FRAMES
+from ..transport import reader_names, set_level, subscribers
 from .adapter import Adapter
 from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite
 from .packs import JointStatesPack, RootedTransformPack, TransformPack, odometry_pack

@@ -7,7 +7,7 @@ import rospy
 from rospy.impl.rosout import RosOutHandler
 from rospy.rostime import _set_rostime
 
-from ..sim.core import one_line
+from ...sim.core import one_line
 
 _ROOT = __name__.partition('.')[0]  # this library, under whichever name it was imported
 _PLUGINS = f'{_ROOT}.sim.plugins.'  # their modules log only while a plugin is loaded

@@ -14,7 +14,7 @@ from xmlrpc.client import ServerProxy, Transport
 import rosgraph
 from rosgraph.names import get_ros_namespace, load_mappings, ns_join
 
-from ..sim.core import SimError
+from ...sim.core import SimError
 from .master import NO_MASTER
 
 PATIENCE = 2.0  # for a node to answer [s, wall]

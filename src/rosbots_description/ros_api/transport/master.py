@@ -11,7 +11,7 @@ import rosgraph
 import rospy
 from rosgraph.network import parse_http_host_and_port
 
-from ..sim.core import SimError
+from ...sim.core import SimError
 
 # What a call raises where nobody answers, or somebody who is no master.
 NO_MASTER = (OSError, HTTPException, ProtocolError, ExpatError)

@@ -6,7 +6,7 @@ import rosgraph
 import rospy
 from rosgraph.names import resolve_name
 
-from ..sim.core import PluginError
+from ...sim.core import PluginError
 from .master import once_there
 
 # What rospy and the master stand as a global name. A hyphen or a dot is more than roscpp reads.

@@ -1,0 +1,29 @@
+"""Connections, the master, logging and processes: all that touches rospy's internals."""
+
+from .client_node import is_running, own_parameters, start_node
+from .handshake import guard_handshakes
+from .incoming import guard_messages, wait_for_answers
+from .log_bridge import connect_logging, leave_rosout, set_level
+from .master import NO_MASTER, AddressError, require_address, subscribers, write_parameters
+from .name_conflict import holder, node_name, require_free, successor
+from .names import find_tf_prefix, frame_name, is_for_all, topic_name
+from .process import init_node
+from .registrar import Registrar
+from .sending import (
+    Outlets,
+    ReaderWatch,
+    has_readers,
+    next_number,
+    publish_serialized,
+    reader_names,
+    stop_publishing,
+)
+
+__all__ = [
+    'NO_MASTER', 'AddressError', 'Outlets', 'ReaderWatch', 'Registrar', 'connect_logging',
+    'find_tf_prefix', 'frame_name', 'guard_handshakes', 'guard_messages', 'has_readers', 'holder',
+    'init_node', 'is_for_all', 'is_running', 'leave_rosout', 'next_number', 'node_name',
+    'own_parameters', 'publish_serialized', 'reader_names', 'require_address', 'require_free',
+    'set_level', 'start_node', 'stop_publishing', 'subscribers', 'successor', 'topic_name',
+    'wait_for_answers', 'write_parameters',
+]
