@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point, Quaternion
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Twist as TwistMessage
 
-from rosbots_description.ros_api.conversions import (
+from rosbots_description.ros_api.messages.conversions import (
     fill_pose,
     fill_twist,
     read_pose,

@@ -12,8 +12,8 @@ from rospy.msg import serialize_message
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from rosbots_description.ros_api.conversions import fill_pose, fill_twist
-from rosbots_description.ros_api.layouts import (
+from rosbots_description.ros_api.messages.conversions import fill_pose, fill_twist
+from rosbots_description.ros_api.messages.layouts import (
     JointStatesLayout,
     OdometryLayout,
     TransformLayout,

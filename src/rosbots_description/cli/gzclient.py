@@ -93,11 +93,7 @@ def _another_name(remappings: Sequence[str]) -> list[str]:
 
     The ROS master would close that one: it allows one node per name.
     """
-    from ..ros_api.transport import (  # noqa: PLC0415
-        NO_MASTER,  # noqa: PLC0415  only a window needs these
-        holder,
-        node_name,
-    )
+    from ..ros_api.transport import NO_MASTER, holder, node_name
 
     if not any(word.startswith('__name:=') for word in remappings):
         return []  # RViz makes up a name that nobody has

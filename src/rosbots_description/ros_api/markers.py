@@ -8,7 +8,7 @@ from visualization_msgs.msg import Marker
 
 from ..sim.core import Pose, compose
 from ..sim.description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
-from .conversions import fill_pose
+from .messages import fill_pose
 
 FRAME = 'world'
 # Two triangles, counter-clockwise seen from above.

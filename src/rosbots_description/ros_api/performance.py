@@ -11,7 +11,7 @@ import time
 import rospy
 from gazebo_msgs.msg import PerformanceMetrics
 
-from .conversions import stamp
+from .messages import stamp
 from .server import Server
 
 PERIOD = 0.2  # [s, wall]

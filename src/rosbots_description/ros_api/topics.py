@@ -18,7 +18,7 @@ from rosgraph_msgs.msg import Clock
 
 from ..sim.core import NANOSECONDS
 from ..sim.runtime import NEVER, Herald, Hook, Link, Model
-from .conversions import fill_pose, fill_twist
+from .messages import fill_pose, fill_twist
 from .server import Server
 from .transport import publish_serialized
 

@@ -18,10 +18,9 @@ from sensor_msgs.msg import Image
 
 from ..sim.core import Vector
 from ..sim.rendering import EYE, TARGET, View
-from .conversions import stamp
+from .messages import RequestError, stamp
 from .server import Server
 from .transport import Registrar
-from .validity import RequestError
 
 logger = logging.getLogger(__name__)
 

@@ -12,8 +12,8 @@ from tf2_msgs.msg import TFMessage
 
 from ..sim.core import Pose
 from ..sim.runtime import World
-from .conversions import fill_transform
 from .markers import FRAME
+from .messages import fill_transform
 from .server import Server
 from .visuals import PERIOD, Viewers
 

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 from genpy import Message
 
-from ..conversions import stamp
+from ..messages import stamp
 from ..transport import has_readers, next_number, publish_serialized, topic_name
 from .adapter import Adapter
 

@@ -3,7 +3,7 @@
 import logging
 
 from ...sim.runtime import FrameTransform, JointStates
-from ..layouts import JointStatesLayout, OdometryLayout, TransformLayout
+from ..messages import JointStatesLayout, OdometryLayout, TransformLayout
 from ..static_frames import from_root
 from .adapter import Adapter
 from .declarations import Pack

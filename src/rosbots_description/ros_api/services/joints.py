@@ -21,8 +21,8 @@ from gazebo_msgs.srv import (
 
 from ...sim.description import JointSpec
 from ...sim.runtime import Joint, World
+from ..messages import RequestError, require_finite
 from ..server import Server
-from ..validity import RequestError, require_finite
 from .registry import refuse, service
 
 _ENDLESS = 1e16  # a limit of this size means none, as in SDF [rad or m]

@@ -16,9 +16,8 @@ from gazebo_msgs.srv import (
 from std_msgs.msg import ColorRGBA
 
 from ...sim.description import Colour
-from ..conversions import read_pose, read_vector
+from ..messages import read_pose, read_vector, require_finite
 from ..server import Server
-from ..validity import require_finite
 from .registry import refuse, service
 
 _ATTENUATION = ('attenuation_constant', 'attenuation_linear', 'attenuation_quadratic')

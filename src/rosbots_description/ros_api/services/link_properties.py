@@ -17,9 +17,8 @@ from ...sim.description import Inertial
 from ...sim.description.inertia import in_link_axes, is_positive, turnable
 from ...sim.formats.xml import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
 from ...sim.runtime import Link
-from ..conversions import read_vector
+from ..messages import RequestError, read_vector, require_finite
 from ..server import Server
-from ..validity import RequestError, require_finite
 from .links import NO_LINK, find_link
 from .registry import refuse, service
 

@@ -28,9 +28,8 @@ from ...sim.core import (
     subtract,
 )
 from ...sim.runtime import WORLD_FRAMES, Entity, Link, World
-from ..conversions import fill_pose, fill_twist, read_pose, read_twist, read_vector
+from ..messages import fill_pose, fill_twist, read_pose, read_twist, read_vector, require_finite
 from ..server import Server
-from ..validity import require_finite
 from .models import relative_state
 from .registry import refuse, service
 

@@ -14,9 +14,8 @@ from gazebo_msgs.srv import (
 
 from ...sim.core import NotFoundError, Twist, compose, rotate
 from ...sim.runtime import Joint
-from ..conversions import read_pose, read_twist
+from ..messages import read_pose, read_twist, require_finite
 from ..server import Server
-from ..validity import require_finite
 from .registry import refuse, service
 
 _INNER = '::'  # between the name of an inner model and what it has

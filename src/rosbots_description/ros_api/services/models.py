@@ -12,7 +12,7 @@ from gazebo_msgs.srv import (
 )
 
 from ...sim.core import NotFoundError, Pose, Twist, conjugate, relative, rotate, subtract
-from ..conversions import fill_pose, fill_twist, stamp
+from ..messages import fill_pose, fill_twist, stamp
 from ..server import Server
 from .registry import service
 

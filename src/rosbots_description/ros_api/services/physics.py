@@ -14,7 +14,7 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Vector3
 
 from ...sim.description import check
-from ..conversions import read_vector
+from ..messages import read_vector
 from ..server import Server
 from .registry import service
 

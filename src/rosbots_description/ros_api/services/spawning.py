@@ -19,7 +19,7 @@ from ...sim.formats.xml import root_tag
 from ...sim.physics.bullet import mesh_needs
 from ...sim.resources import HeldFile, UnknownPackage
 from ...sim.runtime import Model, World
-from ..conversions import read_pose
+from ..messages import read_pose
 from ..server import Server
 from .registry import EXTENSIONS, CallError, refuse, service
 

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Point, Transform, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Twist as TwistMessage
 
-from ..sim.core import Pose, Twist, Vector, normalise
+from ...sim.core import Pose, Twist, Vector, normalise
 
 
 def stamp(now_ns: int) -> Time:

@@ -5,7 +5,7 @@ from typing import Any
 
 from genpy import Message
 
-from ..sim.core import SimError
+from ...sim.core import SimError
 
 
 class RequestError(SimError):

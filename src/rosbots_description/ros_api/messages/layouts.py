@@ -8,8 +8,8 @@ numbers are little-endian, and a text or a list stands behind its length.
 import struct
 from collections.abc import Sequence
 
-from ..sim.core import NANOSECONDS, Pose
-from ..sim.runtime import JointStates, Odometry
+from ...sim.core import NANOSECONDS, Pose
+from ...sim.runtime import JointStates, Odometry
 
 _SIZE = 4  # of the number at the beginning, which does not count itself [bytes]
 _COVARIANCE = struct.Struct('<36d')  # row-major 6x6: x, y, z, then rotations about x, y, z

@@ -1,0 +1,20 @@
+"""Plain values to messages and back."""
+
+from .conversions import (
+    fill_pose,
+    fill_transform,
+    fill_twist,
+    read_pose,
+    read_transform,
+    read_twist,
+    read_vector,
+    stamp,
+)
+from .layouts import JointStatesLayout, OdometryLayout, TransformLayout
+from .validity import RequestError, require_finite
+
+__all__ = [
+    'JointStatesLayout', 'OdometryLayout', 'RequestError', 'TransformLayout', 'fill_pose',
+    'fill_transform', 'fill_twist', 'read_pose', 'read_transform', 'read_twist', 'read_vector',
+    'require_finite', 'stamp',
+]
