@@ -9,7 +9,7 @@ from typing import Any
 from genpy import Message
 
 from rosbots_description.ros_api import services  # noqa: F401  registers
-from rosbots_description.ros_api.server import Server
+from rosbots_description.ros_api.server.server import Server
 from rosbots_description.ros_api.services.registry import (
     EXTENSIONS,
     SERVICES,

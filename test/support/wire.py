@@ -7,7 +7,7 @@ from rosbots_description.ros_api.adapters import adapter as adapter_module
 from rosbots_description.ros_api.adapters import drives
 from rosbots_description.ros_api.adapters.adapter import Adapter
 from rosbots_description.ros_api.adapters.registry import topics_of
-from rosbots_description.ros_api.static_frames import StaticFrames
+from rosbots_description.ros_api.server.static_frames import StaticFrames
 
 
 class Wire:

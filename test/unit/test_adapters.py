@@ -18,7 +18,7 @@ from rosbots_description.ros_api.adapters import registry
 from rosbots_description.ros_api.adapters.adapter import Adapter
 from rosbots_description.ros_api.adapters.declarations import Offers, Publishes
 from rosbots_description.ros_api.adapters.registry import Adapters, topics_of
-from rosbots_description.ros_api.static_frames import StaticFrames
+from rosbots_description.ros_api.server.static_frames import StaticFrames
 from rosbots_description.sim.plugins.base import PeriodicPlugin
 from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rosbots_description.ros_api.loop import MAX_LAG, Loop, LoopError
+from rosbots_description.ros_api.server.loop import MAX_LAG, Loop, LoopError
 from rosbots_description.sim.core.errors import NotFoundError
 
 JOIN = 5.0  # [s] for what takes milliseconds; slow machines are no failure
@@ -208,7 +208,7 @@ def test_periodic_tasks_run_also_while_paused(start, paused):
 def clock(monkeypatch):
     """Give the loop a wall clock that only moves when the test says so."""
     clock = SimpleNamespace(now=100.0, monotonic=lambda: clock.now)
-    monkeypatch.setattr('rosbots_description.ros_api.loop.time', clock)
+    monkeypatch.setattr('rosbots_description.ros_api.server.loop.time', clock)
     return clock
 
 

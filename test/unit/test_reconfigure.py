@@ -7,8 +7,8 @@ import pytest
 from dynamic_reconfigure.encoding import Config
 
 from rosbots_description.ros_api import reconfigure
-from rosbots_description.ros_api.loop import LoopError
 from rosbots_description.ros_api.reconfigure import PARAMETERS, PhysicsReconfigure
+from rosbots_description.ros_api.server.loop import LoopError
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 
 

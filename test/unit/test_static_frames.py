@@ -10,7 +10,7 @@ from support.wire import Wire
 from tf2_msgs.msg import TFMessage
 
 from rosbots_description.ros_api.messages.conversions import fill_transform
-from rosbots_description.ros_api.static_frames import StaticFrames, from_root
+from rosbots_description.ros_api.server.static_frames import StaticFrames, from_root
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.runtime.outputs import FrameTransform
 

@@ -24,11 +24,10 @@ from ..sim.meshes import load_readers
 from ..sim.runtime import World
 from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
-from .loop import Loop
 from .master_watch import watch_master
 from .packages import find_model, find_package
 from .performance import advertise_performance
-from .server import Server
+from .server import Loop, Server
 from .services.registry import EXTENSIONS, SERVICES, advertise
 from .state_commands import subscribe_states
 from .topics import advertise_clock, advertise_states

@@ -24,7 +24,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins.drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from ...sim.runtime import FrameTransform
-from ..static_frames import TOPIC as STATIC_FRAMES
+from ..server import TOPIC as STATIC_FRAMES
 from ..transport import reader_names, set_level, subscribers
 from .adapter import Adapter
 from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite

@@ -4,7 +4,7 @@ import logging
 
 from ...sim.runtime import FrameTransform, JointStates
 from ..messages import JointStatesLayout, OdometryLayout, TransformLayout
-from ..static_frames import from_root
+from ..server import from_root
 from .adapter import Adapter
 from .declarations import Pack
 

@@ -5,13 +5,13 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from ..sim.meshes import MeshStore
-from ..sim.physics.bullet import Trials
-from ..sim.resources import FindModel, FindPackage
-from ..sim.runtime import World
+from ...sim.meshes import MeshStore
+from ...sim.physics.bullet import Trials
+from ...sim.resources import FindModel, FindPackage
+from ...sim.runtime import World
+from ..transport import Registrar
 from .loop import Loop
 from .static_frames import StaticFrames
-from .transport import Registrar
 
 
 @dataclass

@@ -10,11 +10,11 @@ from contextlib import AbstractContextManager
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from ..sim.core import SimError
-from ..sim.runtime import NEVER
+from ...sim.core import SimError
+from ...sim.runtime import NEVER
 
 if TYPE_CHECKING:
-    from ..sim.runtime import World
+    from ...sim.runtime import World
 
 logger = logging.getLogger(__name__)
 

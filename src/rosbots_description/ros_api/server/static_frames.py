@@ -15,10 +15,10 @@ from collections.abc import Callable, Mapping
 import rospy
 from tf2_msgs.msg import TFMessage
 
-from ..sim.core import Pose, compose, inverse
-from ..sim.runtime import FrameTransform
+from ...sim.core import Pose, compose, inverse
+from ...sim.runtime import FrameTransform
+from ..messages import read_transform
 from .loop import Loop
-from .messages import read_transform
 
 TOPIC = '/tf_static'
 PERIOD = 0.5  # time between two looks whether who published is still there [s, wall]

@@ -1,0 +1,7 @@
+"""The loop that owns the world, and what services, topics and adapters reach through it."""
+
+from .loop import Loop
+from .server import Server
+from .static_frames import TOPIC, from_root
+
+__all__ = ['TOPIC', 'Loop', 'Server', 'from_root']
