@@ -28,7 +28,7 @@ from .master_watch import watch_master
 from .packages import find_model, find_package
 from .performance import advertise_performance
 from .server import Loop, Server
-from .services.registry import EXTENSIONS, SERVICES, advertise
+from .services import EXTENSIONS, SERVICES, advertise
 from .state_commands import subscribe_states
 from .topics import advertise_clock, advertise_states
 from .transport import (

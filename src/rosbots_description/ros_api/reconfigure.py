@@ -26,7 +26,7 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Vector3
 
 from .server import Server
-from .services.registry import SERVICES, respond
+from .services import SERVICES, respond
 from .transport import NO_MASTER, write_parameters
 
 logger = logging.getLogger(__name__)

@@ -14,7 +14,7 @@ from gazebo_msgs.srv import SetLinkStateRequest, SetModelStateRequest
 from genpy import Message
 
 from .server import Server
-from .services.registry import SERVICES, respond
+from .services import SERVICES, respond
 
 QUEUE = 10  # messages that may wait, as upstream
 

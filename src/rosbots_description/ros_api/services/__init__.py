@@ -1,6 +1,6 @@
 """The services of the node, grouped by what they are about; importing registers them."""
 
-from . import (
+from . import (  # noqa: F401
     joints,
     lights,
     link_properties,
@@ -12,3 +12,6 @@ from . import (
     spawning,
     stepping,
 )
+from .registry import EXTENSIONS, SERVICES, advertise, respond
+
+__all__ = ['EXTENSIONS', 'SERVICES', 'advertise', 'respond']
