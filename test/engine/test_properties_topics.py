@@ -13,7 +13,7 @@ from support.isolation import isolated
 from support.requests import messages
 from support.wire import Wire
 
-from rosbots_description.ros_api import state_commands
+from rosbots_description.ros_api.topics import state_commands
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
 NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood

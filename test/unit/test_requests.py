@@ -12,12 +12,12 @@ from gazebo_msgs.srv import (
 )
 
 from rosbots_description.ros_api.messages.validity import RequestError, require_finite
-from rosbots_description.ros_api.performance import Pace
 from rosbots_description.ros_api.reconfigure import PARAMETERS, settings
 from rosbots_description.ros_api.services.joints import changed_spec, set_joint_properties
 from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties
-from rosbots_description.ros_api.topics import clock_frequency
+from rosbots_description.ros_api.topics.performance import Pace
+from rosbots_description.ros_api.topics.states import clock_frequency
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description.model_spec import JointSpec, ModelSpec

@@ -26,11 +26,9 @@ from . import adapters, services  # noqa: F401  both register what they hold
 from .adapters.registry import Adapters
 from .master_watch import watch_master
 from .packages import find_model, find_package
-from .performance import advertise_performance
 from .server import Loop, Server
 from .services import EXTENSIONS, SERVICES, advertise
-from .state_commands import subscribe_states
-from .topics import advertise_clock, advertise_states
+from .topics import advertise_clock, advertise_performance, advertise_states, subscribe_states
 from .transport import (
     NO_MASTER,
     Outlets,

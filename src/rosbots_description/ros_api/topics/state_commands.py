@@ -13,8 +13,8 @@ from gazebo_msgs.msg import LinkState, ModelState
 from gazebo_msgs.srv import SetLinkStateRequest, SetModelStateRequest
 from genpy import Message
 
-from .server import Server
-from .services import SERVICES, respond
+from ..server import Server
+from ..services import SERVICES, respond
 
 QUEUE = 10  # messages that may wait, as upstream
 

@@ -11,8 +11,8 @@ import time
 import rospy
 from gazebo_msgs.msg import PerformanceMetrics
 
-from .messages import stamp
-from .server import Server
+from ..messages import stamp
+from ..server import Server
 
 PERIOD = 0.2  # [s, wall]
 

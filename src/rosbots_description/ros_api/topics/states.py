@@ -16,11 +16,11 @@ from genpy import Message
 from geometry_msgs.msg import Pose, Twist
 from rosgraph_msgs.msg import Clock
 
-from ..sim.core import NANOSECONDS
-from ..sim.runtime import NEVER, Herald, Hook, Link, Model
-from .messages import fill_pose, fill_twist
-from .server import Server
-from .transport import publish_serialized
+from ...sim.core import NANOSECONDS
+from ...sim.runtime import NEVER, Herald, Hook, Link, Model
+from ..messages import fill_pose, fill_twist
+from ..server import Server
+from ..transport import publish_serialized
 
 logger = logging.getLogger(__name__)
 
