@@ -9,8 +9,9 @@ import pytest
 import rospy
 from support import ROOT
 
-from rosbots_description.ros_api import node, reconfigure
+from rosbots_description.ros_api import node
 from rosbots_description.ros_api.packages import find_model, find_package
+from rosbots_description.ros_api.reconfigure import physics
 from rosbots_description.ros_api.server.loop import Loop
 from rosbots_description.ros_api.server.server import Server
 from rosbots_description.ros_api.world_loading import read_world
@@ -72,7 +73,7 @@ def registered():
             patch.setattr(rospy, name, endpoint(kind))
         for name in ('get_param', 'has_param', 'set_param'):
             patch.setattr(rospy, name, parameter)
-        patch.setattr(reconfigure, 'write_parameters', lambda values: [
+        patch.setattr(physics, 'write_parameters', lambda values: [
             parameter(f'~{name}') for name in values])
         loop = Loop(world)
         registrar = SimpleNamespace(post=loop.post)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 from dynamic_reconfigure.encoding import Config
 
-from rosbots_description.ros_api import reconfigure
-from rosbots_description.ros_api.reconfigure import PARAMETERS, PhysicsReconfigure
+from rosbots_description.ros_api.reconfigure import physics as physics_reconfigure
+from rosbots_description.ros_api.reconfigure.physics import PARAMETERS, PhysicsReconfigure
 from rosbots_description.ros_api.server.loop import LoopError
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 
@@ -50,7 +50,7 @@ def connect(monkeypatch):
         self.config = callback(self.config, -1)
         self.update_topic = SimpleNamespace(publish=lambda _: pytest.fail('nothing to be told'))
 
-    monkeypatch.setattr(reconfigure.ReconfigureServer, '__init__', begin)
+    monkeypatch.setattr(physics_reconfigure.ReconfigureServer, '__init__', begin)
     return PhysicsReconfigure
 
 

@@ -12,7 +12,7 @@ from gazebo_msgs.srv import (
 )
 
 from rosbots_description.ros_api.messages.validity import RequestError, require_finite
-from rosbots_description.ros_api.reconfigure import PARAMETERS, settings
+from rosbots_description.ros_api.reconfigure.physics import PARAMETERS, settings
 from rosbots_description.ros_api.services.joints import changed_spec, set_joint_properties
 from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties

@@ -6,7 +6,7 @@ import pytest
 from dynamic_reconfigure.encoding import Config
 from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_of
 
-from rosbots_description.ros_api import slip_reconfigure
+from rosbots_description.ros_api.reconfigure import wheel_slip
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.core.transforms import from_rpy
 from rosbots_description.sim.description.model_spec import Element
@@ -94,12 +94,12 @@ def test_compliances_can_be_changed_for_all_wheels_and_negative_ones_leave_them(
 
 
 def test_dynamic_reconfigure_hands_its_numbers_to_the_plugin(monkeypatch):
-    monkeypatch.setattr(slip_reconfigure.ReconfigureServer, '__init__',
+    monkeypatch.setattr(wheel_slip.ReconfigureServer, '__init__',
                         lambda self, *_: setattr(self, 'mutex', threading.Lock()))
     plugin = load(wheel())
-    server = slip_reconfigure.SlipReconfigure(plugin, lambda command: command())
+    server = wheel_slip.SlipReconfigure(plugin, lambda command: command())
     server._reconfigure(
-        Config({slip_reconfigure.LATERAL: 3.0, slip_reconfigure.LONGITUDINAL: -1.0}), 0)
+        Config({wheel_slip.LATERAL: 3.0, wheel_slip.LONGITUDINAL: -1.0}), 0)
     assert (plugin.wheels[0].lateral, plugin.wheels[0].longitudinal) == (3.0, 0.25)
 
 

@@ -10,7 +10,7 @@ from .registry import connects
 
 def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
     """Offer the slip compliances; loading the library must not keep the world waiting."""
-    from ..slip_reconfigure import SlipReconfigure  # noqa: PLC0415
+    from ..reconfigure.wheel_slip import SlipReconfigure  # noqa: PLC0415
 
     return SlipReconfigure(adapter.plugin, adapter.server.loop.post).close
 

@@ -25,9 +25,9 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Vector3
 
-from .server import Server
-from .services import SERVICES, respond
-from .transport import NO_MASTER, write_parameters
+from ..server import Server
+from ..services import SERVICES, respond
+from ..transport import NO_MASTER, write_parameters
 
 logger = logging.getLogger(__name__)
 

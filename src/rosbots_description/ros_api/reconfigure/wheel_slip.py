@@ -16,9 +16,9 @@ from collections.abc import Callable
 from dynamic_reconfigure.encoding import Config
 from dynamic_reconfigure.server import Server as ReconfigureServer
 
-from ..sim.plugins.force import WheelSlip
-from .reconfigure import Parameter, description
-from .transport import NO_MASTER
+from ...sim.plugins.force import WheelSlip
+from ..transport import NO_MASTER
+from .physics import Parameter, description
 
 logger = logging.getLogger(__name__)
 
