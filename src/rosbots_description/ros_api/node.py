@@ -23,7 +23,7 @@ from ..sim.description import WorldSpec
 from ..sim.meshes import load_readers
 from ..sim.runtime import World
 from . import adapters, services  # noqa: F401  both register what they hold
-from .adapters.registry import Adapters
+from .adapters import Adapters
 from .master_watch import watch_master
 from .packages import find_model, find_package
 from .server import Loop, Server
