@@ -6,7 +6,7 @@ import pytest
 import rospy
 
 from rosbots_description.ros_api.messages.validity import RequestError
-from rosbots_description.ros_api.view import Camera, line_of_sight
+from rosbots_description.ros_api.views.camera import Camera, line_of_sight
 from rosbots_description.sim.rendering.camera import EYE, TARGET
 
 

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from rosbots_description.ros_api.view_frames import ShownFrames
+from rosbots_description.ros_api.views.frames import ShownFrames
 from rosbots_description.sim.core.transforms import IDENTITY, Pose
 
 

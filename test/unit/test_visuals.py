@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 from visualization_msgs.msg import Marker
 
-from rosbots_description.ros_api.markers import PLANE_DEPTH, visual_marker
-from rosbots_description.ros_api.shading import brightness
-from rosbots_description.ros_api.visuals import REFRESH, ShownMarkers
+from rosbots_description.ros_api.views.markers import PLANE_DEPTH, visual_marker
+from rosbots_description.ros_api.views.shading import brightness
+from rosbots_description.ros_api.views.visuals import REFRESH, ShownMarkers
 from rosbots_description.sim.core.transforms import (
     IDENTITY,
     Pose,

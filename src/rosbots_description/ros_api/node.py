@@ -46,9 +46,9 @@ from .transport import (
     successor,
     wait_for_answers,
 )
-from .view import advertise_view
-from .view_frames import advertise_frames
-from .visuals import advertise_visuals
+from .views.camera import advertise_view
+from .views.frames import advertise_frames
+from .views.visuals import advertise_visuals
 from .world_loading import fill_world, held_records, read_world, replay
 
 logger = logging.getLogger(__name__)

@@ -78,8 +78,8 @@ class Notice:
         import rospy  # noqa: PLC0415  a window seldom needs it
         from visualization_msgs.msg import MarkerArray  # noqa: PLC0415
 
-        from .markers import notice  # noqa: PLC0415
         from .transport import init_node  # noqa: PLC0415
+        from .views.markers import notice  # noqa: PLC0415
 
         if not rospy.core.is_initialized():
             init_node('gzclient_notice', [], anonymous=True, disable_signals=True,

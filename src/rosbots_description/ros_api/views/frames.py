@@ -10,11 +10,11 @@ import rospy
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-from ..sim.core import Pose
-from ..sim.runtime import World
+from ...sim.core import Pose
+from ...sim.runtime import World
+from ..messages import fill_transform
+from ..server import Server
 from .markers import FRAME
-from .messages import fill_transform
-from .server import Server
 from .visuals import PERIOD, Viewers
 
 

@@ -16,11 +16,11 @@ import math
 import rospy
 from sensor_msgs.msg import Image
 
-from ..sim.core import Vector
-from ..sim.rendering import EYE, TARGET, View
-from .messages import RequestError, stamp
-from .server import Server
-from .transport import Registrar
+from ...sim.core import Vector
+from ...sim.rendering import EYE, TARGET, View
+from ..messages import RequestError, stamp
+from ..server import Server
+from ..transport import Registrar
 
 logger = logging.getLogger(__name__)
 

@@ -10,10 +10,10 @@ from typing import Protocol
 import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ..sim.core import Pose, compose
-from ..sim.runtime import Link, Model, World
+from ...sim.core import Pose, compose
+from ...sim.runtime import Link, Model, World
+from ..server import Server
 from .markers import clearance, place, removal, visual_marker
-from .server import Server
 from .shading import shade
 
 PERIOD = 0.04  # time between two looks at the world [s, wall]

@@ -6,9 +6,9 @@ from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..sim.core import Pose, compose
-from ..sim.description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
-from .messages import fill_pose
+from ...sim.core import Pose, compose
+from ...sim.description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from ..messages import fill_pose
 
 FRAME = 'world'
 # Two triangles, counter-clockwise seen from above.

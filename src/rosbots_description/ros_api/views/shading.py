@@ -9,8 +9,8 @@ from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..sim.core import Quaternion, Vector, dot, rotate
-from ..sim.description import Box, Cylinder, Geometry
+from ...sim.core import Quaternion, Vector, dot, rotate
+from ...sim.description import Box, Cylinder, Geometry
 
 SUN: Vector = (0.48, -0.10, 0.87)  # towards it; unit length, from where Gazebo's sun shines
 # A face is this bright across the light; facing it and turned away it is that much more and less.
