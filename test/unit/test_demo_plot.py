@@ -4,7 +4,7 @@ from matplotlib import image
 
 from rosbots_description.cli.demo_plot import plot_path
 from rosbots_description.cli.demo_report import DRIVE
-from rosbots_description.ros_api.planar_sample import PlanarSample
+from rosbots_description.ros_api.clients.planar_sample import PlanarSample
 
 
 def test_each_segment_is_drawn_in_a_colour_of_its_own(tmp_path):

@@ -16,7 +16,7 @@ from rosbots_description.cli.demo_report import (
     steady_motion,
     table,
 )
-from rosbots_description.ros_api.planar_sample import PlanarSample
+from rosbots_description.ros_api.clients.planar_sample import PlanarSample
 
 
 def circle(speed, turn_rate, duration=3.0, step=0.05, heading=3.0):

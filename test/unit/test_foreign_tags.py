@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from rosbots_description.ros_api.model_source import canonical_xml
+from rosbots_description.ros_api.clients.model_source import canonical_xml
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf

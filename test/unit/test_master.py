@@ -7,7 +7,8 @@ import pytest
 import rosgraph
 import rospy
 
-from rosbots_description.ros_api import master_watch, spawn_client
+from rosbots_description.ros_api import master_watch
+from rosbots_description.ros_api.clients import spawn_model
 from rosbots_description.ros_api.transport import master
 from rosbots_description.ros_api.transport.master import (
     AddressError,
@@ -70,7 +71,7 @@ def test_where_no_master_can_be_nobody_waits_for_one(monkeypatch, capsys, addres
     sentence = f"ROS_MASTER_URI is '{address}'; it must be the address of a ROS master"
     with pytest.raises(AddressError, match=sentence):
         require_address()
-    assert spawn_client.run(None, []) == 1
+    assert spawn_model.run(None, []) == 1
     assert capsys.readouterr().err.startswith(f'spawn_model: {sentence}')
 
 

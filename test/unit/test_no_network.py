@@ -78,6 +78,6 @@ def test_a_mesh_file_leads_nowhere_else(tmp_path, name, content, said):
 def test_a_model_of_the_database_is_looked_for_on_the_model_path_only(model):
     code = (
         'import argparse\n'
-        'from rosbots_description.ros_api.spawn_client import _fetch\n'
+        'from rosbots_description.ros_api.clients.spawn_model import _fetch\n'
         f'TEXT = _fetch(argparse.Namespace(file=None, param=None, database={model!r}))\n')
     assert f"'model://{model}' is not to be found along the model path" in run(code + LOAD_SDF)

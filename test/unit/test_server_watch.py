@@ -4,8 +4,8 @@ import socket
 
 import pytest
 
-from rosbots_description.ros_api import server_watch
-from rosbots_description.ros_api.server_watch import ServerWatch
+from rosbots_description.ros_api.clients import server_watch
+from rosbots_description.ros_api.clients.server_watch import ServerWatch
 
 
 @pytest.fixture

@@ -3,8 +3,8 @@
 import pytest
 
 from rosbots_description.cli.spawn_model import parse_arguments
-from rosbots_description.ros_api import spawn_client
-from rosbots_description.ros_api.model_source import (
+from rosbots_description.ros_api.clients import spawn_model
+from rosbots_description.ros_api.clients.model_source import (
     MissingFileError,
     SourceError,
     canonical_xml,
@@ -49,7 +49,7 @@ def test_a_model_of_the_database_is_looked_for_on_the_model_path(tmp_path):
     (tmp_path / 'model.sdf').write_text(
         '<sdf version="1.6"><model name="d"><static>true</static><link name="leaf"/></model></sdf>')
     flags = parse_arguments(['-sdf', '-database', 'door', '-model', 'my_door'])
-    spec, _ = load_sdf(spawn_client._fetch(flags), 'my_door',
+    spec, _ = load_sdf(spawn_model._fetch(flags), 'my_door',
                        find_model={'door': str(tmp_path)}.get)
     assert [link.name for link in spec.links] == ['leaf']
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rosbots_description.ros_api.model_source import canonical_xml
+from rosbots_description.ros_api.clients.model_source import canonical_xml
 from rosbots_description.sim.core.xml_text import plain_text
 from rosbots_description.sim.formats.xml.parser import parse, root_tag
 

@@ -75,7 +75,7 @@ def _run(folder: Path) -> None:
     environment = _private_environment(folder)
     os.environ.update(environment)  # for our own node
     # Late, so that --help answers at once.
-    from ..ros_api.demo_client import DemoClient
+    from ..ros_api.clients.demo import DemoClient
     from .demo_plot import save_picture
     with ExitStack() as stack:
         _say('starting the simulator with an empty world')
@@ -116,7 +116,7 @@ def _private_environment(folder: Path) -> dict[str, str]:
 
 def _spawn(client, log: Path, environment: Mapping[str, str]) -> None:
     """Spawn the robot by its launch file and wait until it stands and listens."""
-    from ..ros_api.demo_client import wait_until
+    from ..ros_api.clients.demo import wait_until
     with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
         done = spawn.wait(_SPAWN)
     if not done or not client.present():

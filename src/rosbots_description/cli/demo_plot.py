@@ -12,7 +12,7 @@ import numpy as np
 matplotlib.use('Agg')  # before pyplot: there may be no display
 from matplotlib import pyplot
 
-from ..ros_api.planar_sample import PlanarSample
+from ..ros_api.clients.planar_sample import PlanarSample
 from .demo_report import Segment
 
 _ARROW = 0.35  # [m] length of the arrow that shows a heading

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..ros_api.planar_sample import PlanarSample
+from ..ros_api.clients.planar_sample import PlanarSample
 
 # What the robot's plugin is told, against the geometry it drives [m].
 _WHEEL_RADIUS, _WHEEL_RADIUS_TOLD = 0.23, 0.26

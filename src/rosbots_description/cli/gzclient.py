@@ -113,7 +113,7 @@ def _end_with_parent() -> None:
 
 def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     """Run the window until it is closed, and say there and here when the simulator has gone."""
-    from ..ros_api.server_watch import ServerWatch  # noqa: PLC0415  only a window needs it
+    from ..ros_api.clients.server_watch import ServerWatch  # noqa: PLC0415  only a window needs it
 
     told: list[int] = []
     window: subprocess.Popen | None = None
@@ -148,7 +148,10 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
 
 def _teller() -> Callable[[bool], None]:
     """Return what tells, here and in the scene, whether there is a simulator."""
-    from ..ros_api.server_watch import NOTICE, Notice  # noqa: PLC0415  only a window needs these
+    from ..ros_api.clients.server_watch import (  # noqa: PLC0415  only a window needs these
+        NOTICE,
+        Notice,
+    )
 
     notice = Notice()
 

@@ -84,5 +84,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     flags = parse_arguments(arguments)
     # Late, so that -h and wrong usage answer at once and without a ROS installation.
-    from ..ros_api import spawn_client
-    return spawn_client.run(flags, arguments)
+    from ..ros_api.clients import spawn_model
+    return spawn_model.run(flags, arguments)

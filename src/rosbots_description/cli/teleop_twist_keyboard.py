@@ -53,8 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
               'launch-prefix="xterm -e".', file=sys.stderr)
         return 1
     # Late, so that the message above needs no ROS.
+    from ..ros_api.clients.velocity_publisher import VelocityPublisher
     from ..ros_api.transport import is_running, own_parameters, start_node
-    from ..ros_api.velocity_publisher import VelocityPublisher
     try:
         start_node('teleop_twist_keyboard', arguments)
         settings = Settings(**own_parameters(vars(Settings())))

@@ -13,8 +13,8 @@ from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
-from ..sim.core import yaw_of
-from ..sim.rendering import EYE, TARGET
+from ...sim.core import yaw_of
+from ...sim.rendering import EYE, TARGET
 from .planar_sample import PlanarSample
 
 _PERIOD = 0.04  # [s] wall time between two looks; every look asks the simulator

@@ -7,7 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.parsers import expat
 
-from ..sim.core import plain_text
+from ...sim.core import plain_text
 
 _MESH_IN_PACKAGE = re.compile(r'(<mesh\b[^<>]*\bfilename\s*=\s*["\'])package://')
 

@@ -19,7 +19,8 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from rosbots_msgs.srv import GetModelOmissions
 from std_srvs.srv import Empty
 
-from ..sim.core import from_rpy
+from ...sim.core import from_rpy
+from ..transport import AddressError, start_node
 from .gazebo_interface import (
     interruptibly,
     set_model_configuration_client,
@@ -27,7 +28,6 @@ from .gazebo_interface import (
     spawn_urdf_model_client,
 )
 from .model_source import MissingFileError, SourceError, canonical_xml, read_file
-from .transport import AddressError, start_node
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 

@@ -13,7 +13,7 @@ import rosgraph
 import rosgraph.names
 from rosgraph.names import resolve_name
 
-from .transport import NO_MASTER
+from ..transport import NO_MASTER
 
 TIMEOUT = 2.0  # for the simulator to take a connection [s, wall]
 NOTICE = 'the simulator has gone'
@@ -78,8 +78,8 @@ class Notice:
         import rospy  # noqa: PLC0415  a window seldom needs it
         from visualization_msgs.msg import MarkerArray  # noqa: PLC0415
 
-        from .transport import init_node  # noqa: PLC0415
-        from .views.markers import notice  # noqa: PLC0415
+        from ..transport import init_node  # noqa: PLC0415
+        from ..views.markers import notice  # noqa: PLC0415
 
         if not rospy.core.is_initialized():
             init_node('gzclient_notice', [], anonymous=True, disable_signals=True,
