@@ -15,7 +15,7 @@ from typing import NamedTuple
 from article import OUTPUT
 
 from rosbots_description.cli import gzserver
-from rosbots_description.ros_api import node
+from rosbots_description.ros_api.node import node
 from rosbots_description.sim.core.clock import NANOSECONDS
 from rosbots_description.sim.runtime.model import Joint
 from rosbots_description.sim.runtime.scheduler import Hook

@@ -9,12 +9,12 @@ import pytest
 import rospy
 from support import ROOT
 
-from rosbots_description.ros_api import node
-from rosbots_description.ros_api.packages import find_model, find_package
+from rosbots_description.ros_api.node import node
+from rosbots_description.ros_api.node.packages import find_model, find_package
+from rosbots_description.ros_api.node.world_loading import read_world
 from rosbots_description.ros_api.reconfigure import physics
 from rosbots_description.ros_api.server.loop import Loop
 from rosbots_description.ros_api.server.server import Server
-from rosbots_description.ros_api.world_loading import read_world
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.plugin_registry.gazebo_libraries import missing_libraries
 from rosbots_description.sim.plugin_registry.registry import known_filenames

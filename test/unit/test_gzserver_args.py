@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rosbots_description.cli.gzserver import main, parser, remarks, split_remappings
-from rosbots_description.ros_api import node
+from rosbots_description.ros_api.node import node
 
 REQUIREMENTS = Path(__file__).resolve().parents[2] / 'requirements.txt'
 

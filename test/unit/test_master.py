@@ -7,8 +7,8 @@ import pytest
 import rosgraph
 import rospy
 
-from rosbots_description.ros_api import master_watch
 from rosbots_description.ros_api.clients import spawn_model
+from rosbots_description.ros_api.node import master_watch
 from rosbots_description.ros_api.transport import master
 from rosbots_description.ros_api.transport.master import (
     AddressError,

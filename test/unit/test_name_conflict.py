@@ -10,7 +10,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 import pytest
 import rosgraph
 
-from rosbots_description.ros_api import node
+from rosbots_description.ros_api.node import node
 from rosbots_description.ros_api.transport import name_conflict
 from rosbots_description.ros_api.transport.name_conflict import (
     Holder,

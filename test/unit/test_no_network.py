@@ -20,7 +20,7 @@ def forbid(event, arguments):
 sys.addaudithook(forbid)
 """
 LOAD_URDF = 'from rosbots_description.sim.formats.urdf.urdf import load_urdf; load_urdf(TEXT, "m")'
-LOAD_SDF = ('from rosbots_description.ros_api.packages import find_model, find_package; '
+LOAD_SDF = ('from rosbots_description.ros_api.node.packages import find_model, find_package; '
             'from rosbots_description.sim.formats.sdf.sdf import load_sdf; '
             'load_sdf(TEXT, "m", find_model=find_model, find_package=find_package)')
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'

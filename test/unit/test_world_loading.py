@@ -6,8 +6,13 @@ import os
 import pytest
 from support import ROOT
 
-from rosbots_description.ros_api import packages
-from rosbots_description.ros_api.world_loading import held_records, own_worlds, read_world, replay
+from rosbots_description.ros_api.node import packages
+from rosbots_description.ros_api.node.world_loading import (
+    held_records,
+    own_worlds,
+    read_world,
+    replay,
+)
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 
 EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'

@@ -148,10 +148,7 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
 
 def _teller() -> Callable[[bool], None]:
     """Return what tells, here and in the scene, whether there is a simulator."""
-    from ..ros_api.clients.server_watch import (  # noqa: PLC0415  only a window needs these
-        NOTICE,
-        Notice,
-    )
+    from ..ros_api.clients.server_watch import NOTICE, Notice
 
     notice = Notice()
 

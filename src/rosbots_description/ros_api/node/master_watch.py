@@ -17,8 +17,8 @@ from rospy.impl.registration import (
     get_topic_manager,
 )
 
-from .server import Server
-from .transport import NO_MASTER
+from ..server import Server
+from ..transport import NO_MASTER
 
 logger = logging.getLogger(__name__)
 

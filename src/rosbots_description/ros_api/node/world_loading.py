@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..sim.core import NotFoundError
-from ..sim.description import WorldSpec
-from ..sim.formats.sdf import open_world, populate
-from ..sim.resources import find_world, path_directories
-from ..sim.runtime import World
+from ...sim.core import NotFoundError
+from ...sim.description import WorldSpec
+from ...sim.formats.sdf import open_world, populate
+from ...sim.resources import find_world, path_directories
+from ...sim.runtime import World
 from .packages import exported_directories, find_model, find_package
 
-_OWN = Path(__file__).resolve().parents[1]  # holds worlds/, wherever this library is installed
+_OWN = Path(__file__).resolve().parents[2]  # holds worlds/, wherever this library is installed
 _LIBRARY = __name__.partition('.')[0]
 
 

@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 
 import rospkg
 
-from ..sim.core import NotFoundError
-from ..sim.resources import ModelSearch, path_directories
+from ...sim.core import NotFoundError
+from ...sim.resources import ModelSearch, path_directories
 
 _MANIFESTS = ('manifest.xml', 'package.xml')  # of a package; the first one there is counts
 

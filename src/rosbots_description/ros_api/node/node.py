@@ -19,17 +19,15 @@ from dataclasses import dataclass
 import rosgraph
 import rospy
 
-from ..sim.description import WorldSpec
-from ..sim.meshes import load_readers
-from ..sim.runtime import World
-from . import adapters, services  # noqa: F401  both register what they hold
-from .adapters import Adapters
-from .master_watch import watch_master
-from .packages import find_model, find_package
-from .server import Loop, Server
-from .services import EXTENSIONS, SERVICES, advertise
-from .topics import advertise_clock, advertise_performance, advertise_states, subscribe_states
-from .transport import (
+from ...sim.description import WorldSpec
+from ...sim.meshes import load_readers
+from ...sim.runtime import World
+from .. import adapters, services  # noqa: F401  both register what they hold
+from ..adapters import Adapters
+from ..server import Loop, Server
+from ..services import EXTENSIONS, SERVICES, advertise
+from ..topics import advertise_clock, advertise_performance, advertise_states, subscribe_states
+from ..transport import (
     NO_MASTER,
     Outlets,
     Registrar,
@@ -46,9 +44,11 @@ from .transport import (
     successor,
     wait_for_answers,
 )
-from .views.camera import advertise_view
-from .views.frames import advertise_frames
-from .views.visuals import advertise_visuals
+from ..views.camera import advertise_view
+from ..views.frames import advertise_frames
+from ..views.visuals import advertise_visuals
+from .master_watch import watch_master
+from .packages import find_model, find_package
 from .world_loading import fill_world, held_records, read_world, replay
 
 logger = logging.getLogger(__name__)
@@ -172,7 +172,7 @@ def _use_simulated_time() -> None:
 
 def _advertise_reconfigure(server: Server) -> None:
     """Offer dynamic_reconfigure last; loading its library must not keep the world waiting."""
-    from .reconfigure.physics import advertise_reconfigure  # noqa: PLC0415
+    from ..reconfigure.physics import advertise_reconfigure  # noqa: PLC0415
 
     advertise_reconfigure(server)
 
