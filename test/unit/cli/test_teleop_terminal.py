@@ -14,7 +14,7 @@ import pytest
 from rosbots_description.cli.key_terminal import read_key, single_keys
 from rosbots_description.cli.teleop_twist_keyboard import Settings
 
-SOURCE = Path(__file__).resolve().parents[2] / 'src'
+SOURCE = Path(__file__).resolve().parents[3] / 'src'
 
 
 def _always():

@@ -12,7 +12,7 @@ from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.description.inertia import tensor
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[5]
 BALL = '<geometry><sphere radius="1"/></geometry>'
 
 
