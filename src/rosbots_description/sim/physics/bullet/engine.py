@@ -1,8 +1,5 @@
 """The physics engine: specs and names in, plain values out.
 
-This module, body_maker.py, fast_rotation.py, contact_slip.py, springs.py, collision_filter.py and canvas.py
-alone know PyBullet.
-
 PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
 frame; its quaternions are (x, y, z, w) like ours; its defaults (damping, motors on every joint, a
 cap on joint speed) are switched off, so that bodies move as rigid-body mechanics has it.
