@@ -93,8 +93,8 @@ def test_every_format_gives_the_same_triangle(write, name, content):
 
 def test_what_reads_collada_is_loaded_ahead_and_not_before():
     program = (
-        'import sys; from rosbots_description.sim import meshes, mesh_reading; '
-        "before = 'collada' in sys.modules; mesh_reading.load_readers(); "
+        'import sys; from rosbots_description.sim.meshes import loader; '
+        "before = 'collada' in sys.modules; loader.load_readers(); "
         "sys.exit(before or 'collada' not in sys.modules)"
     )
     subprocess.run([sys.executable, '-c', program], check=True, timeout=30,
