@@ -111,7 +111,8 @@ def test_steps_made_together_are_the_same_to_the_bit_as_single_ones(together):
                 robot.joint('wheel_left_joint').push(0.5)
                 for _ in range(120 // run):
                     world.run(run)
-            seen.append([*world.engine.coordinates(robot.body)])
+            parts = [*robot.links.values(), *robot.joints.values()]
+            seen.append([part.state() for part in parts])
     assert seen[0] == seen[1]
 
 
