@@ -18,7 +18,8 @@ logger = logging.getLogger(__name__)
 class ModelPlugin(Plugin):
     """Code that lives with a model: load, run in the steps it asks for, reset, unload.
 
-    A subclass reads its tags from `params` in `load`. `outputs` has by name what it gives out.
+    A subclass reads its tags from `params` in `load`. `outputs` has by name what it gives out;
+    `is_read` tells whether anybody reads any of it.
     """
 
     prefix = ''  # how its log lines begin; {} stands for the namespace
@@ -37,6 +38,7 @@ class ModelPlugin(Plugin):
         self.log_prefix = self.params.prefix = self.prefix.format(self.namespace)
         self.outputs: dict[str, Output] = {}
         self._all_outputs: list[Output] = []
+        self.is_read = False
 
     def find_namespace(self, given: str | None) -> str:
         """Return the namespace of its topics for the text of <robotNamespace>, None if absent."""
@@ -64,11 +66,15 @@ class ModelPlugin(Plugin):
 
     def output(self, name: str, asked_for: bool = True) -> Output:
         """Return a new output; if the description asks for it, it has a place in `outputs`."""
-        made = Output(self.readers_changed)
+        made = Output(self._count_readers)
         self._all_outputs.append(made)
         if asked_for:
             self.outputs[name] = made
         return made
+
+    def _count_readers(self) -> None:
+        self.is_read = any(output.wanted for output in self._all_outputs)
+        self.readers_changed()
 
     def readers_changed(self) -> None:
         """Take note that an output has its first reader, or lost its last one."""
@@ -111,7 +117,10 @@ class PeriodicPlugin(ModelPlugin):
         """Act before physics; the last time was `elapsed` [s] ago."""
 
     def report(self) -> None:
-        """Send readings of the state at the end of the step, which is that at its stamp."""
+        """Send readings of the state at the end of the step, which is that at its stamp.
+
+        It is called only if somebody reads an output.
+        """
 
     def before_each_step(self, now_ns: int) -> None:
         """Act before physics in every step, at the time `now_ns` [ns]."""
@@ -140,6 +149,7 @@ class PeriodicPlugin(ModelPlugin):
             self.before_each_step(now_ns)
         elapsed_ns = now_ns - self._last_ns
         self._reports = elapsed_ns >= self._period_ns + self.later
+        self.watches = self.every_step or (self._reports and self.is_read)
         if self._reports:
             self.update(elapsed_ns / NANOSECONDS)
             keeps = self._period_ns and self.keeps_rate
@@ -150,7 +160,7 @@ class PeriodicPlugin(ModelPlugin):
         """Do what is due after physics."""
         if self.every_step:
             self.after_each_step(self.world.clock.now_ns)
-        if self._reports:
+        if self._reports and self.is_read:
             self.report()
 
     def readers_changed(self) -> None:
@@ -164,7 +174,7 @@ class PeriodicPlugin(ModelPlugin):
 
     def _set_due(self) -> None:
         clock = self.world.clock
-        if not (self._acts or any(output.wanted for output in self._all_outputs)):
+        if not (self._acts or self.is_read):
             self.due = NEVER
         elif self.every_step:
             self.due = clock.steps + 1

@@ -15,17 +15,19 @@ class Hook:
     """Something that runs at certain steps, before and after physics.
 
     `due` is the count of the step in which it runs next. Set it in `before_step`, or from outside
-    between two runs of the world, on the thread that owns the world.
+    between two runs of the world, on the thread that owns the world. `watches`, set there too, is
+    whether `after_step` is to be called; else this step and those that follow may be made in one.
     """
 
     due = NEVER
+    watches = False
 
     def before_step(self) -> None:
         """Do what comes before physics, after time has advanced, and set the next `due`."""
         raise NotImplementedError
 
     def after_step(self) -> None:
-        """Do what comes after physics, in a step whose `before_step` did not fail."""
+        """Do what comes after physics, if the hook watches and `before_step` did not fail."""
 
 
 class Herald:
@@ -77,16 +79,24 @@ class Schedule:
         """Return the earliest step count at which a hook wants to run."""
         return min([hook.due for hook in self._hooks], default=NEVER)
 
-    def run(self, step: int, physics: Callable[[], None]) -> None:
-        """Make one step: every hook that is due at `step` or before, physics, the hooks again.
+    def run(self, step: int, last: int, physics: Callable[[int], None]) -> int:
+        """Make one step: every hook that is due at `step` or before, physics, those that watch.
 
-        A hook that fails is told of in the log and left out for a while; the others go on.
+        If none watches, steps of which no hook is due follow in the same call of `physics(steps)`,
+        up to `last`. A hook that fails is told of in the log and left out for a while; the others
+        go on.
+
+        Returns:
+            how many steps were made.
         """
         due = [hook for hook in self._hooks if hook.due <= step]
         done = [hook for hook in due if _tried(hook, hook.before_step, step)]
-        physics()
-        for hook in done:
+        watching = [hook for hook in done if hook.watches]
+        steps = 1 if watching else max(1, min(self.next_due() - 1, last) - step + 1)
+        physics(steps)
+        for hook in watching:
             _tried(hook, hook.after_step, step)
+        return steps
 
     def change_step(self, now: int, ratio: Fraction) -> None:
         """Keep all due at their time, now that steps last `ratio` times as long.

@@ -5,7 +5,6 @@ import logging
 import os
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import partial
 from typing import Protocol
 
 from ..core import (
@@ -112,7 +111,7 @@ class World:
                 engine.step(quiet)
             else:
                 clock.steps += 1
-                schedule.run(clock.steps, partial(engine.step, 1))
+                clock.steps += schedule.run(clock.steps, end, engine.step) - 1
         if begin + steps > last:
             self.paused = True
             logger.error('the simulation is paused at %d s: stamps of 32 bits end there. '

@@ -61,7 +61,7 @@ def test_hooks_run_in_the_order_they_were_added():
     schedule.add(Every(2, log, 'a'))
     schedule.add(Every(1, log, 'b'))
     for step in range(1, 5):
-        schedule.run(step, lambda: None)
+        schedule.run(step, step, lambda _: None)
     assert log == [(1, 'b'), (2, 'a'), (2, 'b'), (3, 'b'), (4, 'a'), (4, 'b')]
 
 
@@ -102,12 +102,14 @@ def test_a_hook_runs_before_and_after_the_physics_of_the_step_in_which_it_is_due
     log, schedule = [], Schedule()
 
     class Reporter(Every):
+        watches = True
+
         def after_step(self):
             log.append('after')
 
     schedule.add(Reporter(2, log, 'update'))
     for step in (1, 2, 3):
-        schedule.run(step, lambda: log.append('physics'))
+        schedule.run(step, step, lambda _: log.append('physics'))
     assert [entry if isinstance(entry, str) else 'before' for entry in log] == [
         'physics', 'before', 'physics', 'after', 'physics']
 
@@ -117,7 +119,7 @@ def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):
     schedule.add(broken)
     schedule.add(Every(1, log, 'a'))
     for step in range(1, 2 + LEFT_OUT):
-        schedule.run(step, lambda: None)
+        schedule.run(step, step, lambda _: None)
     assert len(log) == 1 + LEFT_OUT
     assert broken.runs == 2
     assert [r.getMessage() for r in caplog.records] == [

@@ -25,7 +25,7 @@ from .tuning import Tuning
 # What is asked for beyond these comes out as these. Squares of greater numbers overflow, and then
 # whatever a body touches is no number any more either, the ground first.
 _ANY_FORCE = 1e15  # [N or N m]
-_TOGETHER = 8  # steps in one call, which costs less than a call each
+_TOGETHER = 20  # steps in one call, which costs less than a call each
 # Squared velocity [m^2/s^2] by which no contact or motor changes in the solver's last iteration.
 # PyBullet's own 1e-7 leaves a robot that is parked on a slope 0.01 mm/s.
 _CONVERGED = 1e-8
@@ -102,6 +102,7 @@ class Engine:
         )
         self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.passes)))
         self._physics = physics
+        self._together = _divisible(physics.step_size, _TOGETHER)
 
     def _reach(self, direction: Vector) -> float:
         """Return how many times its limit friction can hold in a level direction, a unit vector."""
@@ -140,11 +141,15 @@ class Engine:
         """Make steps in which the same bodies are fast."""
         step, client, fast = self._step, self._client, self._fast
         is_sprung = bool(self._springs)
-        if not (fast or is_sprung or self._weightless or self._slipping.links or self._pushed):
-            while steps >= _TOGETHER:
-                self._step_together(_TOGETHER)
-                steps -= _TOGETHER
+        if self._pushed and steps > 1:  # a push lasts as long as a call of PyBullet
+            self._step_alike(1)
+            steps -= 1
         self._pushed = False
+        if not (fast or is_sprung or self._weightless or self._slipping.links):
+            while steps > 1:
+                together = self._together[min(steps, _TOGETHER)]
+                self._step_together(together)
+                steps -= together
         for _ in repeat(None, steps):
             if self._weightless:
                 self._lift_weightless()
@@ -157,10 +162,7 @@ class Engine:
                 fast.after_step()
 
     def _step_together(self, steps: int) -> None:
-        """Make so many steps in one call, a power of two: then their sizes add up exactly.
-
-        Pushes last as long as a call, and motors are to be set with the size of a single step.
-        """
+        """Make so many steps in one call; motors are to be set with the size of a single step."""
         size, client = self._physics.step_size, self._client
         resize = pybullet.setPhysicsEngineParameter
         resize(fixedTimeStep=steps * size, numSubSteps=steps, physicsClientId=client)
@@ -416,3 +418,17 @@ def _at_most(vector: Vector, most: float) -> Vector:
     """Return a vector none of whose components is greater than `most`, to either side."""
     x, y, z = (max(min(component, most), -most) for component in vector)  # NaN stays
     return (x, y, z)
+
+
+def _divisible(step_size: float, most: int) -> list[int]:
+    """Return for each number of steps, up to `most`, as many of them as PyBullet makes in one call.
+
+    It divides the duration of all by their number, and makes as many of that size as fit. So both
+    quotients must be exact, as they are of powers of two.
+    """
+    found = [0, 1]
+    for steps in range(2, most + 1):
+        duration = steps * step_size
+        exact = duration / steps == step_size and duration / step_size == steps
+        found.append(steps if exact else found[-1])
+    return found
