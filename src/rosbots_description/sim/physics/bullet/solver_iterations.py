@@ -7,7 +7,7 @@ parked.
 
 from collections.abc import Callable, Iterable
 
-CHECK = 20  # steps between two looks at the motors
+CHECK = 40  # steps between two looks at the motors
 # Share of its target by which a motor may miss it on each level but the last. The least number of
 # iterations costs least and may miss by more; who needs more of them anyway gets enough.
 MISSED = (0.04, 0.015)
@@ -15,9 +15,9 @@ REACHED = 0.005  # fewer will do
 SLOWEST = 0.05  # [rad/s or m/s] targets below count as this
 STILL = 0.0025  # [rad/s or m/s] what a target of 0 counts as: who is parked is not to creep
 SATURATED = 0.99  # share of its effort from which on a motor does what it can
-SMOOTHING = 0.1  # weight of a look in the mean
+SMOOTHING = 0.2  # weight of a look in the mean
 FACTOR = 4  # between two levels
-PATIENCE, MOST_PATIENCE = 8, 512  # looks before fewer iterations are tried, at first and at most
+PATIENCE, MOST_PATIENCE = 4, 256  # looks before fewer iterations are tried, at first and at most
 
 Motor = tuple[float, float, float, float]  # velocity, its target, effort, its limit
 

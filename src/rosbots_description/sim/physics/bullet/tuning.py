@@ -14,7 +14,7 @@ class Tuning:
         push_out: rate at which overlapping bodies are pushed apart [1/s].
     """
 
-    passes: float = 0.22
+    passes: float = 0.18
     friction_cone: bool = False
     exact_cylinders: bool = True
     push_out: float = 10.0
