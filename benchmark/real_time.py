@@ -8,10 +8,10 @@ starts: whatever else the machine does can only add. The rest is printed as it i
 
 from __future__ import annotations
 
-import resource
 import statistics
 import sys
 import time
+from contextlib import closing
 from dataclasses import replace
 from itertools import cycle
 
@@ -24,8 +24,8 @@ from lateness import STEP, report
 from loops import Loop
 from server import Server, in_a_process_of_its_own
 
-from rosbots_description.sim.physics.bullet.crash_sandbox import Trials
-from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
+from rosbots_description.sim.core.transforms import Pose as SpawnPose
+from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
 from rosbots_description.sim.runtime.world import World
 
 WINDOW = 3.0  # [s, wall]
@@ -101,27 +101,24 @@ def measure_start(roscore: bool) -> tuple[float, float]:
 
 
 def measure_trials() -> None:
-    """Print how long robots that are new to the server are tried before they come in."""
-    robot, world = robot_spec(), World()
-    trials = Trials(world.engine.emptied)
-    files = {(mesh, exact): world.meshes.collision_hull(mesh.path, mesh.scale)
-             for mesh, exact in mesh_needs(robot)}
-    times, computing = [], []
-    for i in range(SPAWNS):
-        other = replace(robot.joints[0], damping=0.01 * i)
-        used, begin = _computed_by_children(), time.monotonic()
-        trials.require(replace(robot, joints=(other, *robot.joints[1:])), files)
-        times.append(time.monotonic() - begin)
-        computing.append(_computed_by_children() - used)
-    world.close()
-    print_times('trial of a robot that is new', times, '150 ms')
-    print_times('its processor time', computing, '150 ms')
-
-
-def _computed_by_children() -> float:
-    """Return the processor time of all child processes that have ended [s]."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
+    """Print how long the steps of a spawn take for robots that are new to the server."""
+    robot = robot_spec()
+    compiling, trials, adding = [], [], []
+    with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
+        for i in range(SPAWNS):
+            other = replace(robot.joints[0], damping=0.01 * i)
+            begin = time.monotonic()
+            model = world.compile(replace(robot, joints=(other, *robot.joints[1:])))
+            compiled = time.monotonic()
+            sandbox.require(model, world.physics)
+            tried = time.monotonic()
+            world.spawn(model, f'robot{i}', SpawnPose((0.0, 10.0 * i, 0.5)))
+            adding.append(time.monotonic() - tried)
+            trials.append(tried - compiled)
+            compiling.append(compiled - begin)
+    print_times('compiling a robot that is new', compiling, '20 ms')
+    print_times('its trial in the crash sandbox', trials, '150 ms')
+    print_times('adding it, while the world waits', adding, '20 ms')
 
 
 def print_times(what: str, times: list[float], aim: str) -> None:

@@ -16,12 +16,15 @@ DOOM = 'doom'  # a model with a link of this name crashes the engine
 SLUMBER = 'slumber'  # and one with a link of this name keeps it waiting
 
 
-def add(engine, spec, pose, _add=Engine.add):
-    if spec.link(DOOM):
+def add(engine, model, pose, _add=Engine.add):
+    if model.spec.link(DOOM):
         os.kill(os.getpid(), signal.SIGSEGV)
-    if spec.link(SLUMBER):
-        time.sleep(100.0)
-    return _add(engine, spec, pose)
+    while model.spec.link(SLUMBER):
+        time.sleep(0.4)
+        end = time.process_time() + 0.02  # it counts as awake, and lasts for 40 s
+        while time.process_time() < end:
+            pass
+    return _add(engine, model, pose)
 
 
 if __name__ == '__main__':

@@ -79,6 +79,11 @@ class ServerProcess:
             except (FileNotFoundError, ProcessLookupError):
                 pass  # a thread has ended, and another one has its children now
 
+    def trials(self):
+        """Return the ids of the processes in which models are tried now."""
+        return [pid for child in self.children()
+                for pid in Path(f'/proc/{child}/task/{child}/children').read_text().split()]
+
     def end(self):
         """End it as Ctrl-C does; return its exit code and what it printed."""
         self.process.send_signal(signal.SIGINT)

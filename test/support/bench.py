@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from io import BytesIO
 from types import SimpleNamespace
 from typing import Any
@@ -17,8 +18,12 @@ from rosbots_description.ros_api.services.registry import (
     respond,
 )
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.description.world_spec import LightSpec
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
+from rosbots_description.sim.meshes.store import MeshStore
+from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
+from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.runtime.world import World
 
 from . import SPAWN_POSE, box_urdf, empty_world, package_directory, robot_spec, urdf_spec
@@ -50,7 +55,8 @@ class Bench:
         registrar = SimpleNamespace(wait=lambda _deadline: True)
         loop = SimpleNamespace(
             **dict.fromkeys(('call', 'post', 'beside'), lambda command: command()))
-        self.server = Server(world, loop, registrar, package_directory, lambda _inner: None)
+        self.server = Server(
+            world, loop, registrar, package_directory, lambda _inner: None, _sandbox())
 
     def call(self, name: str, request: Message) -> Any:
         """Return the response, or None for a call that failed with a sentence."""
@@ -69,6 +75,12 @@ class Bench:
     def names(self) -> list[str]:
         """Return the models that there are, in world order."""
         return list(self.world.models)
+
+
+@cache
+def _sandbox() -> CrashSandbox:
+    """Return one for all tests of this process."""
+    return CrashSandbox(Engine(PhysicsSettings(), MeshStore()))
 
 
 @contextmanager

@@ -1,7 +1,10 @@
 """A physics engine whose motors obey at once, whose joints turn, and whose bodies stay put."""
 
+import math
+
 from rosbots_description.sim.core.transforms import NO_ROTATION, Twist, compose
 from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
+from rosbots_description.sim.physics.bullet.compiled_model import CompiledModel
 from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
 
 
@@ -23,8 +26,11 @@ class FakeEngine:
     def apply(self, physics):
         self.step_size = physics.step_size
 
-    def add(self, spec, pose):
-        body = Body()
+    def compile(self, spec):
+        return CompiledModel(spec, (), (), 0)
+
+    def add(self, model, pose):
+        body, spec = Body(model.size), model.spec
         body.spec, body.pose, body.twist = spec, pose, Twist()
         body.roots = [spec.links[0].name]
         body.joints = {joint.name: (0, index) for index, joint in enumerate(spec.joints)}
@@ -52,8 +58,8 @@ class FakeEngine:
                 for _ in range(steps):
                     state[0] += state[1] * self.step_size
 
-    def coordinates(self, body):
-        return (*body.pose.position, *body.twist.linear)
+    def has_diverged(self, body):
+        return not all(map(math.isfinite, (*body.pose.position, *body.twist.linear)))
 
     def link_pose(self, body, link):
         return compose(body.pose, body.spec.link(link).pose)

@@ -42,7 +42,7 @@ ARROWS = {
     'ros_api/transport': 'sim sim/core',
     'ros_api/messages': 'sim',
     'ros_api/server': 'sim ros_api/transport ros_api/messages',
-    'ros_api/services': 'sim ros_api/server ros_api/messages',
+    'ros_api/services': 'sim ros_api/server ros_api/messages ros_api/transport',
     'ros_api/topics': 'sim ros_api/server ros_api/messages ros_api/transport ros_api/services',
     'ros_api/reconfigure': 'sim ros_api/server ros_api/transport ros_api/services',
     'ros_api/adapters':
@@ -60,13 +60,11 @@ ARROWS = {
 TO_BE_CUT = {
     'sim/resources': 'sim/formats/xml',
     'sim/meshes': 'sim/formats/xml',
-    'sim/formats/kinematics': 'sim/physics/bullet',
-    'sim/formats/urdf': 'sim/physics/bullet',
-    'sim/formats/sdf': 'sim/formats/urdf sim/physics/bullet sim/runtime',
-    'sim/runtime': 'sim/resources sim/meshes sim/physics/bullet',
+    'sim/formats/sdf': 'sim/formats/urdf sim/runtime',
+    'sim/runtime': 'sim/meshes sim/physics/bullet',
     'sim/plugins/force': 'sim/physics/bullet',
     'ros_api/messages': 'sim/core sim/runtime',
-    'ros_api/server': 'sim/core sim/resources sim/meshes sim/physics/bullet sim/runtime',
+    'ros_api/server': 'sim/core sim/resources sim/physics/bullet sim/runtime',
     'ros_api/services':
         'sim/core sim/description sim/resources sim/formats/xml sim/formats/urdf '
         'sim/formats/sdf sim/physics/bullet sim/runtime',
@@ -75,7 +73,9 @@ TO_BE_CUT = {
     'ros_api/adapters': 'sim/core sim/runtime sim/plugins/drive sim/plugins/force',
     'ros_api/views': 'sim/core sim/description sim/runtime sim/rendering',
     'ros_api/clients': 'sim/core sim/rendering',
-    'ros_api/node': 'sim/core sim/description sim/resources sim/meshes sim/formats/sdf sim/runtime',
+    'ros_api/node':
+        'sim/core sim/description sim/resources sim/meshes sim/formats/sdf sim/physics/bullet '
+        'sim/runtime',
 }
 
 

@@ -77,7 +77,7 @@ def registered():
             parameter(f'~{name}') for name in values])
         loop = Loop(world)
         registrar = SimpleNamespace(post=loop.post)
-        server = Server(world, loop, registrar, find_package, find_model)
+        server = Server(world, loop, registrar, find_package, find_model, None)
         node._connect(server, read_world('worlds/empty.world'))
         loop.run(steps=2)
     return names

@@ -14,6 +14,7 @@ import signal
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 
 import rosgraph
@@ -21,6 +22,7 @@ import rospy
 
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
+from ...sim.physics.bullet import CrashSandbox
 from ...sim.runtime import World
 from .. import adapters, services  # noqa: F401  both register what they hold
 from ..adapters import Adapters
@@ -91,19 +93,23 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
     with held_records() as records:
         spec = read_world(options.world)
     try:
-        _wait_for_master()
-        _take_name(node_name(NAME, ros_arguments), options.replace)
-        guard_handshakes()
-        guard_messages()
-        outlets = Outlets()
-        outlets.serve_publishers()
-        init_node(
-            NAME,
-            ros_arguments,
-            disable_signals=True,  # the loop is stopped between two steps
-            disable_rostime=True,  # see log_bridge
-        )
-        _simulate(options, spec, records, outlets)
+        # The sandbox is a copy of this process before there are threads and connections.
+        with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
+            _wait_for_master()
+            _take_name(node_name(NAME, ros_arguments), options.replace)
+            guard_handshakes()
+            guard_messages()
+            outlets = Outlets()
+            outlets.serve_publishers()
+            init_node(
+                NAME,
+                ros_arguments,
+                disable_signals=True,  # the loop is stopped between two steps
+                disable_rostime=True,  # see log_bridge
+            )
+            loop = Loop(world, outlets.gathered)
+            server = Server(world, loop, Registrar(), find_package, find_model, sandbox)
+            _simulate(options, spec, records, server)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         return 0
     finally:
@@ -112,30 +118,25 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
 
 
 def _simulate(
-    options: Options, spec: WorldSpec, records: list[logging.LogRecord], outlets: Outlets
+    options: Options, spec: WorldSpec, records: list[logging.LogRecord], server: Server
 ) -> None:
-    world = World()
-    try:
-        loop = Loop(world, outlets.gathered)
-        _on_signals(lambda _signal, _frame: loop.stop())
-        rospy.on_shutdown(lambda: _end(loop))
-        connect_logging(lambda: world.clock.now_ns)
-        if options.verbose:
-            set_level('debug')
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        for level, text in options.remarks:
-            logger.log(level, '%s', text)
-        replay(records)
-        world.paused = options.paused
-        server = Server(world, loop, Registrar(), find_package, find_model)
-        _connect(server, spec)
-        watch_master(server)
-        gc.freeze()  # else each full collection looks at all modules, for tens of steps
-        gc.collect()  # else the next waits until a quarter of all those objects has come anew
-        loop.run(options.steps)
-        wait_for_answers(LAST_ANSWERS)
-    finally:
-        world.close()
+    world, loop = server.world, server.loop
+    _on_signals(lambda _signal, _frame: loop.stop())
+    rospy.on_shutdown(lambda: _end(loop))
+    connect_logging(lambda: world.clock.now_ns)
+    if options.verbose:
+        set_level('debug')
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    for level, text in options.remarks:
+        logger.log(level, '%s', text)
+    replay(records)
+    world.paused = options.paused
+    _connect(server, spec)
+    watch_master(server)
+    gc.freeze()  # else each full collection looks at all modules, for tens of steps
+    gc.collect()  # else the next waits until a quarter of all those objects has come anew
+    loop.run(options.steps)
+    wait_for_answers(LAST_ANSWERS)
 
 
 def _connect(server: Server, spec: WorldSpec) -> None:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import AbstractContextManager
+from contextvars import copy_context
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
@@ -88,12 +89,15 @@ class Loop:
     def beside(self, work: Callable[[], Any]) -> Any:
         """Return `work()`, or raise its exception; it has a thread of its own, beside the steps.
 
+        The caller's context variables are there, too.
+
         Raises:
             LoopError: the simulator is shutting down; nobody waits for the work any more.
 
         """
         future: Future = Future()
-        threading.Thread(target=_carry_out, args=(future, work), name='beside', daemon=True).start()
+        threading.Thread(target=copy_context().run, args=(_carry_out, future, work), name='beside',
+                         daemon=True).start()
         wait((future, self._ended), return_when=FIRST_COMPLETED)
         if not future.done():
             raise LoopError(_CLOSING)

@@ -5,8 +5,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from ...sim.meshes import MeshStore
-from ...sim.physics.bullet import Trials
+from ...sim.physics.bullet import CrashSandbox
 from ...sim.resources import FindModel, FindPackage
 from ...sim.runtime import World
 from ..transport import Registrar
@@ -23,20 +22,12 @@ class Server:
     registrar: Registrar
     find_package: FindPackage
     find_model: FindModel
-    trials: Trials = field(init=False)  # of models that ask to come in
+    sandbox: CrashSandbox
     static_frames: StaticFrames = field(default_factory=StaticFrames)  # of other nodes
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)
     parameters: list[Callable[[], None]] = field(default_factory=list)  # write those that are ours
     stepping: threading.Lock = field(default_factory=threading.Lock)  # one caller of step at a time
-
-    def __post_init__(self) -> None:
-        self.trials = Trials(self.world.engine.emptied)
-
-    @property
-    def meshes(self) -> MeshStore:
-        """The world's mesh files, the one part of it that any thread may use."""
-        return self.world.meshes
 
     def physics_changed(self) -> None:
         """Tell those who show the physics settings that a service has changed them."""

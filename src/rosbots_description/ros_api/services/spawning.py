@@ -16,11 +16,12 @@ from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats.sdf import load_sdf, load_sdf_light
 from ...sim.formats.urdf import load_urdf
 from ...sim.formats.xml import root_tag
-from ...sim.physics.bullet import mesh_needs
-from ...sim.resources import HeldFile, UnknownPackage
+from ...sim.physics.bullet import CompiledModel
+from ...sim.resources import UnknownPackage
 from ...sim.runtime import Model, World
 from ..messages import read_pose
 from ..server import Server
+from ..transport import caller_waits
 from .registry import EXTENSIONS, CallError, refuse, service
 
 logger = logging.getLogger(__name__)
@@ -47,10 +48,9 @@ class _Arrival:
     """A model that only has to be put into the world; `pose` is given in the frame `frame`."""
 
     name: str
-    spec: ModelSpec
+    model: CompiledModel
     pose: Pose
     frame: str
-    files: tuple[HeldFile, ...]  # held until the world holds them
 
 
 def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnModelResponse:
@@ -103,7 +103,7 @@ def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, P
 def _arrival(
     server: Server, request: SpawnModelRequest, load: Callable[[], tuple[ModelSpec, Pose]]
 ) -> _Arrival | SpawnModelResponse:
-    """Parse, validate, read meshes and try the engine on it, while the simulation goes on."""
+    """Parse, compile and try the engine on it, while the simulation goes on."""
     name, frame = request.model_name, request.reference_frame
     if not name:
         raise ModelError('model_name is empty; give the model a name')
@@ -112,10 +112,9 @@ def _arrival(
     if refusal is not None:
         return refusal
     spec, origin = load()
-    # Meshes are converted here, so that the world finds them ready.
-    files = {need: server.meshes.engine_file(*need) for need in mesh_needs(spec)}
-    server.trials.require(spec, {need: str(file) for need, file in files.items()})
-    return _Arrival(name, spec, compose(pose, origin), frame, tuple(files.values()))
+    model = server.world.compile(spec)
+    server.sandbox.require(model, server.world.physics, caller_waits)
+    return _Arrival(name, model, compose(pose, origin), frame)
 
 
 @service('spawn_urdf_model', SpawnModel, prepare=_read_urdf, registers=True)
@@ -128,7 +127,7 @@ def spawn_model(server: Server, arrival: _Arrival | LightSpec) -> SpawnModelResp
     if refusal is not None:  # someone else was quicker
         return refusal
     frame_pose, _ = server.world.frame(arrival.frame)
-    model = server.world.spawn(arrival.spec, arrival.name, compose(frame_pose, arrival.pose))
+    model = server.world.spawn(arrival.model, arrival.name, compose(frame_pose, arrival.pose))
     if not (model.static or model.body.bolted):
         warn_overlap(server.world, model)
     return SpawnModelResponse(True, _DONE)

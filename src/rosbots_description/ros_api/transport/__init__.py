@@ -2,7 +2,7 @@
 
 from .client_node import is_running, own_parameters, start_node
 from .handshake import guard_handshakes
-from .incoming import guard_messages, wait_for_answers
+from .incoming import caller_waits, guard_messages, wait_for_answers
 from .log_bridge import connect_logging, leave_rosout, set_level
 from .master import NO_MASTER, AddressError, require_address, subscribers, write_parameters
 from .name_conflict import holder, node_name, require_free, successor
@@ -20,10 +20,10 @@ from .sending import (
 )
 
 __all__ = [
-    'NO_MASTER', 'AddressError', 'Outlets', 'ReaderWatch', 'Registrar', 'connect_logging',
-    'find_tf_prefix', 'frame_name', 'guard_handshakes', 'guard_messages', 'has_readers', 'holder',
-    'init_node', 'is_for_all', 'is_running', 'leave_rosout', 'next_number', 'node_name',
-    'own_parameters', 'publish_serialized', 'reader_names', 'require_address', 'require_free',
-    'set_level', 'start_node', 'stop_publishing', 'subscribers', 'successor', 'topic_name',
-    'wait_for_answers', 'write_parameters',
+    'NO_MASTER', 'AddressError', 'Outlets', 'ReaderWatch', 'Registrar', 'caller_waits',
+    'connect_logging', 'find_tf_prefix', 'frame_name', 'guard_handshakes', 'guard_messages',
+    'has_readers', 'holder', 'init_node', 'is_for_all', 'is_running', 'leave_rosout',
+    'next_number', 'node_name', 'own_parameters', 'publish_serialized', 'reader_names',
+    'require_address', 'require_free', 'set_level', 'start_node', 'stop_publishing',
+    'subscribers', 'successor', 'topic_name', 'wait_for_answers', 'write_parameters',
 ]

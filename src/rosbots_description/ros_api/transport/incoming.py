@@ -5,6 +5,7 @@ import logging
 import socket
 import struct
 import threading
+from contextvars import ContextVar
 from io import BytesIO
 
 from genpy import DeserializationError, Message
@@ -23,6 +24,8 @@ _handle, _complain = ServiceImpl.handle, ServiceImpl.error_handler
 _answer = ServiceImpl._handle_request
 _answering: set[int] = set()  # threads that are about to answer a request
 _answered = threading.Condition()
+# The connection that the request in hand came by.
+_connection: ContextVar[socket.socket | None] = ContextVar('connection', default=None)
 
 
 def guard_messages() -> None:
@@ -74,12 +77,25 @@ def answer(service: ServiceImpl, transport: TCPROSTransport, request: Message) -
     me = threading.get_ident()
     with _answered:
         _answering.add(me)
+    _connection.set(transport.socket)
     try:
         _answer(service, transport, request)
     finally:
         with _answered:
             _answering.discard(me)
             _answered.notify_all()
+
+
+def caller_waits() -> bool:
+    """Tell whether who asked for what this thread works on still waits for the answer."""
+    connection = _connection.get()
+    try:
+        return not connection or bool(
+            connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT))
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
 
 
 def wait_for_answers(patience: float) -> bool:

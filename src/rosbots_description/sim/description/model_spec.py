@@ -221,6 +221,8 @@ class ModelSpec:
     lumped: Mapping[str, str] = field(default_factory=dict)  # link that disappeared -> its heir
     inner: Mapping[str, Pose] = field(default_factory=dict)  # model within -> pose of its frame
     left_out: tuple[str, ...] = ()  # what it stands without, each in few words
+    # Where its description is, e.g. 'robot_description, line 1', to begin a complaint with.
+    location: str = field(default='', compare=False)
 
     def link(self, name: str) -> LinkSpec | None:
         """Return the link of that name, or None."""

@@ -1,5 +1,6 @@
 """From mesh files to clean triangles, and to the files that a physics engine gets."""
 
+from ..resources import HeldFile
 from .loader import check_mesh, load_readers, visual_parts
 from .stl import read_stl
 from .store import MeshStore
@@ -7,6 +8,6 @@ from .submesh import submesh_file
 from .support_points import farthest
 
 __all__ = [
-    'MeshStore', 'check_mesh', 'farthest', 'load_readers', 'read_stl', 'submesh_file',
+    'HeldFile', 'MeshStore', 'check_mesh', 'farthest', 'load_readers', 'read_stl', 'submesh_file',
     'visual_parts',
 ]

@@ -3,7 +3,7 @@
 from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from ..description import Collision as CollisionSpec
 from ..description import JointSpec, LinkSpec, ModelSpec
-from ..physics.bullet import Body, Engine
+from ..physics.bullet import Body, CompiledModel, Engine
 from .plugin_life import Plugin
 
 
@@ -117,14 +117,15 @@ class Joint:
 class Model:
     """A model in the world. Its frame moves with its first link, the canonical one."""
 
-    def __init__(self, name: str, spec: ModelSpec, engine: Engine, pose: Pose) -> None:
+    def __init__(self, name: str, compiled: CompiledModel, engine: Engine, pose: Pose) -> None:
         self.name = self.scoped_name = name
         self.parent_name = ''  # only models within others have one
-        self.spec = spec
+        self._compiled = compiled
+        self.spec = spec = compiled.spec
         self.static = spec.static
         self.engine = engine
         self.initial_pose = pose
-        self.body: Body = engine.add(spec, pose)
+        self.enter()
         self.links = {link.name: Link(self, link) for link in spec.links}
         self.joints = {
             joint.name: Joint(self, joint)
@@ -185,10 +186,23 @@ class Model:
         linear = add(twist.linear, cross(twist.angular, arm))
         self.set_twist(Twist(linear, twist.angular))
 
+    def enter(self) -> None:
+        """Be brought into the engine, which is new or was emptied, at the pose of the spawn."""
+        if not self._compiled.has_files:
+            self._compiled = self.engine.compile(self.spec)
+        self.body: Body = self.engine.add(self._compiled, self.initial_pose)
+
+    def leave(self) -> None:
+        """Be taken out of the engine for good; its mesh files go."""
+        self.engine.remove(self.body)
+        del self._compiled
+
     def respecify(self, spec: ModelSpec) -> None:
         """Go on as another description of the same links and joints; the motion stays."""
         motion, old = self.engine.motion(self.body), self.body
-        self.body = self.engine.add(spec, self.initial_pose)
+        compiled = self.engine.compile(spec)
+        self.body = self.engine.add(compiled, self.initial_pose)
+        self._compiled = compiled
         self.engine.remove(old)
         self.engine.set_motion(self.body, motion)
         self.spec = spec

@@ -2,7 +2,6 @@
 
 import contextlib
 import logging
-import os
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Protocol
@@ -18,11 +17,10 @@ from ..core import (
     SimError,
     Twist,
 )
-from ..description import LightSpec, Mesh, ModelSpec, PhysicsSettings, PluginSpec
+from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec
 from ..meshes import MeshStore
-from ..physics.bullet import Engine, Tuning, mesh_needs
+from ..physics.bullet import CompiledModel, Engine, Tuning
 from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
-from ..resources import HeldFile
 from .divergence_watchdog import Guard
 from .external_forces import Jobs
 from .model import Collision, Joint, Link, Model
@@ -76,21 +74,15 @@ class World:
         self.lights: dict[str, LightSpec] = {}
         self.listeners: list[Listener] = []
         self.paused = False
-        self.meshes = MeshStore()
-        self._files: dict[str, dict[tuple[Mesh, bool], HeldFile]] = {}  # model -> what it needs
+        self._meshes = MeshStore()
         self._guard = Guard(self)
         self.schedule.add(self._guard)
-        self.engine = make_engine(
-            self.physics,
-            lambda mesh: self._engine_file(mesh, exact=False),
-            lambda mesh: self._engine_file(mesh, exact=True),
-            tuning,
-        )
+        self.engine = make_engine(self.physics, self._meshes, tuning)
 
     def close(self) -> None:
         """Free what the world holds outside Python."""
         self.engine.close()
-        self.meshes.close()
+        self._meshes.close()
 
     def run(self, steps: int) -> int:
         """Advance by exactly `steps`: in each, time first, then hooks, then physics.
@@ -129,13 +121,24 @@ class World:
             self._guard.look_soon()
         self.engine.apply(physics)
 
-    def spawn(self, spec: ModelSpec, name: str, pose: Pose) -> Model:
+    def compile(self, spec: ModelSpec) -> CompiledModel:
+        """Make a model ready to be spawned; the one thing that any thread may ask of the world.
+
+        Raises:
+            ModelError: the engine cannot take it; the sentence says why.
+        """
+        return self.engine.compile(spec)
+
+    def spawn(self, model: ModelSpec | CompiledModel, name: str, pose: Pose) -> Model:
         """Put a model into the world and load its plugins.
 
         A plugin that fails is logged and left out; the model lives.
 
+        Args:
+            model: one that is not compiled is so now, which may take long.
+            pose: of its frame.
         Raises:
-            ModelError: the name is taken or empty, or the pose is of no world.
+            ModelError: the name is taken or empty, the pose is of no world, or see `compile`.
         """
         if not name:
             raise ModelError('a model needs a name; the one given is empty')
@@ -146,21 +149,17 @@ class World:
             )
         if name in self.models:
             raise ModelError(f"a model named '{name}' is in the world already")
-        self._files[name] = {need: self.meshes.engine_file(*need) for need in mesh_needs(spec)}
+        compiled = self.compile(model) if isinstance(model, ModelSpec) else model
+        spawned = self.models[name] = Model(name, compiled, self.engine, pose)
         try:
-            model = self.models[name] = Model(name, spec, self.engine, pose)
+            for plugin in compiled.spec.plugins:
+                self._load_plugin(spawned, plugin)
         except BaseException:
-            del self._files[name]
-            raise
-        try:
-            for plugin in spec.plugins:
-                self._load_plugin(model, plugin)
-        except BaseException:
-            self._remove(model)  # nobody has been told of it
+            self._remove(spawned)  # nobody has been told of it
             raise
         for listener in self.listeners:
-            listener.model_spawned(model)
-        return model
+            listener.model_spawned(spawned)
+        return spawned
 
     def overlaps(self, model: Model) -> dict[str, float]:
         """Return the names of the models that a model reaches into, and how deep [m]."""
@@ -190,15 +189,8 @@ class World:
         for plugin in reversed(model.plugins):
             self.schedule.remove(plugin)
             plugin.unload()
-        self.engine.remove(model.body)
-        del self.models[model.name], self._files[model.name]
-
-    def _engine_file(self, mesh: Mesh, exact: bool) -> str:
-        """Return the file that the models that have this mesh hold for the engine."""
-        files = next(files for files in reversed(self._files.values()) if (mesh, exact) in files)
-        if not os.path.isfile(files[mesh, exact]):  # somebody has cleared the folder
-            files[mesh, exact] = self.meshes.engine_file(mesh, exact)
-        return str(files[mesh, exact])
+        model.leave()
+        del self.models[model.name]
 
     def reset_world(self) -> None:
         """Bring every model back to its spawn pose, at rest; joints stay, time goes on."""
@@ -220,7 +212,7 @@ class World:
         self.jobs.cancel(lambda target: True)
         self.engine.reset()
         for model in self.models.values():
-            model.body = self.engine.add(model.spec, model.initial_pose)
+            model.enter()
         for plugin in self._plugins():
             plugin.restart()
         self._tell_reset()
@@ -234,7 +226,7 @@ class World:
         }
         self.engine.reset()
         for model in self.models.values():
-            model.body = self.engine.add(model.spec, model.initial_pose)
+            model.enter()
             if model.name in motions:
                 self.engine.set_motion(model.body, motions[model.name])
         for model in lost:

@@ -1,11 +1,13 @@
 """Whatever comes in, it ends soon, with one sentence or a model, and opens nothing it should not.
 
-The cases and their outcomes are those of test/data/hostile/cases.yaml; here the parsers get them.
+The cases and their outcomes are those of test/data/hostile/cases.yaml; here parsers and compiler
+get them.
 """
 
 import logging
 import os
 import sys
+from contextlib import closing
 
 import pytest
 from support import ROOT, package_directory
@@ -15,7 +17,8 @@ from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.sdf.world_file import open_world
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.meshes.store import check_mesh
+from rosbots_description.sim.meshes.store import MeshStore, check_mesh
+from rosbots_description.sim.physics.bullet.compiled_model import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 LONGEST = 2500  # characters of a sentence
@@ -52,9 +55,12 @@ def read(case, folder):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return open_world(path, find_model=ModelSearch([folder]), find_package=package_directory)
     if case.kind == 'sdf':
-        return load_sdf(text, 'hostile', find_model=ModelSearch([folder]),
-                        find_package=package_directory)
-    return load_urdf(text, 'hostile', find_package=package_directory)
+        spec, _ = load_sdf(text, 'hostile', find_model=ModelSearch([folder]),
+                           find_package=package_directory)
+    else:
+        spec, _ = load_urdf(text, 'hostile', find_package=package_directory)
+    with closing(MeshStore()) as meshes:
+        return compile_model(spec, meshes)
 
 
 def may_be_opened(path, case, folder):
@@ -63,7 +69,8 @@ def may_be_opened(path, case, folder):
 
 
 @pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)
-def test_a_case_ends_as_the_table_says(case, tmp_path, opened, caplog, capfd):
+def test_a_case_ends_as_the_table_says(case, tmp_path, opened, caplog, capfd, monkeypatch):
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     said = ''
     opened.paths.clear()
     opened.listening = True

@@ -12,7 +12,6 @@ from typing import TypeVar
 from ...core import IDENTITY, ModelError, Pose, compose
 from ...description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 from ...description.inertia import merge
-from ...physics.bullet import MAX_JOINTS
 from ..xml import fault
 from .frame_references import move_part
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
@@ -39,9 +38,6 @@ def lump(tree: Tree) -> Lumped:
 
     A link without mass is not simulated, nor is anything that hangs on it by a joint that stays;
     its own shapes live on where it is lumped into a link that has a mass.
-
-    Raises:
-        ModelError: a tree keeps more joints than the engine can hold.
     """
     order = tree.depth_first()
     homes = _homes(tree, order)
@@ -56,7 +52,6 @@ def lump(tree: Tree) -> Lumped:
         _rehang(tree.joint_to[name], homes) for name in kept
         if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
     )
-    _check_joint_count(tree, kept)
     return Lumped(
         links=tuple(_merge_link(tree, name, members[name], homes, poses[name]) for name in kept),
         joints=joints,
@@ -127,25 +122,6 @@ def _poses_in_model(tree: Tree, order: Sequence[str]) -> dict[str, Pose]:
 
 def _rehang(joint: TreeJoint, homes: Mapping[str, tuple[str, Pose]]) -> JointSpec:
     return replace(joint.spec, parent=homes[joint.spec.parent][0])
-
-
-def _check_joint_count(tree: Tree, kept: Sequence[str]) -> None:
-    count: dict[str, int] = {}
-    base: dict[str, str] = {}  # link -> the first link of its tree
-    for name in tree.depth_first():
-        joint = tree.joint_to.get(name)
-        free = joint is None or joint.spec.type == FREE or joint.spec.parent == WORLD
-        base[name] = name if free else base[joint.spec.parent]
-    for name in kept:
-        if base[name] == name:
-            continue
-        count[base[name]] = count.get(base[name], 0) + 1
-        if count[base[name]] > MAX_JOINTS:
-            raise fault(
-                tree.joint_to[name].element,
-                f'the tree has more than {MAX_JOINTS} joints that stay; '
-                'the physics engine holds no more: fix some, or spawn parts as models of their own',
-            )
 
 
 def _merge_link(

@@ -13,9 +13,8 @@ from lxml import etree
 from ...core import AbsentError, Pose, compose
 from ...description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
 from ...description.inertia import impossible, possible, turnable
-from ...physics.bullet import excess
 from ..kinematics import WORLD
-from ..xml import fault, required_name, shortened, to_element
+from ..xml import fault, place, required_name, shortened, to_element
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
 from .joints import add_joint_frame, as_trees, read_joint
@@ -150,7 +149,7 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     """Return a model complete and checked, under the name it is to have.
 
     Raises:
-        ModelError: it has no link, names meet twice, or there is too much of something.
+        ModelError: it has no link, or names meet twice.
     """
     if not parts.links:
         raise fault(parts.element, 'the model has no <link>; a model needs at least one')
@@ -160,14 +159,10 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     links = parts.links
     if not parts.static:
         links = _movable(parts, links, {joint.child for joint in joints})
-    spec = ModelSpec(
+    return ModelSpec(
         name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner,
-        left_out=tuple(dict.fromkeys(parts.left_out)),
+        left_out=tuple(dict.fromkeys(parts.left_out)), location=place(parts.element),
     )
-    too_much = excess(spec)
-    if too_much:
-        raise fault(parts.element, too_much)
-    return spec
 
 
 def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:

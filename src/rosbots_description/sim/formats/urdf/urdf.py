@@ -9,7 +9,6 @@ from ...core import IDENTITY, ModelError, Pose
 from ...description import LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, turnable
 from ...meshes import check_mesh
-from ...physics.bullet import excess
 from ...resources import FindModel, FindPackage, substitute_in_tree
 from ..kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
 from ..xml import (
@@ -20,6 +19,7 @@ from ..xml import (
     note,
     origin,
     parse,
+    place,
     remove_xacro,
     required_name,
     shortened,
@@ -85,10 +85,8 @@ def load_urdf(
         tags.static,
         {link: heir for link, (heir, _) in lumped.heirs.items()},
         left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(lumped.vanished)))),
+        location=place(robot),
     )
-    too_much = excess(spec)
-    if too_much:
-        raise fault(robot, too_much)
     pose = _robot_origin(robot)
     for sentence in tags.left_out.errors():
         logger.error("model '%s' (%s): %s", name, source, sentence)

@@ -2,14 +2,12 @@
 
 from .body import Body
 from .client import pybullet
-from .crash_sandbox import Trials
+from .compiled_model import CompiledModel
+from .crash_sandbox import CrashSandbox
 from .engine import Engine
 from .friction_axes import can_slip
-from .generated_urdf import mesh_needs
-from .size_limits import MAX_JOINTS, excess
 from .tuning import Tuning
 
 __all__ = [
-    'MAX_JOINTS', 'Body', 'Engine', 'Trials', 'Tuning', 'can_slip', 'excess', 'mesh_needs',
-    'pybullet',
+    'Body', 'CompiledModel', 'CrashSandbox', 'Engine', 'Tuning', 'can_slip', 'pybullet',
 ]

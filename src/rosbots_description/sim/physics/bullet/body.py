@@ -65,7 +65,8 @@ class FrictionAxes(NamedTuple):
 class Body:
     """A model in the engine. Links and joints are addressed by their names."""
 
-    def __init__(self) -> None:
+    def __init__(self, size: int) -> None:
+        self.size = size  # bytes that were read to make it
         self.parts: dict[str, Part] = {}
         self.joints: dict[str, tuple[int, int]] = {}  # PyBullet's body and index
         self.indices: dict[int, list[int]] = {}  # those of all joints, by body
@@ -74,7 +75,6 @@ class Body:
         self.bodies: list[int] = []
         # Links that feel no gravity: PyBullet's body and index, and the mass [kg].
         self.weightless: list[tuple[int, int, float]] = []
-        self.size = 0  # bytes that were read to make it
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
         self.masses: dict[int, Masses] = {}  # what moves, by body
         self.surfaces: dict[str, list[Place]] = {}  # what each link touches with

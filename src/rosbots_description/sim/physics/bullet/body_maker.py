@@ -1,52 +1,24 @@
-"""Makes PyBullet's bodies of links and joints; their text is that of generated_urdf.py."""
+"""Makes PyBullet's bodies of what compiled_model.py makes of links and joints."""
 
 import os
 from collections.abc import Sequence
 from itertools import combinations, product
 
-from ...core import NO_ROTATION, Pose, Quaternion, Vector, compose, inverse
-from ...description import FIXED, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
-from ...description.inertia import is_balanced, principal_axes
-from .body import Body, FrictionAxes, Mass, Masses, Part, Place
+from ...core import Pose, Vector, compose, inverse
+from ...description import FIXED, ModelSpec, Surface
+from ...description.inertia import is_balanced
+from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
 from .collision_filter import Untouching
-from .faces import Face, faces, slab
-from .friction_axes import EVENLY, friction_scales, restitution
+from .compiled_model import CompiledFace, CompiledTree
+from .friction_axes import EVENLY
 from .friction_filter import FrictionFilter, Side
-from .generated_urdf import RIDER_MASS, MeshFile, Tree, describe_tree, untouching_links
-from .size_limits import MAX_JOINTS
+from .generated_urdf import RIDER_MASS, Tree, untouching_links
 from .springs import compliance
-from .surfaces import (
-    Groups,
-    compliant,
-    contact_spring,
-    is_rigid,
-    jointed_mass,
-    parting_rate,
-    rolling_arm,
-    surface_groups,
-    with_edges,
-    with_inner_first,
-)
+from .surfaces import contact_spring, is_rigid, parting_rate
 from .tuning import Tuning
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
-_MASSLESS = Inertial(0.0)
-
-
-def grouped(tree: Tree, mesh_file: MeshFile) -> tuple[list[Groups], bool]:
-    """Return the groups of each link of a tree (surfaces.py); of the root first what lies inside.
-
-    And whether there is something inside. What takes time about it is remembered.
-    """
-    groups = [surface_groups(tree, i) for i in range(len(tree.links))]
-    inner_first = None
-    if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
-        inner_first = with_inner_first(tree, groups[0], mesh_file)
-    if inner_first:
-        inner, *outer = inner_first
-        return [[inner, *with_edges(tree, outer)], *groups[1:]], True
-    return [with_edges(tree, groups[0]), *groups[1:]], False
 
 
 def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
@@ -73,14 +45,10 @@ def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
 class BodyMaker:
     """Makes bodies in one PyBullet world. They move as rigid bodies do, with no motor on."""
 
-    def __init__(
-        self, client: int, tuning: Tuning, mesh_file: MeshFile, surface_file: MeshFile
-    ) -> None:
-        """Work in the world of that PyBullet client; the rest is as for the Engine."""
+    def __init__(self, client: int, tuning: Tuning) -> None:
+        """Work in the world of that PyBullet client."""
         self._client = client
         self._tuning = tuning
-        self._mesh_file = mesh_file
-        self._surface_file = surface_file
         self._untouching = Untouching(client)
         self._friction_filter = FrictionFilter()
         self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
@@ -95,35 +63,19 @@ class BodyMaker:
             for place in self._soft:
                 self._set_spring(place)
 
-    def add_tree(self, body: Body, tree: Tree, model_pose: Pose) -> None:
+    def add_tree(self, body: Body, compiled: CompiledTree, model_pose: Pose) -> None:
         """Put links that joints connect into the world, and note in `body` where they are.
 
         Args:
             model_pose: where the model's frame is.
         """
-        inertials = [link.inertial or _MASSLESS for link in tree.links]
-        moments, axes = zip(*(principal_axes(inertial) for inertial in inertials), strict=True)
-        coms = [
-            Pose(inertial.pose.position, orientation)
-            for inertial, orientation in zip(inertials, axes, strict=True)
-        ]
-        mesh_file = self._surface_file if tree.stands else self._mesh_file
-        groups, inner_first = grouped(tree, mesh_file)
-        found = faces(tree, groups, inner_first, MAX_JOINTS + 1)
+        tree = compiled.tree
         place = compose(model_pose, tree.links[0].pose)
-        # What stands is a rigid body for each of its faces; the first is the one that is asked.
-        own, *others = [[[face]] for face in (*found[0], *slab(tree))] if tree.stands else [found]
         numbers = []
-        for one in (own, *others):
-            shapes = [[face.shapes for face in of_link] for of_link in one]
-            text = describe_tree(tree, coms, shapes, mesh_file)
-            numbers.append(self._load_urdf(text, tree, place))
+        for one in compiled.bodies:
+            numbers.append(self._load_urdf(one.text, tree, place))
             body.bodies.append(numbers[-1])
-            body.size += len(text)
         number, *also = numbers
-        shapes = [collision.geometry for link in tree.links for collision in link.collisions]
-        meshes = [mesh_file(shape) for shape in shapes if isinstance(shape, Mesh)]
-        body.size += sum(map(os.path.getsize, meshes))
         body.roots.append(tree.links[0].name)
         if tree.fixed_base:
             body.bolted.add(tree.links[0].name)
@@ -137,30 +89,32 @@ class BodyMaker:
             maxJointVelocity=ANY_SPEED,
             physicsClientId=self._client,
         )
-        mass = jointed_mass(tree)
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
-            part = Part(number, index_of[f'l{i}'], inverse(coms[i]), coms[i], tuple(also))
+            com = compiled.inertials[i]
+            part = Part(number, index_of[f'l{i}'], inverse(com), com, tuple(also))
             body.parts[link.name] = part
             pybullet.changeDynamics(
-                number, part.index, localInertiaDiagonal=moments[i], physicsClientId=self._client
+                number,
+                part.index,
+                localInertiaDiagonal=compiled.moments[i],
+                physicsClientId=self._client,
             )
-            self._set_surfaces(body, tree, i, own[i], index_of, mass)
+            places = [part.index, *(index_of[f'l{i}r{k}']
+                                    for k in range(1, len(compiled.bodies[0].faces[i])))]
+            self._set_riders(number, places[1:])
+            body.surfaces[link.name] = []
+            for index, face in zip(places, compiled.bodies[0].faces[i], strict=True):
+                self._set_face(body, link.name, Place(number, index), face)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
                 body.indices.setdefault(number, []).append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
-                body.weightless.append((number, part.index, inertials[i].mass))
+                mass = link.inertial.mass if link.inertial else 0.0
+                body.weightless.append((number, part.index, mass))
         if not tree.stands:
-            body.masses[number] = _masses(tree, body, moments)
-        for other, ((face,),) in zip(also, others, strict=True):
-            self._add_face(body, tree.links[0], Place(other, -1), face)
-
-    def _add_face(self, body: Body, link: LinkSpec, place: Place, face: Face) -> None:
-        """Set up another body that a standing link touches with."""
-        self._set_surface(place, face, face.shapes[0].surface, None)
-        turn = body.parts[link.name].com_in_origin.orientation
-        self._set_directions(body, place, face, link, turn)
-        body.surfaces[link.name].append(place)
+            body.masses[number] = _masses(tree, body, compiled.moments)
+        for other, one in zip(also, compiled.bodies[1:], strict=True):
+            self._set_face(body, tree.links[0].name, Place(other, -1), one.faces[0][0])
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Let those links of a model pass through each other that do so in Gazebo."""
@@ -223,67 +177,40 @@ class BodyMaker:
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
         return indices
 
-    def _set_surfaces(
-        self,
-        body: Body,
-        tree: Tree,
-        i: int,
-        found: list[Face],
-        index_of: dict[str, int],
-        mass: float,
-    ) -> None:
-        """Set up what link `i` touches with, itself and its riders, and note it in `body`.
+    def _set_riders(self, number: int, indices: Sequence[int]) -> None:
+        for index in indices:
+            pybullet.changeDynamics(
+                number,
+                index,
+                localInertiaDiagonal=(RIDER_MASS,) * 3,
+                physicsClientId=self._client,
+            )
 
-        Args:
-            mass: as `jointed_mass` tells it [kg].
-        """
-        link, joint = tree.links[i], tree.joints[i]
-        part = body.parts[link.name]
-        body.surfaces[link.name] = surfaces = []
-        for k, face in enumerate(found):
-            index, turn = part.index, part.com_in_origin.orientation
-            if k:  # a rider stands in the frame of the joint above its link
-                index = index_of[f'l{i}r{k}']
-                turn = joint.pose.orientation if joint else NO_ROTATION
-                pybullet.changeDynamics(
-                    part.body,
-                    index,
-                    localInertiaDiagonal=(RIDER_MASS,) * 3,
-                    physicsClientId=self._client,
-                )
-            if face.shapes:
-                place = Place(part.body, index)
-                surface = compliant(face.shapes[0].surface, mass)
-                self._set_surface(place, face, surface, joint)
-                self._set_directions(body, place, face, link, turn)
-                surfaces.append(place)
-
-    def _set_surface(
-        self, place: Place, face: Face, surface: Surface, joint: JointSpec | None
-    ) -> None:
-        """Set up a part of a body that touches with a face.
-
-        Args:
-            surface: that of the face, as compliant as it is to be.
-            joint: what turns the part, if anything does.
-        """
+    def _set_face(self, body: Body, link: str, place: Place, face: CompiledFace | None) -> None:
+        """Set up a part of a body that touches with a face, and note it in `body`."""
+        if face is None:
+            return
+        body.surfaces[link].append(place)
         pybullet.changeDynamics(
             *place,
             lateralFriction=face.friction,
             spinningFriction=0.0,
-            rollingFriction=rolling_arm(face.shapes, joint),
-            restitution=restitution(surface),
+            rollingFriction=face.rolling_friction,
+            restitution=face.restitution,
             physicsClientId=self._client,
         )
-        if restitution(surface):
+        if face.restitution:
             # Else PyBullet brakes what is about to touch, and nothing is left to be given back.
             pybullet.changeDynamics(
                 *place, contactProcessingThreshold=0.0, physicsClientId=self._client
             )
         self._set_filter(place, face.side)
-        if not is_rigid(surface):
-            self._soft[place] = surface, self._parting_rate(place)
+        if not is_rigid(face.surface):
+            self._soft[place] = face.surface, self._parting_rate(place)
             self._set_spring(place)
+        body.friction_axes[place] = face.axes
+        if face.axes.scales != EVENLY:
+            self.scale_friction(place, face.axes.scales)
 
     def _set_spring(self, place: Place) -> None:
         """Let a part give way as its surface does in steps of the present size."""
@@ -312,15 +239,6 @@ class BodyMaker:
             if now != before:
                 self._sides[one] = of_one, now
                 pybullet.setCollisionFilterGroupMask(*one, *now, self._client)
-
-    def _set_directions(
-        self, body: Body, place: Place, face: Face, link: LinkSpec, turn: Quaternion
-    ) -> None:
-        """Let a part hold less along some of its axes; `turn` turns them into those of its link."""
-        scales = friction_scales(face.shapes[0], link, turn, face.friction)
-        body.friction_axes[place] = FrictionAxes(turn, scales)
-        if scales != EVENLY:
-            self.scale_friction(place, scales)
 
     def scale_friction(self, place: Place, scales: Sequence[float]) -> None:
         """Let a part hold these shares of its friction along its own axes."""

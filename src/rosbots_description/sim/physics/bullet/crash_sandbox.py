@@ -1,146 +1,195 @@
 """A last resort: what would bring the physics engine down does so in a process of its own first.
 
-Descriptions are checked as they are read, so nothing that is known to kill PyBullet gets this far.
-For what nobody knows of yet, a model that is new to the simulator is tried in a child process,
-which is this one once more, with one thread and without what is in the world. That costs 0.03 s,
-once for each content; nothing is kept running in between. A heavy model costs 0.15 s, or what it
-takes to bring it in and make one step. Only processor time counts: a machine that is busy with
-other things must not make a model look bad.
+Descriptions are checked as they are read and compiled, so nothing that is known to kill PyBullet
+gets this far. For what nobody knows of yet, a model that is new to the simulator is tried in a
+child process, in an empty world. That costs 0.03 s of processor time, once for each content. A
+heavy model costs 0.15 s, or what it takes to bring it in and make one step. Only processor time
+counts: a machine that is busy with other things must not make a model look bad.
 """
 
-import contextlib
 import errno
-import faulthandler
-import gc
 import hashlib
 import logging
 import os
-import resource
+import pickle
 import signal
-import stat
 import threading
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import replace
-from typing import NoReturn
+from collections.abc import Callable
+from functools import partial
 
 from ...core import IDENTITY, ModelError, Pose, compose
-from ...description import GROUND_PLANE, Mesh, ModelSpec
-from .body_maker import grouped
+from ...description import GROUND_PLANE, ModelSpec, PhysicsSettings
+from ..fork_server import LOOK, MOST_ASLEEP, ForkServer, Killed, Unwanted, Work
+from .compiled_model import CompiledModel
 from .engine import Engine
-from .generated_urdf import MeshFile, kinematic_trees, mesh_needs
 
 logger = logging.getLogger(__name__)
 
 STEPS = 20  # enough for contacts to be found, solved and followed
 BUDGET = 0.15  # [s, processor] from which on a heavy model makes no further step
 
-# [s, processor] after which a trial hangs: some ten times what heavy models of its size take.
+# [s, processor] after which an engine hangs: some ten times what heavy models of its size take.
 LEAST, FOR_A_PART, FOR_A_BYTE = 2.0, 0.01, 1e-6
 MOST = 60.0  # what is not in by then would stop the world for as long
-PATIENCE = 5.0  # times that, by the wall clock, for what hangs asleep
 
 REMEMBERED = 1000  # contents that passed; the one that passed first is forgotten first
 
-# What a child says at its end: that, or what is wrong with the model, or with the system.
+# What a child reports: that, or what is wrong with the model, or with the system.
 _PASSED = 'passed'
 _SYSTEM = 'system: '
-_ROOM = 4096  # [bytes] for that, set aside before, so that a full machine cannot silence a child
 _HANDLES = 8  # more files than the engine has open at once
 _KILLED = 'it killed the process (SIGKILL), as it does where memory runs out'
 
-EmptyEngine = Callable[[MeshFile, MeshFile], Engine]  # as `Engine.emptied`
-EngineFiles = Mapping[tuple[Mesh, bool], str]  # as `mesh_needs` asks -> a file for the engine
 
-
-class SystemFailure(Exception):  # noqa: N818  no fault of ours or of the model
-    """The operating system failed in a trial; `str()` is how."""
-
-
-class Trials:
+class CrashSandbox:
     """Tries models and remembers, by their content, those that passed. Any thread may ask."""
 
-    def __init__(self, empty_engine: EmptyEngine) -> None:
-        """Let a child process have that engine; it is called there only."""
-        self._empty_engine = empty_engine
-        self._passed: dict[bytes, None] = {}
-        self._lock = threading.Lock()  # one trial at a time; who asks for the same then finds it
+    def __init__(self, engine: Engine) -> None:
+        """Start the process that tries models; do so before there are threads.
 
-    def require(self, spec: ModelSpec, files: EngineFiles) -> None:
+        Args:
+            engine: that of an empty world. It is copied, which costs less than opening another.
+        """
+        self._children = ForkServer(partial(_prepared, engine), 'crash_sandbox')
+        self._passed: dict[bytes, None] = {}
+        self._under_way: set[bytes] = set()
+        self._changed = threading.Condition()  # of what passed and what is under way
+
+    def __enter__(self) -> 'CrashSandbox':
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the process; no model can be tried any more."""
+        self._children.close()
+
+    def require(
+        self,
+        model: CompiledModel,
+        physics: PhysicsSettings,
+        is_wanted: Callable[[], bool] = lambda: True,
+    ) -> None:
         """Return if the engine stands the model; takes long only if the content is new.
 
         Where no process can be made the model passes, with a warning.
 
+        Args:
+            physics: the settings to try it with.
+            is_wanted: asked now and then, from 5 s on, whether to go on.
         Raises:
-            ModelError: the engine crashed, hung or failed, or the model was lost at once; or the
-                operating system failed, which tells nothing about the model.
+            ModelError: the engine crashed, hung or failed, or the model was lost at once; the
+                operating system failed, which tells nothing about the model; or it is not wanted.
         """
-        try:
-            content = _digest(spec, files)
-            if content not in self._passed:  # else without waiting for somebody else's trial
-                self._try(spec, files, content)
-        except SystemFailure as failure:
-            raise ModelError(
-                f"model '{spec.name}' is not brought in: it could not be tested before, since the "
-                f'operating system failed ({failure}); mend that and spawn the model again'
-            ) from None
-
-    def _try(self, spec: ModelSpec, files: EngineFiles, content: bytes) -> None:
-        with self._lock:
+        bare = model.bare()
+        content = hashlib.sha256(repr(bare).encode()).digest()
+        with self._changed:
+            self._changed.wait_for(lambda: content not in self._under_way)
             if content in self._passed:
                 return
-            with contextlib.suppress(Exception):  # it fails in the child, too, which tells why
-                for tree in kinematic_trees(spec):  # the child and the world recall what this finds
-                    grouped(tree, lambda mesh, stands=tree.stands: files[mesh, stands])
-            try:
-                fault = _outcome(lambda: self._live(spec, files), _allowance(spec, files))
-            except OSError as error:
-                logger.warning("model '%s' comes in without being tested, since the operating "
-                               'system failed (%s)', spec.name, error.strerror)
-                return
-            if fault:
-                raise ModelError(
-                    f"model '{spec.name}' is not brought in: tried in a process of its own, {fault}"
-                    '; leave out parts of it to find the one that does it, meshes first'
-                )
-            self._passed[content] = None
-            if len(self._passed) > REMEMBERED:
-                del self._passed[next(iter(self._passed))]
-
-    def _live(self, spec: ModelSpec, files: EngineFiles) -> None:
-        """Do with the model what a world does: bring it in, step, ask, take it away."""
-        engine = self._empty_engine(
-            lambda mesh: files[mesh, False], lambda mesh: files[mesh, True])
-        engine.add(GROUND_PLANE, IDENTITY)
-        body = engine.add(spec, _touching(spec))
-        for _ in range(STEPS):
-            engine.step(1)
-            if time.process_time() > BUDGET:
-                break
-        for link in body.parts:
-            engine.link_state(body, link)
-        for joint in body.joints:
-            engine.joint_reading(body, joint)
-        if engine.has_diverged(body):
-            raise ModelError(f'its pose or velocity was no finite number within {STEPS} steps')
-        engine.remove(body)
-
-
-def _digest(spec: ModelSpec, files: EngineFiles) -> bytes:
-    """Return a hash of all that the engine sees of a model.
-
-    Raises:
-        SystemFailure: a file for the engine cannot be read, though it was written just now.
-    """
-    links = [replace(link, visuals=(), sensors=()) for link in spec.links]
-    seen = hashlib.sha256(repr((spec.static, links, spec.joints)).encode())
-    for path in files.values():
+            self._under_way.add(content)
+        passed = False
         try:
-            with open(path, 'rb') as file:
-                seen.update(hashlib.file_digest(file, 'sha256').digest())
+            passed = self._try(model.spec.name, bare, physics, is_wanted)
+        finally:
+            with self._changed:
+                self._under_way.remove(content)
+                if passed:
+                    self._passed[content] = None
+                    if len(self._passed) > REMEMBERED:
+                        del self._passed[next(iter(self._passed))]
+                self._changed.notify_all()
+
+    def _try(
+        self, name: str, model: CompiledModel, physics: PhysicsSettings,
+        is_wanted: Callable[[], bool],
+    ) -> bool:
+        """Return whether the engine stood a model; False if nobody knows."""
+        allowance = _allowance(model)
+        try:
+            report = self._children.run(pickle.dumps((model, physics)), allowance, is_wanted)
         except OSError as error:
-            raise SystemFailure(f'{error.strerror}: {path}') from error
-    return seen.digest()
+            logger.warning("model '%s' comes in without being tested, since the operating system "
+                           'failed (%s)', name, error.strerror)
+            return False
+        except Unwanted:
+            raise ModelError(
+                f"model '{name}' is not brought in: who asked for it has gone") from None
+        except Killed as killed:
+            report = _told(killed.exit_code, allowance)
+        if report.startswith(_SYSTEM):
+            raise ModelError(
+                f"model '{name}' is not brought in: it could not be tested before, since the "
+                f'operating system failed ({report.removeprefix(_SYSTEM)}); mend that and spawn '
+                'the model again'
+            )
+        if report != _PASSED:
+            raise ModelError(
+                f"model '{name}' is not brought in: tried in a process of its own, {report}"
+                '; leave out parts of it to find the one that does it, meshes first'
+            )
+        return True
+
+
+def _allowance(model: CompiledModel) -> float:
+    """Return the processor time [s] that the trial of a model may take."""
+    parts = sum(1 + len(link.collisions) for link in model.spec.links)
+    return min(MOST, LEAST + FOR_A_PART * parts + FOR_A_BYTE * model.size)
+
+
+def _told(exit_code: int, allowance: float) -> str:
+    """Return what the end of a process says, as a clause."""
+    match -exit_code:
+        case signal.SIGPROF:
+            return ('the physics engine was not done with it after '
+                    f'{allowance:.1f} s of processor time')
+        case signal.SIGALRM:
+            return f'the physics engine slept over it for {LOOK * MOST_ASLEEP:g} s'
+        case signal.SIGKILL:
+            return f'{_SYSTEM}{_KILLED}'
+        case number if number > 0:
+            return f'it crashed the physics engine ({signal.Signals(number).name})'
+    return f'it ended the process (exit code {exit_code})'
+
+
+def _prepared(engine: Engine) -> Work:
+    """Return what reports of a model that comes into the engine; runs in the process of its own."""
+    engine.add(engine.compile(GROUND_PLANE), IDENTITY)
+    return partial(_report, engine)
+
+
+def _report(engine: Engine, payload: bytes) -> str:
+    try:
+        model, physics = pickle.loads(payload)
+        unreadable = next(filter(None, map(_read_fault, model.files)), None)
+        if unreadable:
+            return f'{_SYSTEM}{unreadable}'
+        engine.apply(physics)
+        _live(engine, model)
+    except ModelError as error:
+        return str(error)
+    except BaseException as error:
+        shortage = _shortage(error)
+        return f'{_SYSTEM}{shortage}' if shortage else f'the physics engine failed: {error!r}'
+    return _PASSED
+
+
+def _live(engine: Engine, model: CompiledModel) -> None:
+    """Do with the model what a world does: bring it in, step, ask, take it away."""
+    body = engine.add(model, _touching(model.spec))
+    for _ in range(STEPS):
+        engine.step(1)
+        if time.process_time() > BUDGET:
+            break
+    for link in model.spec.links:
+        engine.link_state(body, link.name)
+    for joint in body.joints:
+        engine.joint_reading(body, joint)
+    if engine.has_diverged(body):
+        raise ModelError(f'its pose or velocity was no finite number within {STEPS} steps')
+    engine.remove(body)
 
 
 def _touching(spec: ModelSpec) -> Pose:
@@ -151,73 +200,6 @@ def _touching(spec: ModelSpec) -> Pose:
         for collision in link.collisions
     ]
     return Pose((0.0, 0.0, -min(heights, default=0.0)))
-
-
-def _allowance(spec: ModelSpec, files: EngineFiles) -> float:
-    """Return the processor time [s] that the trial of a model may take."""
-    parts = sum(1 + len(link.collisions) for link in spec.links)
-    size = sum(os.path.getsize(files[need]) for need in mesh_needs(spec))
-    return min(MOST, LEAST + FOR_A_PART * parts + FOR_A_BYTE * size)
-
-
-def _outcome(trial: Callable[[], None], allowance: float) -> str:
-    """Return how `trial()` fails in a child process, as a clause; empty if it does not.
-
-    Args:
-        allowance: processor time [s] after which it hangs.
-
-    Raises:
-        OSError: no process could be made.
-        SystemFailure: the operating system failed there, not the engine.
-    """
-    with open(os.memfd_create('trial'), 'w+b', buffering=0) as report:
-        os.posix_fallocate(report.fileno(), 0, _ROOM)
-        # PyBullet holds Python's lock in each of its calls, so none is under way in the copy.
-        child = os.fork()
-        if child == 0:
-            _be_the_child(trial, allowance, report.fileno())
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        spent = {
-            -signal.SIGPROF: f'{allowance:.1f} s of processor time',
-            -signal.SIGALRM: f'{PATIENCE * allowance:.1f} s',
-        }.get(code)
-        if spent:
-            return f'the physics engine was not done with it after {spent}'
-        if code == -signal.SIGKILL:
-            raise SystemFailure(_KILLED)
-        if code < 0:
-            return f'it crashed the physics engine ({signal.Signals(-code).name})'
-        report.seek(0)
-        clause = report.read().rstrip(b'\0').decode(errors='replace')
-    if not clause:
-        return f'it ended the process (exit code {code})'
-    if clause.startswith(_SYSTEM):
-        raise SystemFailure(clause.removeprefix(_SYSTEM))
-    return '' if clause == _PASSED else clause
-
-
-def _be_the_child(trial: Callable[[], None], allowance: float, report: int) -> NoReturn:
-    """Carry out the trial unseen and end; nothing that the parent registered runs here."""
-    try:
-        _end_after(allowance)
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)  # it ends by itself
-        faulthandler.disable()
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # a crash leaves no file behind
-        logging.disable()
-        gc.disable()  # what the parent's objects do at their end is not for us to do
-        _leave_streams_and_sockets()
-        trial()
-        clause = _PASSED
-    except ModelError as error:
-        clause = str(error)
-    except BaseException as error:
-        shortage = _shortage(error)
-        clause = f'{_SYSTEM}{shortage}' if shortage else f'the physics engine failed: {error!r}'
-    try:
-        os.write(report, clause.encode()[:_ROOM])
-    finally:
-        os._exit(0)
 
 
 def _shortage(error: BaseException) -> str | None:
@@ -234,22 +216,10 @@ def _shortage(error: BaseException) -> str | None:
     return None
 
 
-def _end_after(allowance: float) -> None:
-    """Let the system end this process, whatever it does, after so much processor time [s]."""
-    for number, timer, seconds in (
-        (signal.SIGPROF, signal.ITIMER_PROF, allowance),
-        (signal.SIGALRM, signal.ITIMER_REAL, PATIENCE * allowance),
-    ):
-        signal.signal(number, signal.SIG_DFL)
-        signal.setitimer(timer, seconds)
-
-
-def _leave_streams_and_sockets() -> None:
-    """Print nowhere, and keep nobody's connection open when the parent closes it."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.dup2(nowhere, 2)
-    for name in os.listdir('/proc/self/fd'):
-        with contextlib.suppress(OSError):  # the listing's own is gone
-            if stat.S_ISSOCK(os.fstat(int(name)).st_mode):
-                os.close(int(name))
+def _read_fault(path: str) -> str | None:
+    """Return why a file cannot be read, if it cannot; PyBullet would not tell."""
+    try:
+        with open(path, 'rb'):
+            return None
+    except OSError as error:
+        return f'{error.strerror}: {path}'

@@ -11,12 +11,13 @@ from itertools import repeat
 
 from ...core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from ...description import ModelSpec, PhysicsSettings
+from ...meshes import MeshStore
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .client import pybullet
+from .compiled_model import CompiledModel, compile_model
 from .contact_slip import Slipping
 from .fast_rotation import FastBodies
-from .generated_urdf import MeshFile, kinematic_trees
 from .solver_iterations import CHECK, Motor, SolverEffort
 from .springs import Springs
 from .surfaces import overlap_share
@@ -37,22 +38,19 @@ class Engine:
     def __init__(
         self,
         physics: PhysicsSettings,
-        mesh_file: MeshFile,
-        surface_file: MeshFile,
+        meshes: MeshStore,
         tuning: Tuning | None = None,
-        client: int | None = None,
     ) -> None:
         """Open an empty world.
 
         Args:
-            mesh_file: gives the file of a mesh's convex hull, for bodies that move.
-            surface_file: gives the file of a mesh's exact surface, for bodies that stand.
+            meshes: makes the files of meshes.
             tuning: other choices than the usual ones, to measure what they do.
-            client: an empty world of PyBullet's to take over, if there is one.
         """
+        self._meshes = meshes
         self._tuning = tuning or Tuning()
-        self._client = pybullet.connect(pybullet.DIRECT) if client is None else client
-        self._maker = BodyMaker(self._client, self._tuning, mesh_file, surface_file)
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self._maker = BodyMaker(self._client, self._tuning)
         self._step = pybullet.stepSimulation
         self._effort = SolverEffort(self._set_iterations)
         self._until_look = CHECK  # steps
@@ -72,14 +70,6 @@ class Engine:
     def close(self) -> None:
         """Free the world; the engine cannot be used afterwards."""
         pybullet.disconnect(self._client)
-
-    def emptied(self, mesh_file: MeshFile, surface_file: MeshFile) -> 'Engine':
-        """Return an engine with the same settings in place of this one, whose world it empties.
-
-        It takes a tenth of the time that opening one takes, and no more memory.
-        """
-        self._maker.reset()
-        return Engine(self._physics, mesh_file, surface_file, self._tuning, self._client)
 
     def apply(self, physics: PhysicsSettings) -> None:
         """Use these settings from the next step on."""
@@ -169,11 +159,19 @@ class Engine:
         self._step(client)
         resize(fixedTimeStep=size, numSubSteps=0, physicsClientId=client)
 
-    def add(self, spec: ModelSpec, pose: Pose) -> Body:
+    def compile(self, spec: ModelSpec) -> CompiledModel:
+        """Make a model ready to be added; any thread may ask.
+
+        Raises:
+            ModelError: the engine cannot take it; the sentence says why.
+        """
+        return compile_model(spec, self._meshes)
+
+    def add(self, model: CompiledModel, pose: Pose) -> Body:
         """Put a model into the world, its frame at `pose`, all joints at zero."""
-        body = Body()
+        body, spec = Body(model.size), model.spec
         try:
-            for tree in kinematic_trees(spec):
+            for tree in model.trees:
                 self._maker.add_tree(body, tree, pose)
             self._maker.exclude_collisions_within(body, spec)
         except BaseException:

@@ -203,15 +203,6 @@ def kinematic_trees(spec: ModelSpec) -> list[Tree]:
     return trees
 
 
-def mesh_needs(spec: ModelSpec) -> Iterator[tuple[Mesh, bool]]:
-    """Yield each mesh that can be touched, and whether its exact surface is used, not its hull."""
-    for tree in kinematic_trees(spec):
-        for link in tree.links:
-            for collision in link.collisions:
-                if isinstance(collision.geometry, Mesh):
-                    yield collision.geometry, tree.stands
-
-
 def untouching_links(spec: ModelSpec) -> Iterator[tuple[str, str]]:
     """Yield each pair of links that pass through each other.
 

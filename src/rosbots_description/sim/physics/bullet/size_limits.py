@@ -1,8 +1,10 @@
 """How much of everything a model may consist of, so that adding it ends in good time."""
 
+from collections.abc import Sequence
+
 from ...description import ModelSpec
-from .generated_urdf import Tree, kinematic_trees
-from .surfaces import surface_groups
+from .generated_urdf import Tree
+from .surfaces import Groups
 
 # PyBullet handles a tree of more joints only up to the first question about it.
 MAX_JOINTS = 127
@@ -15,7 +17,7 @@ MAX_LINKS = 500
 MAX_SHAPES = 5000
 
 
-def excess(spec: ModelSpec) -> str | None:
+def excess_of_parts(spec: ModelSpec) -> str | None:
     """Return in a sentence what a model has too much of to be simulated; None if nothing."""
     if len(spec.links) > MAX_LINKS:
         return (
@@ -28,10 +30,15 @@ def excess(spec: ModelSpec) -> str | None:
             f'the model has {shapes} collisions and visuals; at most {MAX_SHAPES} are accepted: '
             'put more into one mesh'
         )
-    return next(filter(None, map(_excess_of_joints, kinematic_trees(spec))), None)
+    return None
 
 
-def _excess_of_joints(tree: Tree) -> str | None:
+def excess_of_joints(tree: Tree, groups: Sequence[Groups]) -> str | None:
+    """Return in a sentence that a tree needs more joints than there can be; None if it does not.
+
+    Args:
+        groups: of each link, from surfaces.py.
+    """
     joints = len(tree.links) - 1
     if joints > MAX_JOINTS:
         return (
@@ -39,7 +46,7 @@ def _excess_of_joints(tree: Tree) -> str | None:
             'physics engine, which holds no more: split the model'
         )
     # Every surface of its own rides on its link by a joint of the engine's.
-    riders = sum(len(surface_groups(tree, i)) - 1 for i in range(len(tree.links)))
+    riders = sum(len(of_link) - 1 for of_link in groups)
     if joints + riders > MAX_JOINTS:
         return (
             f'links that hang together have {riders} collisions with a surface of their own and '

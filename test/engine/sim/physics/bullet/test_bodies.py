@@ -9,11 +9,7 @@ from support import ROOT, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_sp
 
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, to_rpy
 from rosbots_description.sim.description.model_spec import Inertial, LinkSpec, ModelSpec
-from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
-from rosbots_description.sim.meshes.store import MeshStore
-from rosbots_description.sim.physics.bullet.engine import Engine
-from rosbots_description.sim.physics.bullet.generated_urdf import mesh_needs
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 SECOND = 1000  # steps
@@ -132,37 +128,6 @@ def test_a_static_model_hangs_in_the_air():
         model = world.spawn(spec, 'box', Pose((0.0, 0.0, 3.0)))
         world.run(SECOND)
         assert model.pose.position == (0.0, 0.0, 3.0)
-
-
-MESH_LINK = """<link name="{name}"><inertial><mass value="1"/>
-  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
-  <collision><geometry><mesh filename="{file}"/></geometry></collision></link>"""
-BOLT = '<link name="world"/><joint name="j" type="{}"><parent link="world"/><child link="a"/>{}'
-LIMIT = '<axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'
-
-
-@pytest.mark.parametrize(('extra', 'exact'), [
-    ('', False),
-    ('<gazebo><static>true</static></gazebo>', True),
-    (BOLT.format('fixed', '</joint>'), True),
-    (BOLT.format('revolute', LIMIT), False),
-])
-def test_the_mesh_files_said_to_be_needed_are_those_that_are_used(tmp_path, extra, exact):
-    mesh = tmp_path / 'm.obj'
-    mesh.write_text('v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n')
-    spec = urdf_spec(MESH_LINK.format(name='a', file=mesh) + extra)
-    used, meshes = set(), MeshStore()
-    files = {need: meshes.engine_file(*need) for need in mesh_needs(spec)}
-
-    def noted(exact):
-        return lambda mesh: used.add((mesh, exact)) or str(files[mesh, exact])
-
-    engine = Engine(PhysicsSettings(), noted(False), noted(True))
-    engine.add(spec, Pose((0.0, 0.0, 2.0)))
-    engine.close()
-    meshes.close()
-    assert used == set(files)
-    assert [exactly for _, exactly in used] == [exact]
 
 
 def test_the_files_of_a_submesh_go_with_the_last_model_that_has_it():

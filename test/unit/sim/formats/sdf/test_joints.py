@@ -165,13 +165,6 @@ def test_a_broken_joint_is_refused(text, part):
     assert part in complaint(text)
 
 
-def test_more_joints_than_the_engine_can_hold_are_refused():
-    links = ''.join(f'<link name="l{i}"/>' for i in range(130))
-    joints = ''.join(joint(f'l{i}', f'l{i + 1}') for i in range(129))
-    with pytest.raises(ModelError, match='more than 127 joints'):
-        load(joints, links=links)
-
-
 def test_springs_are_read_and_none_pushes():
     inside = ('<axis><xyz>1 0 0</xyz><dynamics><spring_stiffness>{}</spring_stiffness>'
               '<spring_reference>-0.5</spring_reference></dynamics></axis>')

@@ -322,12 +322,6 @@ def test_the_name_of_the_model_and_the_source_begin_a_warning(caplog):
         "model 'bot' (bot.urdf): line 2: <gazebo reference='b'>: there is no link or joint")
 
 
-def test_more_joints_than_the_engine_holds_are_refused():
-    links = ''.join(link(f'l{i}') for i in range(129))
-    joints = ''.join(joint(f'j{i:03}', f'l{i}', f'l{i + 1}') for i in range(128))
-    assert 'more than 127 joints' in complaint(links + joints)
-
-
 def test_a_long_chain_of_fixed_links_is_lumped_in_good_time():
     count = 5000
     ball = '<collision><geometry><sphere radius="1"/></geometry></collision>'

@@ -18,9 +18,10 @@ from rosbots_description.sim.description.model_spec import (
     Sphere,
     Surface,
 )
-from rosbots_description.sim.physics.bullet.body_maker import grouped
+from rosbots_description.sim.physics.bullet.compiled_model import grouped
 from rosbots_description.sim.physics.bullet.generated_urdf import Tree
 from rosbots_description.sim.physics.bullet.split_edge_contacts import leaning
+from rosbots_description.sim.physics.bullet.surfaces import surface_groups
 
 AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 QUARTER = math.pi / 2.0
@@ -78,9 +79,13 @@ def no_file(_mesh):
     raise AssertionError
 
 
+def groups_of(tree):
+    return [surface_groups(tree, i) for i in range(len(tree.links))]
+
+
 def test_the_body_that_carries_a_wheel_touches_with_both_ends_of_its_edges():
     tree = Tree([BODY, WHEEL], [None, JOINT], fixed_base=False)
-    (body, wheel), inner_first = grouped(tree, no_file)
+    (body, wheel), inner_first = grouped(tree, groups_of(tree), no_file)
     assert not inner_first
     assert [kinds(group) for group in body] == [[Box, Box, Sphere]]
     assert [kinds(group) for group in wheel] == [[Cylinder] * 4]  # crests and shoulders
@@ -94,7 +99,7 @@ def test_what_lies_inside_comes_once():
                   for i in range(-3, 3))
     body = LinkSpec('body', IDENTITY, MASS, (*plates, *posts, smooth))
     tree = Tree([body, WHEEL], [None, JOINT], fixed_base=False)
-    (groups, _), inner_first = grouped(tree, no_file)
+    (groups, _), inner_first = grouped(tree, groups_of(tree), no_file)
     assert inner_first
     assert [kinds(group) for group in groups] == [[Box] * 6, [Box] * 4, [Sphere]]
 
@@ -107,4 +112,4 @@ def test_what_lies_inside_comes_once():
           JointSpec('axle', REVOLUTE, 'arm', 'wheel')], fixed_base=False),
 ])
 def test_a_body_that_carries_no_wheel_stays_as_it_is(tree):
-    assert grouped(tree, no_file)[0][0] == [BODY.collisions]
+    assert grouped(tree, groups_of(tree), no_file)[0][0] == [BODY.collisions]

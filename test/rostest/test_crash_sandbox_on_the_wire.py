@@ -9,11 +9,14 @@ from concurrent.futures import ThreadPoolExecutor
 import rospy
 import rostest
 from crashing_server import DOOM, SLUMBER
+from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
+from raw_client import request_bytes, service_connection, vanish
 from server_process import OwnServerTest
 from simulator import BOX, DEADLINE, pose, wait_until
 
 TIMES = 10
 END_LIMIT = 2.0  # [s] promised
+DELAY_LIMIT = 1.0  # [s] promised
 SPARE = 5  # files and threads for what nodes and master ask one another
 SENTENCE = ("SpawnModel: Failure - model 'bad' is not brought in: tried in a process of its own, "
             'it crashed the physics engine (SIGSEGV)')
@@ -25,7 +28,7 @@ ROUGH = BOX.replace('</robot>', ''.join(
     + '</robot>')
 
 
-class TrialTest(OwnServerTest):
+class CrashSandboxTest(OwnServerTest):
 
     program = {'package': 'rosbots_description', 'program': 'crashing_server.py'}
 
@@ -38,7 +41,7 @@ class TrialTest(OwnServerTest):
             response = self.spawn('bad', doomed, pose(x=5.0))
             self.assertFalse(response.success)
             self.assertIn(SENTENCE, response.status_message)
-        self.assertEqual(self.server.children(), [])
+        self.assertEqual(self.server.trials(), [])
         self.assert_no_more_than(files + SPARE, threads + SPARE)
         self.assert_neighbour_drives()
         self.assertTrue(self.spawn('good', BOX, pose(x=5.0)).success)
@@ -48,7 +51,7 @@ class TrialTest(OwnServerTest):
         for number in (signal.SIGTERM, signal.SIGINT):
             with self.subTest(number), ThreadPoolExecutor() as pool:
                 answer = pool.submit(self.spawn, 'slow', BOX.replace('"body"', f'"{SLUMBER}"'))
-                wait_until(self.server.children, 'the trial')
+                wait_until(self.server.trials, 'the trial')
                 begin = time.monotonic()
                 self.server.process.send_signal(number)
                 response = answer.result(DEADLINE)
@@ -60,6 +63,23 @@ class TrialTest(OwnServerTest):
             self.doCleanups()
             self.setUp()
 
+    def test_a_trial_delays_nobody_and_is_given_up_with_its_caller(self):
+        slow = BOX.replace('"body"', f'"{SLUMBER}"')
+        clients = [service_connection('spawn_urdf_model', SpawnModel) for _ in range(3)]
+        for i, client in enumerate(clients):
+            heavier = slow.replace('value="1"', f'value="{i + 1}"')
+            client.sendall(request_bytes(SpawnModelRequest(f'slow{i}', heavier, '/', pose(), '')))
+        wait_until(lambda: len(self.server.trials()) == len(clients), 'all trials')
+        began = self.server.trials()
+        begin = time.monotonic()
+        self.assertTrue(self.spawn('box', BOX, pose(x=5.0)).success)
+        self.assertLess(time.monotonic() - begin, DELAY_LIMIT)
+        self.assertEqual(self.server.trials(), began)
+        for client in clients:
+            vanish(client)
+        wait_until(lambda: not self.server.trials(), 'their end')
+        self.assertNotIn('slow0', self.world().model_names)
+
     def test_a_model_the_engine_cannot_be_asked_about_is_refused(self):
         self.drive_neighbour()
         self.assertFalse(self.spawn('rough', ROUGH, pose(x=5.0)).success)
@@ -67,5 +87,5 @@ class TrialTest(OwnServerTest):
 
 
 if __name__ == '__main__':
-    rospy.init_node('test_trial', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'trial', TrialTest, sys.argv)
+    rospy.init_node('test_crash_sandbox', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'crash_sandbox', CrashSandboxTest, sys.argv)

@@ -1,0 +1,194 @@
+"""A model as the physics engine takes it, made once from its description.
+
+All that takes time about a new model, and all that the engine cannot take, is found out here, on
+any thread: meshes, surfaces, the text that PyBullet reads. World and crash sandbox use the result.
+"""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+from ...core import NO_ROTATION, ModelError, Pose, Quaternion, Vector
+from ...description import Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from ...description.inertia import principal_axes
+from ...meshes import HeldFile, MeshStore
+from .body import FrictionAxes
+from .faces import Face, faces, slab
+from .friction_axes import friction_scales, restitution
+from .friction_filter import Side
+from .generated_urdf import MeshFile, Tree, describe_tree, kinematic_trees
+from .size_limits import MAX_JOINTS, excess_of_joints, excess_of_parts
+from .surfaces import (
+    Groups,
+    compliant,
+    jointed_mass,
+    rolling_arm,
+    surface_groups,
+    with_edges,
+    with_inner_first,
+)
+
+_MASSLESS = Inertial(0.0)
+
+
+@dataclass(frozen=True)
+class CompiledFace:
+    """What a part touches with, in PyBullet's terms."""
+
+    side: Side
+    friction: float
+    rolling_friction: float  # [m]
+    restitution: float
+    surface: Surface  # as compliant as it is to be
+    axes: FrictionAxes
+
+
+@dataclass(frozen=True)
+class CompiledBody:
+    """One of PyBullet's bodies: the URDF it is read from, and the faces of each link.
+
+    The first face is the link's own, the others are its riders'; None where nothing touches.
+    """
+
+    text: str
+    faces: tuple[tuple[CompiledFace | None, ...], ...]
+
+
+@dataclass(frozen=True)
+class CompiledTree:
+    """Links that joints connect, and the bodies they become.
+
+    Several bodies only where nothing moves; the first of them is the one that is asked.
+    """
+
+    tree: Tree  # without what is only seen or sensed
+    moments: tuple[Vector, ...]  # principal moments of inertia of each link [kg m^2]
+    inertials: tuple[Pose, ...]  # centre of mass and principal axes, in the link's frame
+    bodies: tuple[CompiledBody, ...]
+
+
+@dataclass(frozen=True)
+class CompiledModel:
+    """A model ready for the engine. Its mesh files are there for as long as it is."""
+
+    spec: ModelSpec
+    trees: tuple[CompiledTree, ...]
+    files: tuple[HeldFile, ...]
+    size: int  # bytes that the engine reads
+
+    @property
+    def has_files(self) -> bool:
+        """Whether all mesh files are still there; somebody may have cleared the folder."""
+        return all(map(os.path.isfile, self.files))
+
+    def bare(self) -> 'CompiledModel':
+        """Return what the engine sees of it: no name, looks, sensors and plugins."""
+        return replace(self, spec=_bare(self.spec))
+
+
+def compile_model(spec: ModelSpec, meshes: MeshStore) -> CompiledModel:
+    """Make a model ready for the engine.
+
+    Args:
+        meshes: makes the mesh files; it must not be closed before the model is gone.
+    Raises:
+        ModelError: there is more of something than the engine takes, or a mesh file cannot be read
+            or made; the sentence says what.
+    """
+    _require(spec, excess_of_parts(spec))
+    groups = []
+    trees = kinematic_trees(_bare(spec))
+    for tree in trees:
+        groups.append([surface_groups(tree, i) for i in range(len(tree.links))])
+        _require(spec, excess_of_joints(tree, groups[-1]))
+    files: dict[tuple[bool, Mesh], HeldFile] = {}
+
+    def mesh_file(exact: bool, mesh: Mesh) -> str:
+        if (exact, mesh) not in files:
+            files[exact, mesh] = meshes.engine_file(mesh, exact)
+        return str(files[exact, mesh])  # only the model is to hold the file
+
+    size = 0
+    compiled = []
+    for tree, of_tree in zip(trees, groups, strict=True):
+        file_of = partial(mesh_file, tree.stands)
+        compiled.append(_compiled_tree(tree, of_tree, file_of))
+        size += sum(len(body.text) for body in compiled[-1].bodies)
+        shapes = [collision.geometry for link in tree.links for collision in link.collisions]
+        size += sum(os.path.getsize(file_of(one)) for one in shapes if isinstance(one, Mesh))
+    return CompiledModel(spec, tuple(compiled), tuple(files.values()), size)
+
+
+def _require(spec: ModelSpec, excess: str | None) -> None:
+    if excess:
+        raise ModelError(f"{spec.location or f'model {spec.name!r}'}: {excess}")
+
+
+def _bare(spec: ModelSpec) -> ModelSpec:
+    links = tuple(replace(link, visuals=(), sensors=()) for link in spec.links)
+    return ModelSpec('', links, spec.joints, static=spec.static)
+
+
+def grouped(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> tuple[list[Groups], bool]:
+    """Return the groups of a tree's links (surfaces.py) anew: of the root first what lies inside.
+
+    And whether there is something inside. What takes time about it is remembered.
+    """
+    inner_first = None
+    if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
+        inner_first = with_inner_first(tree, groups[0], mesh_file)
+    if inner_first:
+        inner, *outer = inner_first
+        return [[inner, *with_edges(tree, outer)], *groups[1:]], True
+    return [with_edges(tree, groups[0]), *groups[1:]], False
+
+
+def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> CompiledTree:
+    inertials = [link.inertial or _MASSLESS for link in tree.links]
+    moments, axes = zip(*map(principal_axes, inertials), strict=True)
+    coms = tuple(Pose(inertial.pose.position, orientation)
+                 for inertial, orientation in zip(inertials, axes, strict=True))
+    found = faces(tree, *grouped(tree, groups, mesh_file), MAX_JOINTS + 1)
+    # What stands is a rigid body for each of its faces.
+    bodies = [[[face]] for face in (*found[0], *slab(tree))] if tree.stands else [found]
+    return CompiledTree(tree, moments, coms, tuple(
+        CompiledBody(
+            describe_tree(tree, coms, [[face.shapes for face in of_link] for of_link in body],
+                          mesh_file),
+            _compiled_faces(tree, coms, body),
+        ) for body in bodies
+    ))
+
+
+def _compiled_faces(
+    tree: Tree, coms: Sequence[Pose], body: list[list[Face]]
+) -> tuple[tuple[CompiledFace | None, ...], ...]:
+    """Return the faces of each link of a body of a tree."""
+    mass = jointed_mass(tree)
+    compiled = []
+    for link, joint, com, of_link in zip(tree.links, tree.joints, coms, body, strict=True):
+        # A rider stands in the frame of the joint above its link.
+        rider = joint.pose.orientation if joint else NO_ROTATION
+        compiled.append(tuple(
+            _compiled_face(face, link, joint, mass, rider if k else com.orientation)
+            for k, face in enumerate(of_link)
+        ))
+    return tuple(compiled)
+
+
+def _compiled_face(
+    face: Face, link: LinkSpec, joint: JointSpec | None, mass: float, turn: Quaternion
+) -> CompiledFace | None:
+    """Return a face of a link; `turn` turns the axes of the part that has it into the link's."""
+    if not face.shapes:
+        return None
+    surface = compliant(face.shapes[0].surface, mass)
+    return CompiledFace(
+        face.side,
+        face.friction,
+        rolling_arm(face.shapes, joint),
+        restitution(surface),
+        surface,
+        FrictionAxes(turn, friction_scales(face.shapes[0], link, turn, face.friction)),
+    )
