@@ -28,9 +28,6 @@ LOOK = 0.5  # [s, wall] between two looks at a child and its caller
 # What waits for a processor or a disk does not sleep, however busy the machine is.
 MOST_ASLEEP = 20
 LOOKS_UNASKED = 10  # after which the caller is asked whether it still waits
-LONG = 1.0  # [s, processor] after which a child gives way to everything else
-NICENESS = 10
-
 
 ROOM = 4096  # [bytes] for a report, set aside before, so that a full machine cannot silence a child
 _REQUEST = struct.Struct('d')  # allowance
@@ -155,7 +152,7 @@ class _Child:
         _answer(self.caller, True, code)
 
     def look(self) -> None:
-        """Kill it if it sleeps for ever; let it give way if it computes for long."""
+        """Kill it if it sleeps for ever."""
         with open(f'/proc/{self._process}/stat', 'rb') as file:
             state, *fields = file.read().rpartition(b') ')[2].split()
         used = _TICK * (int(fields[10]) + int(fields[11]))  # in user mode and in the kernel
@@ -164,8 +161,6 @@ class _Child:
         self._used = used
         if self._looks_asleep > MOST_ASLEEP:
             self.kill(signal.SIGALRM)
-        if used > LONG:
-            os.setpriority(os.PRIO_PROCESS, self._process, NICENESS)
 
 
 def _answer(caller: socket.socket, made: bool, number: int) -> None:

@@ -145,18 +145,6 @@ def test_a_child_that_waits_for_a_processor_is_not_ended(monkeypatch):
     assert float(outcome(work, allowance=1.5)) > 1.5  # though it took longer than that
 
 
-def test_a_child_that_computes_for_long_gives_way(monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.02)
-
-    def work(_):
-        deadline = time.monotonic() + DEADLINE
-        while not os.nice(0) and time.monotonic() < deadline:
-            pass
-        return f'{os.nice(0)} {time.process_time() >= fork_server.LONG}'
-
-    assert outcome(work) == f'{fork_server.NICENESS} True'
-
-
 def test_a_child_delays_nobody_elses():
     def work(payload):
         if payload == b'long':

@@ -185,6 +185,11 @@ def test_the_robot_of_the_article_passes():
     passes(robot_spec())
 
 
+def test_a_heap_of_boxes_in_one_place_passes():
+    box = replace(CRATE.links[0], self_collide=True, visuals=())
+    passes(ModelSpec('heap', tuple(replace(box, name=f'box{i}') for i in range(50))))
+
+
 @pytest.mark.parametrize('number', [signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT, signal.SIGFPE])
 def test_a_model_that_crashes_the_engine_is_refused(number):
     assert fault_of(lambda: os.kill(os.getpid(), number)) == (
