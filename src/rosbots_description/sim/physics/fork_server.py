@@ -205,9 +205,11 @@ def _serve(work: Work, channel: socket.socket) -> None:
                 elif key.fd == child.life:
                     children.remove(child)
                     selector.unregister(child.life)
-                    selector.unregister(child.caller)
+                    with contextlib.suppress(KeyError):  # its caller had gone
+                        selector.unregister(child.caller)
                     child.end()
                 elif child in children:  # its caller has gone
+                    selector.unregister(child.caller)
                     child.kill()
             if time.monotonic() >= next_look:
                 next_look = time.monotonic() + LOOK
