@@ -21,7 +21,6 @@ from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.description.world_spec import LightSpec
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
-from rosbots_description.sim.meshes.store import MeshStore
 from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
 from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.runtime.world import World
@@ -80,7 +79,7 @@ class Bench:
 @cache
 def _sandbox() -> CrashSandbox:
     """Return one for all tests of this process."""
-    return CrashSandbox(Engine(PhysicsSettings(), MeshStore()))
+    return CrashSandbox(Engine(PhysicsSettings()))
 
 
 @contextmanager

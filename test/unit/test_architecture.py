@@ -61,7 +61,7 @@ TO_BE_CUT = {
     'sim/resources': 'sim/formats/xml',
     'sim/meshes': 'sim/formats/xml',
     'sim/formats/sdf': 'sim/formats/urdf sim/runtime',
-    'sim/runtime': 'sim/meshes sim/physics/bullet',
+    'sim/runtime': 'sim/physics/bullet',
     'sim/plugins/force': 'sim/physics/bullet',
     'ros_api/messages': 'sim/core sim/runtime',
     'ros_api/server': 'sim/core sim/resources sim/physics/bullet sim/runtime',

@@ -18,7 +18,6 @@ from ..core import (
     Twist,
 )
 from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec
-from ..meshes import MeshStore
 from ..physics.bullet import CompiledModel, Engine, Tuning
 from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
 from .divergence_watchdog import Guard
@@ -74,15 +73,13 @@ class World:
         self.lights: dict[str, LightSpec] = {}
         self.listeners: list[Listener] = []
         self.paused = False
-        self._meshes = MeshStore()
         self._guard = Guard(self)
         self.schedule.add(self._guard)
-        self.engine = make_engine(self.physics, self._meshes, tuning)
+        self.engine = make_engine(self.physics, tuning)
 
     def close(self) -> None:
         """Free what the world holds outside Python."""
         self.engine.close()
-        self._meshes.close()
 
     def run(self, steps: int) -> int:
         """Advance by exactly `steps`: in each, time first, then hooks, then physics.

@@ -35,19 +35,13 @@ _CONVERGED = 1e-8
 class Engine:
     """One PyBullet world in this process, without window and without chatter."""
 
-    def __init__(
-        self,
-        physics: PhysicsSettings,
-        meshes: MeshStore,
-        tuning: Tuning | None = None,
-    ) -> None:
+    def __init__(self, physics: PhysicsSettings, tuning: Tuning | None = None) -> None:
         """Open an empty world.
 
         Args:
-            meshes: makes the files of meshes.
             tuning: other choices than the usual ones, to measure what they do.
         """
-        self._meshes = meshes
+        self._meshes = MeshStore()
         self._tuning = tuning or Tuning()
         self._client = pybullet.connect(pybullet.DIRECT)
         self._maker = BodyMaker(self._client, self._tuning)
@@ -68,8 +62,9 @@ class Engine:
         self.apply(physics)
 
     def close(self) -> None:
-        """Free the world; the engine cannot be used afterwards."""
+        """Free the world and remove its mesh files; the engine cannot be used afterwards."""
         pybullet.disconnect(self._client)
+        self._meshes.close()
 
     def apply(self, physics: PhysicsSettings) -> None:
         """Use these settings from the next step on."""

@@ -25,7 +25,6 @@ from rosbots_description.sim.description.model_spec import (
     ModelSpec,
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.meshes.store import MeshStore
 from rosbots_description.sim.physics import fork_server
 from rosbots_description.sim.physics.bullet import crash_sandbox
 from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
@@ -41,8 +40,8 @@ LONG = 50.0  # [s] never reached
 class OddEngine(Engine):
     """An engine that does things when models but the ground come, and step."""
 
-    def __init__(self, meshes, does=lambda: None, at_step=lambda: None):
-        super().__init__(PhysicsSettings(), meshes)
+    def __init__(self, does=lambda: None, at_step=lambda: None):
+        super().__init__(PhysicsSettings())
         self._does, self._at_step = does, at_step
 
     def add(self, model, pose):
@@ -67,8 +66,7 @@ class Sandbox:
             self._count[0] += 1
             does()
 
-        self.meshes = MeshStore()
-        self.engine = OddEngine(self.meshes, counted, **odds)
+        self.engine = OddEngine(counted, **odds)
         self._sandbox = CrashSandbox(self.engine)
 
     def __enter__(self):
@@ -77,7 +75,6 @@ class Sandbox:
     def __exit__(self, *_):
         self._sandbox.close()
         self.engine.close()
-        self.meshes.close()
 
     @property
     def trials(self):
@@ -254,8 +251,7 @@ def test_a_model_does_not_wait_for_the_trial_of_another(tmp_path):
             return super().add(model, pose)
 
     with contextlib.ExitStack() as stack:
-        meshes = stack.enter_context(closing(MeshStore()))
-        engine = stack.enter_context(closing(Lingering(meshes)))
+        engine = stack.enter_context(closing(Lingering()))
         sandbox = stack.enter_context(CrashSandbox(engine))
 
         def require(spec):
