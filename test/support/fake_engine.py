@@ -4,8 +4,8 @@ import math
 
 from rosbots_description.sim.core.transforms import NO_ROTATION, Twist, compose
 from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
-from rosbots_description.sim.physics.bullet.compiled_model import CompiledModel
 from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
+from rosbots_description.sim.physics.compiled_model import CompiledModel
 
 
 class FakeEngine:
@@ -27,10 +27,10 @@ class FakeEngine:
         self.step_size = physics.step_size
 
     def compile(self, spec):
-        return CompiledModel(spec, (), (), 0)
+        return CompiledModel(spec, ())
 
     def add(self, model, pose):
-        body, spec = Body(model.size), model.spec
+        body, spec = Body(0), model.spec
         body.spec, body.pose, body.twist = spec, pose, Twist()
         body.roots = [spec.links[0].name]
         body.joints = {joint.name: (0, index) for index, joint in enumerate(spec.joints)}

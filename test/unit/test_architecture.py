@@ -67,7 +67,7 @@ TO_BE_CUT = {
     'ros_api/server': 'sim/core sim/resources sim/physics/bullet sim/runtime',
     'ros_api/services':
         'sim/core sim/description sim/resources sim/formats/xml sim/formats/urdf '
-        'sim/formats/sdf sim/physics/bullet sim/runtime',
+        'sim/formats/sdf sim/physics sim/runtime',
     'ros_api/topics': 'sim/core sim/runtime',
     'ros_api/reconfigure': 'sim/plugins/force',
     'ros_api/adapters': 'sim/core sim/runtime sim/plugins/drive sim/plugins/force',

@@ -16,7 +16,7 @@ from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats.sdf import load_sdf, load_sdf_light
 from ...sim.formats.urdf import load_urdf
 from ...sim.formats.xml import root_tag
-from ...sim.physics.bullet import CompiledModel
+from ...sim.physics import CompiledModel
 from ...sim.resources import UnknownPackage
 from ...sim.runtime import Model, World
 from ..messages import read_pose

@@ -3,7 +3,8 @@
 from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from ..description import Collision as CollisionSpec
 from ..description import JointSpec, LinkSpec, ModelSpec
-from ..physics.bullet import Body, CompiledModel, Engine
+from ..physics import CompiledModel
+from ..physics.bullet import Body, Engine
 from .plugin_life import Plugin
 
 

@@ -18,7 +18,8 @@ from ..core import (
     Twist,
 )
 from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec
-from ..physics.bullet import CompiledModel, Engine, Tuning
+from ..physics import CompiledModel
+from ..physics.bullet import Engine, Tuning
 from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
 from .divergence_watchdog import Guard
 from .external_forces import Jobs

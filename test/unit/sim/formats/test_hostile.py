@@ -18,7 +18,7 @@ from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.sdf.world_file import open_world
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.meshes.store import MeshStore, check_mesh
-from rosbots_description.sim.physics.bullet.compiled_model import compile_model
+from rosbots_description.sim.physics.bullet.compiler import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 LONGEST = 2500  # characters of a sentence

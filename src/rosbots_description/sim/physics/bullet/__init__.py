@@ -2,12 +2,11 @@
 
 from .body import Body
 from .client import pybullet
-from .compiled_model import CompiledModel
 from .crash_sandbox import CrashSandbox
 from .engine import Engine
 from .friction_axes import can_slip
 from .tuning import Tuning
 
 __all__ = [
-    'Body', 'CompiledModel', 'CrashSandbox', 'Engine', 'Tuning', 'can_slip', 'pybullet',
+    'Body', 'CrashSandbox', 'Engine', 'Tuning', 'can_slip', 'pybullet',
 ]

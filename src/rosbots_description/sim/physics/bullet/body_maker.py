@@ -1,4 +1,4 @@
-"""Makes PyBullet's bodies of what compiled_model.py makes of links and joints."""
+"""Makes PyBullet's bodies of what compiler.py makes of links and joints."""
 
 import os
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from ...description.inertia import is_balanced
 from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
 from .collision_filter import Untouching
-from .compiled_model import CompiledFace, CompiledTree
+from .compiler import CompiledFace, CompiledTree
 from .friction_axes import EVENLY
 from .friction_filter import FrictionFilter, Side
 from .generated_urdf import RIDER_MASS, Tree, untouching_links

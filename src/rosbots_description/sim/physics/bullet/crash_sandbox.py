@@ -21,7 +21,7 @@ from functools import partial
 from ...core import IDENTITY, ModelError, Pose, compose
 from ...description import GROUND_PLANE, ModelSpec, PhysicsSettings
 from ..fork_server import LOOK, MOST_ASLEEP, ForkServer, Killed, Unwanted, Work
-from .compiled_model import CompiledModel
+from .compiler import BulletModel
 from .engine import Engine
 
 logger = logging.getLogger(__name__)
@@ -70,7 +70,7 @@ class CrashSandbox:
 
     def require(
         self,
-        model: CompiledModel,
+        model: BulletModel,
         physics: PhysicsSettings,
         is_wanted: Callable[[], bool] = lambda: True,
     ) -> None:
@@ -105,7 +105,7 @@ class CrashSandbox:
                 self._changed.notify_all()
 
     def _try(
-        self, name: str, model: CompiledModel, physics: PhysicsSettings,
+        self, name: str, model: BulletModel, physics: PhysicsSettings,
         is_wanted: Callable[[], bool],
     ) -> bool:
         """Return whether the engine stood a model; False if nobody knows."""
@@ -135,7 +135,7 @@ class CrashSandbox:
         return True
 
 
-def _allowance(model: CompiledModel) -> float:
+def _allowance(model: BulletModel) -> float:
     """Return the processor time [s] that the trial of a model may take."""
     parts = sum(1 + len(link.collisions) for link in model.spec.links)
     return min(MOST, LEAST + FOR_A_PART * parts + FOR_A_BYTE * model.size)
@@ -178,7 +178,7 @@ def _report(engine: Engine, payload: bytes) -> str:
     return _PASSED
 
 
-def _live(engine: Engine, model: CompiledModel) -> None:
+def _live(engine: Engine, model: BulletModel) -> None:
     """Do with the model what a world does: bring it in, step, ask, take it away."""
     body = engine.add(model, _touching(model.spec))
     for _ in range(STEPS):

@@ -15,7 +15,7 @@ from ...meshes import MeshStore
 from .body import Body, Motion, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .client import pybullet
-from .compiled_model import CompiledModel, compile_model
+from .compiler import BulletModel, compile_model
 from .contact_slip import Slipping
 from .fast_rotation import FastBodies
 from .solver_iterations import CHECK, Motor, SolverEffort
@@ -154,7 +154,7 @@ class Engine:
         self._step(client)
         resize(fixedTimeStep=size, numSubSteps=0, physicsClientId=client)
 
-    def compile(self, spec: ModelSpec) -> CompiledModel:
+    def compile(self, spec: ModelSpec) -> BulletModel:
         """Make a model ready to be added; any thread may ask.
 
         Raises:
@@ -162,7 +162,7 @@ class Engine:
         """
         return compile_model(spec, self._meshes)
 
-    def add(self, model: CompiledModel, pose: Pose) -> Body:
+    def add(self, model: BulletModel, pose: Pose) -> Body:
         """Put a model into the world, its frame at `pose`, all joints at zero."""
         body, spec = Body(model.size), model.spec
         try:

@@ -18,7 +18,7 @@ from rosbots_description.sim.description.model_spec import (
     Sphere,
     Surface,
 )
-from rosbots_description.sim.physics.bullet.compiled_model import grouped
+from rosbots_description.sim.physics.bullet.compiler import grouped
 from rosbots_description.sim.physics.bullet.generated_urdf import Tree
 from rosbots_description.sim.physics.bullet.split_edge_contacts import leaning
 from rosbots_description.sim.physics.bullet.surfaces import surface_groups

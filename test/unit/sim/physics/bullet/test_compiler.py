@@ -23,7 +23,7 @@ from rosbots_description.sim.description.model_spec import (
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.meshes.store import MeshStore
 from rosbots_description.sim.physics.bullet import size_limits
-from rosbots_description.sim.physics.bullet.compiled_model import compile_model
+from rosbots_description.sim.physics.bullet.compiler import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 TETRAHEDRON = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n'

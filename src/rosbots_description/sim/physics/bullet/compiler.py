@@ -1,4 +1,4 @@
-"""A model as the physics engine takes it, made once from its description.
+"""What PyBullet takes of a model, made once from its description.
 
 All that takes time about a new model, and all that the engine cannot take, is found out here, on
 any thread: meshes, surfaces, the text that PyBullet reads. World and crash sandbox use the result.
@@ -13,6 +13,7 @@ from ...core import NO_ROTATION, ModelError, Pose, Quaternion, Vector
 from ...description import Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from ...description.inertia import principal_axes
 from ...meshes import HeldFile, MeshStore
+from ..compiled_model import CompiledModel
 from .body import FrictionAxes
 from .faces import Face, faces, slab
 from .friction_axes import friction_scales, restitution
@@ -69,25 +70,18 @@ class CompiledTree:
 
 
 @dataclass(frozen=True)
-class CompiledModel:
-    """A model ready for the engine. Its mesh files are there for as long as it is."""
+class BulletModel(CompiledModel):
+    """A model ready for the engine on PyBullet."""
 
-    spec: ModelSpec
     trees: tuple[CompiledTree, ...]
-    files: tuple[HeldFile, ...]
     size: int  # bytes that the engine reads
 
-    @property
-    def has_files(self) -> bool:
-        """Whether all mesh files are still there; somebody may have cleared the folder."""
-        return all(map(os.path.isfile, self.files))
-
-    def bare(self) -> 'CompiledModel':
+    def bare(self) -> 'BulletModel':
         """Return what the engine sees of it: no name, looks, sensors and plugins."""
         return replace(self, spec=_bare(self.spec))
 
 
-def compile_model(spec: ModelSpec, meshes: MeshStore) -> CompiledModel:
+def compile_model(spec: ModelSpec, meshes: MeshStore) -> BulletModel:
     """Make a model ready for the engine.
 
     Args:
@@ -117,7 +111,7 @@ def compile_model(spec: ModelSpec, meshes: MeshStore) -> CompiledModel:
         size += sum(len(body.text) for body in compiled[-1].bodies)
         shapes = [collision.geometry for link in tree.links for collision in link.collisions]
         size += sum(os.path.getsize(file_of(one)) for one in shapes if isinstance(one, Mesh))
-    return CompiledModel(spec, tuple(compiled), tuple(files.values()), size)
+    return BulletModel(spec, tuple(files.values()), tuple(compiled), size)
 
 
 def _require(spec: ModelSpec, excess: str | None) -> None:
