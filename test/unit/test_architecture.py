@@ -58,16 +58,14 @@ ARROWS = {
 
 # Arrows that are there and should not be: this list is to become empty.
 TO_BE_CUT = {
-    'sim/resources': 'sim/formats/xml',
-    'sim/meshes': 'sim/formats/xml',
     'sim/formats/sdf': 'sim/formats/urdf sim/runtime',
     'sim/runtime': 'sim/physics/bullet',
     'sim/plugins/force': 'sim/physics/bullet',
     'ros_api/messages': 'sim/core sim/runtime',
     'ros_api/server': 'sim/core sim/resources sim/physics/bullet sim/runtime',
     'ros_api/services':
-        'sim/core sim/description sim/resources sim/formats/xml sim/formats/urdf '
-        'sim/formats/sdf sim/physics sim/runtime',
+        'sim/core sim/description sim/resources sim/formats/urdf sim/formats/sdf sim/physics '
+        'sim/runtime',
     'ros_api/topics': 'sim/core sim/runtime',
     'ros_api/reconfigure': 'sim/plugins/force',
     'ros_api/adapters': 'sim/core sim/runtime sim/plugins/drive sim/plugins/force',

@@ -12,10 +12,9 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Point
 
-from ...sim.core import Pose
+from ...sim.core import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT, Pose
 from ...sim.description import Inertial
 from ...sim.description.inertia import in_link_axes, is_positive, turnable
-from ...sim.formats.xml import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT
 from ...sim.runtime import Link
 from ..messages import RequestError, read_vector, require_finite
 from ..server import Server

@@ -15,9 +15,8 @@ from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats.sdf import load_sdf, load_sdf_light
 from ...sim.formats.urdf import load_urdf
-from ...sim.formats.xml import root_tag
 from ...sim.physics import CompiledModel
-from ...sim.resources import UnknownPackage
+from ...sim.resources import UnknownPackage, root_tag
 from ...sim.runtime import Model, World
 from ..messages import read_pose
 from ..server import Server

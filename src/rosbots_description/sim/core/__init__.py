@@ -10,7 +10,19 @@ from .errors import (
     SimError,
     one_line,
 )
-from .limits import LARGEST
+from .limits import HEAVIEST, LARGEST, LIGHTEST, LONGEST, MOST_INERT
+from .messages import (
+    MAX_NOTES,
+    document_url,
+    fault,
+    line_of,
+    location,
+    note,
+    owner,
+    shortened,
+    source_of,
+    suggestion,
+)
 from .transforms import (
     ALONG,
     IDENTITY,
@@ -37,9 +49,11 @@ from .transforms import (
 from .xml_text import is_expanded_xacro, plain_text
 
 __all__ = [
-    'ALONG', 'END', 'IDENTITY', 'LARGEST', 'NANOSECONDS', 'NO_ROTATION', 'UP', 'AbsentError',
-    'ModelError', 'NotFoundError', 'PluginError', 'Pose', 'Quaternion', 'ShapeError', 'SimClock',
-    'SimError', 'Twist', 'Vector', 'add', 'compose', 'conjugate', 'cross', 'dot', 'from_rpy',
-    'inverse', 'is_expanded_xacro', 'normalise', 'one_line', 'plain_text', 'relative', 'rotate',
-    'subtract', 'to_rpy', 'yaw_of',
+    'ALONG', 'END', 'HEAVIEST', 'IDENTITY', 'LARGEST', 'LIGHTEST', 'LONGEST', 'MAX_NOTES',
+    'MOST_INERT', 'NANOSECONDS', 'NO_ROTATION', 'UP', 'AbsentError', 'ModelError', 'NotFoundError',
+    'PluginError', 'Pose', 'Quaternion', 'ShapeError', 'SimClock', 'SimError', 'Twist', 'Vector',
+    'add', 'compose', 'conjugate', 'cross', 'document_url', 'dot', 'fault', 'from_rpy', 'inverse',
+    'is_expanded_xacro', 'line_of', 'location', 'normalise', 'note', 'one_line', 'owner',
+    'plain_text', 'relative', 'rotate', 'shortened', 'source_of', 'subtract', 'suggestion',
+    'to_rpy', 'yaw_of',
 ]

@@ -11,9 +11,9 @@ import numpy as np
 from lxml import etree
 
 from ..core import ModelError
-from ..formats.xml import check_bounds
+from ..resources import check_xml_bounds
 
-MAX_ELEMENTS = 1_000_000
+MAX_COLLADA_ELEMENTS = 1_000_000
 MAX_INSTANCES = 10_000  # of geometries, all nodes expanded
 MAX_CORNERS = 15_000_000  # of all instances together
 
@@ -34,7 +34,7 @@ def safe_collada(content: bytes) -> bytes:
     if not document.startswith(b'<'):
         raise ColladaError('is broken or no .dae file: it does not begin as XML')
     try:
-        error = check_bounds(document, 'it', MAX_ELEMENTS)
+        error = check_xml_bounds(document, 'it', MAX_COLLADA_ELEMENTS)
     except ModelError as refused:
         raise ColladaError(f'is not read: {refused}') from None
     if error is not None:

@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core import AbsentError, ModelError
-from ..formats.xml import LONGEST, shortened
+from ..core import LONGEST, AbsentError, ModelError, shortened
 from ..resources import read_file, regular_state, within
 from .collada_limits import ColladaError, safe_collada
 from .decimation import thinned
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-MAX_BYTES = 120_000_000
+MAX_MESH_BYTES = 120_000_000
 MAX_TRIANGLES = 3_000_000  # in the file; a binary STL of 120 MB has 2.4 million
 FINEST = 400_000  # triangles that are simulated and shown; more are thinned
 MAX_LIBRARY_BYTES = 1_000_000
@@ -133,7 +132,7 @@ def _read(path: str, mtime_ns: int, size: int) -> MeshData:
     extension = os.path.splitext(path)[1].lower()
     if extension not in FORMATS:
         raise _fault(path, f"format '{extension}' is not read; convert it to {', '.join(FORMATS)}")
-    content = read_file(path, MAX_BYTES, 'mesh file')
+    content = read_file(path, MAX_MESH_BYTES, 'mesh file')
     parts = _check_parts(path, _parse(path, extension, content))
     return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_thin(path, parts)))
 

@@ -9,11 +9,10 @@ from pathlib import Path
 
 from lxml import etree
 
-from ..core import ModelError
-from ..formats.xml import suggestion
+from ..core import ModelError, suggestion
 from ..resources import HeldFile, HeldFiles, read_file, regular_state
 from .collada_limits import ColladaError, safe_collada
-from .loader import MAX_BYTES, read_mesh
+from .loader import MAX_MESH_BYTES, read_mesh
 
 _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
 _files = HeldFiles('rosbots_submeshes_')
@@ -31,9 +30,10 @@ def submesh_file(path: str, name: str, center: bool) -> HeldFile:
             room for what is made of it.
     """
     state = regular_state(path, 'mesh file')
-    if not path.lower().endswith('.dae') or state.st_size > MAX_BYTES:
+    if not path.lower().endswith('.dae') or state.st_size > MAX_MESH_BYTES:
         raise ModelError(
-            f"mesh file '{path}': only .dae files of at most {MAX_BYTES} bytes have submeshes here"
+            f"mesh file '{path}': only .dae files of at most {MAX_MESH_BYTES} bytes have "
+            'submeshes here'
         )
     key = repr((path, state.st_mtime_ns, state.st_size, name, center)).encode()
     made = f'{Path(path).stem}_{hashlib.sha256(key).hexdigest()[:32]}.dae'
@@ -49,7 +49,7 @@ def _content(path: str, name: str, center: bool) -> bytes:
 
 
 def _parse(path: str) -> etree._Element:
-    content = read_file(path, MAX_BYTES, 'mesh file')
+    content = read_file(path, MAX_MESH_BYTES, 'mesh file')
     try:
         document = safe_collada(content)
     except ColladaError as error:

@@ -20,10 +20,12 @@ from .uris import (
     substitute_in_tree,
     substitute_packages,
 )
+from .xml_parser import MAX_XML_BYTES, check_xml_bounds, parse_xml, root_tag
 
 __all__ = [
-    'BUILT_IN_MODELS', 'FindModel', 'FindPackage', 'HeldFile', 'HeldFiles', 'ModelSearch',
-    'UnknownPackage', 'below_model_path', 'description_file', 'file_path', 'find_world',
-    'in_models', 'path_directories', 'read_file', 'refuse_climbing', 'regular_state',
-    'substitute_in_tree', 'substitute_packages', 'within',
+    'BUILT_IN_MODELS', 'MAX_XML_BYTES', 'FindModel', 'FindPackage', 'HeldFile', 'HeldFiles',
+    'ModelSearch', 'UnknownPackage', 'below_model_path', 'check_xml_bounds', 'description_file',
+    'file_path', 'find_world', 'in_models', 'parse_xml', 'path_directories', 'read_file',
+    'refuse_climbing', 'regular_state', 'root_tag', 'substitute_in_tree', 'substitute_packages',
+    'within',
 ]

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from lxml import etree
 
-from ..core import AbsentError, NotFoundError
-from ..formats.xml import MAX_BYTES, fault, parse
+from ..core import AbsentError, NotFoundError, fault
 from .safe_io import read_file
+from .xml_parser import MAX_XML_BYTES, parse_xml
 
 # Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
 FindModel = Callable[[str], str | None]
@@ -152,7 +152,7 @@ def description_file(path: str, asker: etree._Element) -> str:
 
 
 def _chosen(manifest: str, asker: etree._Element) -> str:
-    root = parse(read_file(manifest, MAX_BYTES), manifest)
+    root = parse_xml(read_file(manifest, MAX_XML_BYTES), manifest)
     offers = [
         (_version(entry.get('version', '')), (entry.text or '').strip())
         for entry in root.iterfind('sdf')

@@ -7,8 +7,7 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from ..core import AbsentError
-from ..formats.xml import fault, place
+from ..core import AbsentError, fault, location
 
 FindPackage = Callable[[str], str | None]  # package name -> its directory, None if unknown
 
@@ -70,7 +69,7 @@ def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
             if element.text and 'package://' in element.text:
                 element.text = substitute_packages(element.text, find_once)
         except UnknownPackage as error:
-            raise UnknownPackage(error.package, place(element)) from None
+            raise UnknownPackage(error.package, location(element)) from None
 
 
 def refuse_climbing(element: etree._Element, uri: str) -> None:

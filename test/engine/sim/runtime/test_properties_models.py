@@ -15,8 +15,8 @@ from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.formats.xml.parser import root_tag
 from rosbots_description.sim.resources.uris import UnknownPackage
+from rosbots_description.sim.resources.xml_parser import root_tag
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
 STEPS = 20

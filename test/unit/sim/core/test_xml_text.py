@@ -4,7 +4,7 @@ import pytest
 
 from rosbots_description.ros_api.clients.model_source import canonical_xml
 from rosbots_description.sim.core.xml_text import plain_text
-from rosbots_description.sim.formats.xml.parser import parse, root_tag
+from rosbots_description.sim.resources.xml_parser import parse_xml, root_tag
 
 
 @pytest.mark.parametrize('text', [
@@ -15,13 +15,13 @@ from rosbots_description.sim.formats.xml.parser import parse, root_tag
     b'<!-- a\n-- b\n-->\n<robot><link name="\xc3\xa4"/></robot>',
 ])
 def test_what_tinyxml_takes_is_taken_by_server_and_spawn_model_and_keeps_its_lines(text):
-    root = parse(text, 's')
+    root = parse_xml(text, 's')
     assert root[0].get('name') == 'ä'
     assert root[0].sourceline == 4
     assert root_tag(text) == 'robot'
     sent = canonical_xml(text)
     assert sent.isascii()
-    again = parse(sent, 's')[0]
+    again = parse_xml(sent, 's')[0]
     assert (again.get('name'), again.sourceline) == ('ä', 4)
 
 

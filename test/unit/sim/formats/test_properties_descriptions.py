@@ -11,8 +11,8 @@ from support.mutations import RAW, damaged, spoiled
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.formats.sdf.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.formats.xml.parser import parse, root_tag
 from rosbots_description.sim.resources.uris import UnknownPackage
+from rosbots_description.sim.resources.xml_parser import parse_xml, root_tag
 
 ROUNDING = 1e-6  # relative; masses differ by up to six orders of magnitude
 
@@ -78,7 +78,7 @@ def test_the_damaged_robot_is_a_model_or_a_refusal(data):
 @given(RAW)
 def test_any_text_is_a_model_or_a_refusal(text):
     root_tag(text)
-    for read in (parse, load_sdf_light, load_urdf):
+    for read in (parse_xml, load_sdf_light, load_urdf):
         try:
             read(text, 'it')
         except ModelError as error:

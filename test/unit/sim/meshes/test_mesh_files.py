@@ -201,7 +201,7 @@ def test_another_format_is_named_with_those_that_are_read(write):
 
 
 def test_a_file_too_big_or_too_fine_is_refused(write, monkeypatch):
-    monkeypatch.setattr(loader, 'MAX_BYTES', 10)
+    monkeypatch.setattr(loader, 'MAX_MESH_BYTES', 10)
     assert 'at most 10 are accepted' in complaint(write('a.obj', TRIANGLE))
     monkeypatch.undo()
     monkeypatch.setattr(loader, 'MAX_TRIANGLES', 1)

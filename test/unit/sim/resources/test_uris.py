@@ -4,7 +4,6 @@ import pytest
 from lxml import etree
 
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.formats.xml.parser import parse
 from rosbots_description.sim.resources.uris import (
     UnknownPackage,
     file_path,
@@ -12,6 +11,7 @@ from rosbots_description.sim.resources.uris import (
     substitute_in_tree,
     substitute_packages,
 )
+from rosbots_description.sim.resources.xml_parser import parse_xml
 
 FOLDERS = {'bot': '/opt/bot', 'odd': '/opt/a & b/'}
 
@@ -28,7 +28,7 @@ def test_an_unknown_package_is_named():
 
 
 def test_the_whole_tree_is_substituted_and_meshes_remember_what_was_written():
-    root = parse(
+    root = parse_xml(
         '<robot><mesh filename="package://bot/m.dae"/>'
         '<plugin><config>package://odd/c.yaml</config></plugin></robot>', 's',
     )
@@ -39,12 +39,12 @@ def test_the_whole_tree_is_substituted_and_meshes_remember_what_was_written():
 
 
 def test_a_comment_may_name_any_package():
-    substitute_in_tree(parse('<robot><!-- package://nope/ --></robot>', 's'), FOLDERS.get)
+    substitute_in_tree(parse_xml('<robot><!-- package://nope/ --></robot>', 's'), FOLDERS.get)
 
 
 def test_an_unknown_package_in_a_tree_is_named_with_its_line():
     text = '<robot>\n<link name="a"><mesh filename="package://nope/m.dae"/></link></robot>'
-    root = parse(text, 's')
+    root = parse_xml(text, 's')
     with pytest.raises(UnknownPackage, match=r"^s, line 2: link 'a': package 'nope'"):
         substitute_in_tree(root, FOLDERS.get)
 
@@ -69,7 +69,7 @@ def test_a_path_is_taken_as_it_is_or_decoded_whichever_is_there(tmp_path, scheme
 @pytest.mark.parametrize('uri', ['http://x/m.dae', 'model://x/m.dae', 'm.dae', 'package://x/m.dae'])
 def test_other_addresses_are_refused_with_a_cure(uri):
     with pytest.raises(ModelError, match='use .*file:///path'):
-        file_path(parse('<mesh/>', 's'), uri)
+        file_path(parse_xml('<mesh/>', 's'), uri)
 
 
 @pytest.mark.parametrize('uri', [
@@ -78,9 +78,9 @@ def test_other_addresses_are_refused_with_a_cure(uri):
 ])
 def test_an_address_that_climbs_out_of_its_package_is_refused_however_it_is_written(uri):
     with pytest.raises(ModelError, match="leads out of package 'bot'; '..' is not accepted"):
-        refuse_climbing(parse('<mesh/>', 's'), uri)
+        refuse_climbing(parse_xml('<mesh/>', 's'), uri)
 
 
 @pytest.mark.parametrize('uri', ['package://bot/a/%2e%2e/x.dae', 'package://bot/..x', '/../x.dae'])
 def test_an_address_that_stays_in_its_package_is_not_refused(uri):
-    refuse_climbing(parse('<mesh/>', 's'), uri)
+    refuse_climbing(parse_xml('<mesh/>', 's'), uri)

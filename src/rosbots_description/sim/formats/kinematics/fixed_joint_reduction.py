@@ -9,10 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from ...core import IDENTITY, ModelError, Pose, compose
+from ...core import IDENTITY, ModelError, Pose, compose, fault
 from ...description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 from ...description.inertia import merge
-from ..xml import fault
 from .frame_references import move_part
 from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
 

@@ -5,27 +5,29 @@ from collections.abc import Callable
 
 from lxml import etree
 
-from ...core import ModelError
+from ...core import ModelError, fault
 from ...resources import (
     BUILT_IN_MODELS,
+    MAX_XML_BYTES,
     FindModel,
     FindPackage,
     below_model_path,
     description_file,
     file_path,
     in_models,
+    parse_xml,
     read_file,
     refuse_climbing,
     substitute_packages,
     within,
 )
-from ..xml import MAX_BYTES, fault, parse, remove_xacro, scalar, tag_of
+from ..xml import remove_xacro, scalar, tag_of
 from .omissions import Notes
 from .pose_repair import complete_poses
 
 NEWEST = (1, 7)
 _UNVERSIONED = (1, 6)
-MAX_DEPTH = 50  # of includes; more can only be files that include each other
+MAX_INCLUDE_DEPTH = 50  # of includes; more can only be files that include each other
 MAX_INCLUDES = 5000
 
 
@@ -55,7 +57,7 @@ class SdfDocument:
             ModelError: it is no XML, or no SDF.
         """
         self.library = library
-        self.root = parse(text, source)
+        self.root = parse_xml(text, source)
         self.notes = Notes(source)
         for sentence in remove_xacro(self.root):
             self.notes.say(f'{source}: {sentence}')
@@ -176,7 +178,7 @@ class SdfLibrary:
             ModelError: the file cannot be read, or holds no SDF.
         """
         if path not in self._documents:
-            self.add(read_file(path, MAX_BYTES), path, os.path.dirname(path), home)
+            self.add(read_file(path, MAX_XML_BYTES), path, os.path.dirname(path), home)
         return self._documents[path]
 
     def built_in(self, uri: str, text: str) -> SdfDocument:
@@ -189,7 +191,7 @@ class SdfLibrary:
         Raises:
             ModelError: it is being read already: files that include each other.
         """
-        if document in self._reading or len(self._reading) >= MAX_DEPTH:
+        if document in self._reading or len(self._reading) >= MAX_INCLUDE_DEPTH:
             raise fault(element, 'the included model includes itself')
         self._included += 1
         if self._included > MAX_INCLUDES:

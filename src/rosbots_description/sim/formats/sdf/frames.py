@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from ...core import IDENTITY, AbsentError, Pose, compose
-from ..xml import fault, suggestion, tag_of
+from ...core import IDENTITY, AbsentError, Pose, compose, fault, suggestion
+from ..xml import tag_of
 from .values import pose_in
 
 MODEL_FRAME = '__model__'

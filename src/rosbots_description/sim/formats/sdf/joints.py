@@ -5,10 +5,10 @@ from dataclasses import replace
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, Vector, compose, conjugate, relative, rotate
+from ...core import IDENTITY, Pose, Vector, compose, conjugate, fault, relative, rotate
 from ...description import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
 from ..kinematics import WORLD
-from ..xml import fault, required_name
+from ..xml import required_name
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
 from .values import (

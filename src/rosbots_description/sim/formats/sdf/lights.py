@@ -2,9 +2,9 @@
 
 from lxml import etree
 
-from ...core import Pose
+from ...core import Pose, fault
 from ...description import DIRECTIONAL, POINT, SPOT, LightSpec
-from ..xml import fault, required_name
+from ..xml import required_name
 from .document import SdfDocument
 from .values import colour_of, number_of, numbers_of, truth_of
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, relative, to_rpy
+from ...core import IDENTITY, Pose, fault, relative, to_rpy
 from ...description import Collision, Element, Inertial, LinkSpec, Visual
 from ..kinematics import WORLD
-from ..xml import fault, require_mass, required_name, to_element
+from ..xml import require_mass, required_name, to_element
 from .document import SdfDocument
 from .frames import Frames
 from .shapes import read_collision, read_visual

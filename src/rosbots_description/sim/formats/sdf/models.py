@@ -10,11 +10,11 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from ...core import AbsentError, Pose, compose
+from ...core import AbsentError, Pose, compose, fault, location, shortened
 from ...description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
 from ...description.inertia import impossible, possible, turnable
 from ..kinematics import WORLD
-from ..xml import fault, place, required_name, shortened, to_element
+from ..xml import required_name, to_element
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
 from .joints import add_joint_frame, as_trees, read_joint
@@ -161,7 +161,7 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
         links = _movable(parts, links, {joint.child for joint in joints})
     return ModelSpec(
         name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner,
-        left_out=tuple(dict.fromkeys(parts.left_out)), location=place(parts.element),
+        left_out=tuple(dict.fromkeys(parts.left_out)), location=location(parts.element),
     )
 
 

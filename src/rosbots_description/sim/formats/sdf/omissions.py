@@ -6,7 +6,8 @@ from itertools import islice
 
 from lxml import etree
 
-from ..xml import MAX_NOTES, LeftOut, line_of, parse_numbers, place, scalar, shortened, tag_of
+from ...core import MAX_NOTES, line_of, location, shortened
+from ..xml import LeftOut, parse_numbers, scalar, tag_of
 
 logger = logging.getLogger(__name__)
 
@@ -72,7 +73,7 @@ class Notes:
 
     def warn(self, element: etree._Element, sentence: str) -> None:
         """Note that something is done differently than `element` asks."""
-        self.say(f'{place(element)}: {shortened(sentence)}')
+        self.say(f'{location(element)}: {shortened(sentence)}')
 
     def say(self, sentence: str) -> None:
         """Note a sentence that tells its place itself."""

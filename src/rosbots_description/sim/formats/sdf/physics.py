@@ -4,9 +4,9 @@ from dataclasses import fields
 
 from lxml import etree
 
-from ...core import SimError
+from ...core import SimError, fault
 from ...description import PhysicsSettings, check
-from ..xml import fault, scalar, tag_of
+from ..xml import scalar, tag_of
 from .document import SdfDocument
 from .values import number_of, numbers_of
 

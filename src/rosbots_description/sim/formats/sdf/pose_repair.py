@@ -2,7 +2,8 @@
 
 from lxml import etree
 
-from ..xml import line_of, parse_numbers, scalar, shortened
+from ...core import line_of, shortened
+from ..xml import parse_numbers, scalar
 
 _NUMBERS = 6  # x y z roll pitch yaw
 _FOREIGN = ('plugin',)  # what stands in these is the business of who reads them

@@ -2,7 +2,7 @@
 
 from lxml import etree
 
-from ...core import AbsentError, ModelError, Pose, ShapeError
+from ...core import AbsentError, ModelError, Pose, ShapeError, fault, location, owner
 from ...description import (
     Box,
     Collision,
@@ -18,7 +18,7 @@ from ...description import (
 )
 from ...meshes import check_mesh, submesh_file
 from ..urdf import ENDLESS_FRICTION
-from ..xml import fault, is_endless, owner, place, tag_of
+from ..xml import is_endless, tag_of
 from .document import SdfDocument
 from .values import (
     colour_of,
@@ -135,7 +135,7 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     try:
         path = document.file(uri_element, uri)
     except AbsentError as error:
-        raise ShapeError(str(error).removeprefix(f'{place(uri_element)}: '), uri) from error
+        raise ShapeError(str(error).removeprefix(f'{location(uri_element)}: '), uri) from error
     submesh = text_of(element, 'submesh/name')
     try:
         if submesh:

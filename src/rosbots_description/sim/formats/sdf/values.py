@@ -4,10 +4,9 @@ import math
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, Vector, from_rpy
+from ...core import IDENTITY, Pose, Vector, fault, from_rpy
 from ...core import normalise as normalise_quaternion
 from ..xml import (
-    fault,
     is_endless,
     require_damping,
     require_near,

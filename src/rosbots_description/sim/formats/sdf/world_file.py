@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from ...core import ModelError, Pose, SimError
+from ...core import ModelError, Pose, SimError, fault
 from ...description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
-from ...resources import FindModel, FindPackage, read_file
+from ...resources import MAX_XML_BYTES, FindModel, FindPackage, read_file
 from ...runtime import World
-from ..xml import MAX_BYTES, fault, required_name
+from ..xml import required_name
 from .document import SdfDocument, SdfLibrary
 from .frames import Frames
 from .lights import read_light
@@ -114,7 +114,7 @@ def open_world(
     Raises:
         ModelError: the file cannot be read; or as `load_world`.
     """
-    text = read_file(os.fspath(path), MAX_BYTES, 'world file')
+    text = read_file(os.fspath(path), MAX_XML_BYTES, 'world file')
     return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package)
 
 

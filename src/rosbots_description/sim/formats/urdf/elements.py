@@ -5,7 +5,17 @@ from collections.abc import Callable, Mapping
 
 from lxml import etree
 
-from ...core import AbsentError, ModelError, ShapeError, Vector
+from ...core import (
+    AbsentError,
+    ModelError,
+    ShapeError,
+    Vector,
+    fault,
+    location,
+    note,
+    shortened,
+    suggestion,
+)
 from ...description import (
     FIXED,
     PRISMATIC,
@@ -27,18 +37,13 @@ from ...resources import FindModel, file_path, in_models, refuse_climbing
 from ..kinematics import FREE, TreeJoint, TreeLink
 from ..xml import (
     LeftOut,
-    fault,
     limit_number,
-    note,
     number,
     numbers,
     origin,
-    place,
     positive,
     require_mass,
     required_name,
-    shortened,
-    suggestion,
 )
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
@@ -113,7 +118,7 @@ class LinkReader:
         found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
         if found is None and element.find('texture') is None and element.find('color') is None:
             note(self.notes, lambda: (
-                f'{place(element)}: it has no <color> anywhere, it is shown grey'
+                f'{location(element)}: it has no <color> anywhere, it is shown grey'
                 f'{suggestion(name, self._materials)}'
             ))
         return found
@@ -173,7 +178,7 @@ class LinkReader:
         try:
             path = self._path(element, filename)
         except AbsentError as error:
-            raise ShapeError(str(error).removeprefix(f'{place(element)}: '), uri) from error
+            raise ShapeError(str(error).removeprefix(f'{location(element)}: '), uri) from error
         try:
             self._check_mesh(path, scale)
         except ModelError as error:
@@ -236,7 +241,7 @@ def read_joint(
     parent, child = _end(element, 'parent'), _end(element, 'child')
     if kind == FREE:
         note(notes, lambda: (
-            f'{place(element)}: a {written} joint ties nothing here, '
+            f'{location(element)}: a {written} joint ties nothing here, '
             f"'{shortened(child, 60)}' and what hangs on it move freely"
         ))
     if kind in (FIXED, FREE):
@@ -274,7 +279,7 @@ def _axis(element: etree._Element, notes: list[str]) -> Vector:
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
         note(notes, lambda: (
-            f'{place(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
+            f'{location(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
             'x is used as in Gazebo; one of the three must not be zero, e.g. "0 0 1"'
         ))
         return (1.0, 0.0, 0.0)
@@ -292,7 +297,7 @@ def _not_negative(
     value = number(element, attribute, 0.0)
     if value < 0.0:
         note(notes, lambda: (
-            f'{place(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
+            f'{location(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
             'negative, 0 is used; it takes energy out of a motion'
         ))
     return max(0.0, value)
@@ -320,7 +325,7 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str
     if lower > upper:
         low, high = upper, lower
         note(notes, lambda: (
-            f'{place(limit)}: lower limit {high:g} is above upper limit {low:g}, '
+            f'{location(limit)}: lower limit {high:g} is above upper limit {low:g}, '
             'the two are switched'
         ))
         lower, upper = low, high

@@ -13,25 +13,18 @@ from functools import partial
 
 from lxml import etree
 
-from ...core import ModelError
+from ...core import MAX_NOTES, ModelError, fault, line_of, location, note, shortened, suggestion
 from ...description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
 from ...plugin_registry import library_remark
 from ..kinematics import TreeLink
 from ..xml import (
-    MAX_NOTES,
     LeftOut,
-    fault,
     is_endless,
-    line_of,
-    note,
     parse_numbers,
-    place,
     require_damping,
     scalar,
     scalar_number,
     scalar_numbers,
-    shortened,
-    suggestion,
     tag_of,
     to_element,
     truth,
@@ -98,7 +91,7 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
             written = scalar(child)
             note(tags.notes, partial(
                 '{}: of <{}> {!r} only the number {} is read, as in Gazebo'.format,
-                place(child), child.tag, shortened(written, 60), found[0]))
+                location(child), child.tag, shortened(written, 60), found[0]))
             child.attrib.pop('value', None)
             child.text = found[0]
 
@@ -138,7 +131,7 @@ def read_gazebo_tags(
 
 def _unknown(block: etree._Element, reference: str, names: Collection[str]) -> str:
     return (
-        f'{place(block)}: there is no link or joint of that name, the block is '
+        f'{location(block)}: there is no link or joint of that name, the block is '
         f'ignored{suggestion(reference, names)}'
     )
 
@@ -197,7 +190,7 @@ def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     if not filename:
         note(tags.notes, lambda: (
-            f'{place(element)}: a <plugin> without filename is ignored; '
+            f'{location(element)}: a <plugin> without filename is ignored; '
             'filename="libgazebo_ros_….so" picks the code'
         ))
         return
@@ -242,7 +235,7 @@ def _mention_part(element: etree._Element, tags: GazeboTags, unread: list[str]) 
 def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     note(tags.notes, lambda: (
-        f'{place(element)}: a <plugin> of a link is not run, as in Gazebo; '
+        f'{location(element)}: a <plugin> of a link is not run, as in Gazebo; '
         f'{library_remark(filename)}; put it into a <gazebo> without reference'
     ))
 
@@ -314,7 +307,7 @@ def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     material = gazebo_material(script)
     if material is None:
         note(tags.notes, lambda: (
-            f"{place(element)}: material '{shortened(script, 60)}' is none of Gazebo's, grey is "
+            f"{location(element)}: material '{shortened(script, 60)}' is none of Gazebo's, grey is "
             'shown; Gazebo/Red is an example of one'
         ))
         material = Material(script=script)

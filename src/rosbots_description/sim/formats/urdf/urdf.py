@@ -5,26 +5,13 @@ from dataclasses import replace
 
 from lxml import etree
 
-from ...core import IDENTITY, ModelError, Pose
+from ...core import IDENTITY, ModelError, Pose, fault, location, note, shortened
 from ...description import LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, turnable
 from ...meshes import check_mesh
-from ...resources import FindModel, FindPackage, substitute_in_tree
+from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
 from ..kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
-from ..xml import (
-    XACRO_CURE,
-    check_name,
-    fault,
-    foreign_tags,
-    note,
-    origin,
-    parse,
-    place,
-    remove_xacro,
-    required_name,
-    shortened,
-    tag_of,
-)
+from ..xml import XACRO_CURE, check_name, foreign_tags, origin, remove_xacro, required_name, tag_of
 from .elements import LinkReader, read_joint
 from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
 
@@ -60,7 +47,7 @@ def load_urdf(
     What can be simulated, but not quite as written, is a warning, one line for each kind.
     """
     check_name(name)
-    robot = parse(text, source)
+    robot = parse_xml(text, source)
     if robot.tag != 'robot':
         raise fault(robot, f'the first element is <{tag_of(robot)}>; a URDF begins with <robot>')
     if find_package is not None:
@@ -85,7 +72,7 @@ def load_urdf(
         tags.static,
         {link: heir for link, (heir, _) in lumped.heirs.items()},
         left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(lumped.vanished)))),
-        location=place(robot),
+        location=location(robot),
     )
     pose = _robot_origin(robot)
     for sentence in tags.left_out.errors():

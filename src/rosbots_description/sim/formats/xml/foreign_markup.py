@@ -1,13 +1,13 @@
 """What a description has that is not its own language: xacro nobody expanded, foreign prefixes.
 
 As in Gazebo a tag of another namespace is ignored, with all that is in it, and an expression is the
-text that it is. Only where a number is needed is there none; see `markup_values`.
+text that it is. Only where a number is needed is there none; see `values`.
 """
 
 from lxml import etree
 
-from .parser import XACRO_CURE, is_expression, line_of, shortened
-from .values import tag_of
+from ...core import line_of, shortened
+from .values import XACRO_CURE, is_expression, tag_of
 
 _XACRO = 'xacro:'
 _OWN = ('gazebo', 'plugin', 'sensor')  # whatever stands in these is the business of who reads them

@@ -5,11 +5,9 @@ from itertools import islice
 
 from lxml import etree
 
-from ...core import ModelError, ShapeError
+from ...core import MAX_NOTES, ModelError, ShapeError, line_of, location, owner, shortened
 from ...description import Element
 from ...plugin_registry import PAGE, library_remark
-from .parser import line_of, shortened
-from .values import MAX_NOTES, owner, place
 
 
 class LeftOut:
@@ -37,7 +35,7 @@ class LeftOut:
             self.parts.append(f"mesh '{shortened(error.uri, 100)}'")
             return
         if len(self.warnings) < MAX_NOTES:
-            self.warnings.append(f'{place(element)}: {error}; the {element.tag} is left out')
+            self.warnings.append(f'{location(element)}: {error}; the {element.tag} is left out')
         self.parts.append(f'{element.tag} of {owner(element)}')
 
     def part(self, called: str, error: ModelError) -> None:

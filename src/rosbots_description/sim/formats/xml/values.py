@@ -1,32 +1,30 @@
-"""Read names, numbers, poses and plain element trees from parsed XML, and word complaints.
-
-Every complaint says source, line, the link, joint or plugin it is about, the fault and the cure.
-"""
+"""Read names, numbers, poses and plain element trees from parsed XML."""
 
 import math
 import re
-from collections.abc import Callable, Collection
-from difflib import get_close_matches
-from itertools import islice
+from collections.abc import Collection
 
 from lxml import etree
 
-from ...core import IDENTITY, ModelError, Pose, ShapeError, from_rpy
+from ...core import (
+    HEAVIEST,
+    IDENTITY,
+    LIGHTEST,
+    LONGEST,
+    MOST_INERT,
+    ModelError,
+    Pose,
+    ShapeError,
+    fault,
+    from_rpy,
+)
 from ...description import Element
-from .parser import XACRO_CURE, is_expression, line_of, shortened, source_of
+
+XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
-MAX_NOTES = 40  # sentences about one description; who needs more does not read them
-
-# What no model needs, and what the arithmetic of the engine cannot hold beside other models.
-LONGEST = 1e7  # [m] a size or a distance within a model
-LIGHTEST, HEAVIEST = 1e-12, 1e12  # [kg]
-MOST_INERT = 1e20  # [kg m^2]
 MOST_DAMPED = 1000.0  # [1/s] with steps of a millisecond a link then stands at once
 
-# Elements with a name of their own, which a message should mention.
-_OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'name',
-           'plugin': 'name', 'sensor': 'name', 'material': 'name'}
 _CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 _INFINITE = ('inf', 'infinity')
 _TRUE = {'true', 'yes', '1'}
@@ -38,51 +36,6 @@ def tag_of(element: etree._Element) -> str:
     """Return the element's name as written, prefix included."""
     name = etree.QName(element).localname if element.tag.startswith('{') else element.tag
     return f'{element.prefix}:{name}' if element.prefix else name
-
-
-def fault(
-    element: etree._Element, sentence: str, kind: type[ModelError] = ModelError
-) -> ModelError:
-    """Return the error to raise about `element`: source, line and owner before the sentence."""
-    return kind(f'{place(element)}: {sentence}')
-
-
-def place(element: etree._Element) -> str:
-    """Return where an element stands, e.g. "robot_description, line 12: joint 'j1'"."""
-    where = f'{source_of(element)}, {line_of(element)}'
-    called = owner(element)
-    return f'{where}: {called}' if called else where
-
-
-def owner(element: etree._Element) -> str:
-    """Return what an element belongs to or is, e.g. "link 'base'"; '' where nothing has a name."""
-    for candidate in (element, *element.iterancestors()):
-        name = candidate.get(_OWNERS[candidate.tag]) if candidate.tag in _OWNERS else None
-        if name:
-            shown = shortened(name, 60)
-            if candidate.tag == 'gazebo':
-                return f"<gazebo reference='{shown}'>"
-            return f"{candidate.tag} '{shown}'"
-    return ''
-
-
-def suggestion(name: str, known: Collection[str]) -> str:
-    """Return "; did you mean 'x'?" where a known name is close, else the known ones, if few."""
-    near = [other for other in islice(known, 1000) if abs(len(other) - len(name)) < 10]
-    close = get_close_matches(name, near, n=1) if len(name) <= 100 else []
-    if close:
-        return f"; did you mean '{close[0]}'?"
-    if 0 < len(known) <= 8:
-        return '; there are ' + ', '.join(f"'{other}'" for other in known)
-    return ''
-
-
-def note(notes: list[str], sentence: Callable[[], str]) -> None:
-    """Add what `sentence` returns, unless so much has been noted already that no one reads it."""
-    if len(notes) < MAX_NOTES:
-        notes.append(sentence())
-    elif len(notes) == MAX_NOTES:
-        notes.append('there is more of that kind, which is not listed')
 
 
 def check_name(name: str) -> None:
@@ -301,4 +254,12 @@ def to_element(element: etree._Element) -> Element:
         attributes=dict(element.attrib),
         children=tuple(to_element(child) for child in element),
         line=element.sourceline or 0,
+    )
+
+
+def is_expression(value: str) -> bool:
+    """Tell whether a text has xacro's ${...} or $(...) in it; in one go, however many open."""
+    return any(
+        opened >= 0 and value.find(close, opened) >= 0
+        for opened, close in ((value.find('${'), '}'), (value.find('$('), ')'))
     )

@@ -10,7 +10,7 @@ from support import ROOT
 from rosbots_description.sim.formats.sdf import joints
 from rosbots_description.sim.formats.sdf.omissions import Notes
 from rosbots_description.sim.formats.sdf.world_file import load_world
-from rosbots_description.sim.formats.xml import parser as xml_parser
+from rosbots_description.sim.resources import xml_parser
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 OFFERED = ('same', 'better')

@@ -1,31 +1,26 @@
 """Read XML safely: bounded, no DTD, no network; what is wrong is said with file and line.
 
-The tree that comes out is lxml's, without comments and processing instructions. `markup_values`
-reads numbers, poses and names from it and words the complaints.
+The tree that comes out is lxml's, without comments and processing instructions.
 """
 
 import contextlib
 import re
-from urllib.parse import quote, unquote
 from xml.parsers import expat
 
 from lxml import etree
 
-from ...core import ModelError, is_expanded_xacro, plain_text
+from ..core import ModelError, document_url, is_expanded_xacro, plain_text, shortened
 
-MAX_BYTES = 10_000_000
-MAX_DEPTH = 200
-MAX_ELEMENTS = 100_000
-MAX_ATTRIBUTES = 200  # of one element; libxml2 compares each with each
+MAX_XML_BYTES = 10_000_000
+MAX_XML_DEPTH = 200
+MAX_XML_ELEMENTS = 100_000
+MAX_XML_ATTRIBUTES = 200  # of one element; libxml2 compares each with each
 
-_ANY_BYTES = 'surrogateescape'  # in the name of a file that is not UTF-8
 _UNDEFINED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
-XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
-_EXPANDED = '#xacro'  # behind the source in a tree's URL; a # of the source itself is quoted there
 _FARTHEST = 65535  # a line that libxml2 cannot store; it then tells where the tag ends
 
 
-def parse(text: str | bytes, source: str) -> etree._Element:
+def parse_xml(text: str | bytes, source: str) -> etree._Element:
     """Return the root element of a document.
 
     Every element knows the line where its tag begins (`sourceline`) and its `source` (see
@@ -37,7 +32,7 @@ def parse(text: str | bytes, source: str) -> etree._Element:
     """
     document = _decode(text, source)
     lines: list[int] = []
-    fault = check_bounds(document, source, lines=lines)
+    fault = check_xml_bounds(document, source, lines=lines)
     if fault is not None:
         raise ModelError(_syntax_sentence(document, source, fault))
     root = _parse_document(document, source)
@@ -47,25 +42,6 @@ def parse(text: str | bytes, source: str) -> etree._Element:
     if b'xmlns=' in document:
         _drop_default_namespace(root)
     return root
-
-
-def source_of(element: etree._Element) -> str:
-    """Return the source that was given to `parse`, as it was written."""
-    return _url(element)[0]
-
-
-def line_of(element: etree._Element) -> str:
-    """Return where an element stands in its source: 'line 12', or 'line 12 of the expanded xacro'.
-
-    What xacro wrote has other lines than the file that its user did.
-    """
-    return f'line {element.sourceline}' + (' of the expanded xacro' if _url(element)[1] else '')
-
-
-def _url(element: etree._Element) -> tuple[str, str]:
-    """Return the source and, where xacro wrote the document, a mark."""
-    source, mark, _ = str(element.getroottree().docinfo.URL).partition(_EXPANDED)
-    return unquote(source, errors=_ANY_BYTES), mark
 
 
 def root_tag(text: str | bytes) -> str | None:
@@ -83,7 +59,7 @@ def root_tag(text: str | bytes) -> str | None:
     parser.StartElementHandler = found
     parser.StartDoctypeDeclHandler = found  # it names the first element; no entity is looked at
     with contextlib.suppress(_Found, expat.ExpatError, LookupError, UnicodeDecodeError):
-        text = plain_text(text[:MAX_BYTES], 'the text')
+        text = plain_text(text[:MAX_XML_BYTES], 'the text')
         parser.Parse(text.lstrip().encode(errors='replace'), True)
     return tags[0] if tags else None
 
@@ -92,7 +68,7 @@ class _Found(Exception):  # noqa: N818 (it ends a search)
     pass
 
 
-def check_bounds(
+def check_xml_bounds(
     document: bytes,
     source: str,
     max_elements: int | None = None,
@@ -105,7 +81,7 @@ def check_bounds(
 
     Args:
         document: UTF-8; an XML declaration does not count.
-        max_elements: instead of MAX_ELEMENTS.
+        max_elements: instead of MAX_XML_ELEMENTS.
         lines: takes the line where each element's tag begins, in document order.
     Returns:
         The fault where the document is not well-formed; what comes behind it is not looked at.
@@ -113,7 +89,7 @@ def check_bounds(
         ModelError: it has a document type, is nested too deep, or has too many elements or
             attributes.
     """
-    most = MAX_ELEMENTS if max_elements is None else max_elements
+    most = MAX_XML_ELEMENTS if max_elements is None else max_elements
     depth = count = 0
     parser = expat.ParserCreate('utf-8')
     parser.ordered_attributes = True  # a list of names and values by turns
@@ -123,14 +99,14 @@ def check_bounds(
         depth, count = depth + 1, count + 1
         if lines is not None:
             lines.append(parser.CurrentLineNumber)
-        if depth > MAX_DEPTH:
+        if depth > MAX_XML_DEPTH:
             raise ModelError(_depth_sentence(source, parser.CurrentLineNumber))
         if count > most:
             raise ModelError(f'{source}: more than {most} elements are not accepted')
-        if len(attributes) > 2 * MAX_ATTRIBUTES:
+        if len(attributes) > 2 * MAX_XML_ATTRIBUTES:
             raise ModelError(
                 f'{source}, line {parser.CurrentLineNumber}: <{tag[:60]}> has '
-                f'{len(attributes) // 2} attributes; at most {MAX_ATTRIBUTES} are accepted'
+                f'{len(attributes) // 2} attributes; at most {MAX_XML_ATTRIBUTES} are accepted'
             )
 
     def end(_: str) -> None:
@@ -156,7 +132,7 @@ def _run(parser: expat.XMLParserType, document: bytes) -> expat.ExpatError | Non
 
 def _decode(text: str | bytes, source: str) -> bytes:
     """Return the document as UTF-8 without declaration and comments, lines kept."""
-    if len(text) > MAX_BYTES:
+    if len(text) > MAX_XML_BYTES:
         raise _too_big(len(text), source)
     try:
         text = plain_text(text, source)
@@ -177,13 +153,13 @@ def _decode(text: str | bytes, source: str) -> bytes:
         raise ModelError(
             f'{source}, line {line}: character {text[error.start]!r} is not valid Unicode text'
         ) from error
-    if len(document) > MAX_BYTES:
+    if len(document) > MAX_XML_BYTES:
         raise _too_big(len(document), source)
     return document
 
 
 def _too_big(size: int, source: str) -> ModelError:
-    return ModelError(f'{source}: the text has {size} bytes; at most {MAX_BYTES} are accepted')
+    return ModelError(f'{source}: the text has {size} bytes; at most {MAX_XML_BYTES} are accepted')
 
 
 def _parser(recover: bool = False) -> etree.XMLParser:
@@ -195,9 +171,7 @@ def _parser(recover: bool = False) -> etree.XMLParser:
 
 
 def _parse_document(document: bytes, source: str) -> etree._Element:
-    parser, url = _parser(), quote(source, errors=_ANY_BYTES)
-    if is_expanded_xacro(document):
-        url += _EXPANDED
+    parser, url = _parser(), document_url(source, is_expanded_xacro(document))
     try:
         return etree.fromstring(document, parser, base_url=url)
     except etree.XMLSyntaxError as error:
@@ -227,9 +201,9 @@ def _syntax_sentence(document: bytes, source: str, error: expat.ExpatError) -> s
     # libxml2 words it better, e.g. with both of two tags that do not match. It sees only what is
     # known to be harmless, and a little more.
     tag = document.rfind(b'<', 0, error.offset)
-    if document.count(b'=', max(tag, 0), error.offset) <= MAX_ATTRIBUTES:
+    if document.count(b'=', max(tag, 0), error.offset) <= MAX_XML_ATTRIBUTES:
         try:
-            etree.fromstring(document[:error.offset + MAX_ATTRIBUTES], _parser())
+            etree.fromstring(document[:error.offset + MAX_XML_ATTRIBUTES], _parser())
         except etree.XMLSyntaxError as better:
             return _malformed(source, better.lineno or 1, better.msg or '')
     return _malformed(source, error.lineno, expat.ErrorString(error.code))
@@ -240,23 +214,8 @@ def _malformed(source: str, line: int, reason: str) -> str:
     return f'{source}, line {line}: not well-formed XML: {shortened(reason)}'
 
 
-def shortened(text: str, most: int = 600) -> str:
-    """Return a text as one line of at most about `most` characters, for a message."""
-    if len(text) > most:
-        text = f'{text[:most // 2]} ... {text[-most // 2:]}'
-    return ' '.join(''.join(c if c.isprintable() else ' ' for c in text).split())
-
-
 def _depth_sentence(source: str, line: int) -> str:
     return (
-        f'{source}, line {line}: elements are nested more than {MAX_DEPTH} deep; '
+        f'{source}, line {line}: elements are nested more than {MAX_XML_DEPTH} deep; '
         'no model needs that, look for elements that are not closed'
-    )
-
-
-def is_expression(value: str) -> bool:
-    """Tell whether a text has xacro's ${...} or $(...) in it; in one go, however many open."""
-    return any(
-        opened >= 0 and value.find(close, opened) >= 0
-        for opened, close in ((value.find('${'), '}'), (value.find('$('), ')'))
     )
