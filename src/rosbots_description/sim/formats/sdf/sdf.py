@@ -7,8 +7,7 @@ from lxml import etree
 from ...core import IDENTITY, ModelError, Pose, fault
 from ...description import LightSpec, ModelSpec
 from ...resources import FindModel, FindPackage
-from ..urdf import inject_namespace
-from ..xml import check_name
+from ..xml import check_name, inject_namespace
 from .document import SdfDocument, SdfLibrary
 from .lights import read_light
 from .models import ModelParts, model_spec, read_include, read_model

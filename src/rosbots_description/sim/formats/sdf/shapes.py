@@ -17,8 +17,7 @@ from ...description import (
     gazebo_material,
 )
 from ...meshes import check_mesh, submesh_file
-from ..urdf import ENDLESS_FRICTION
-from ..xml import is_endless, tag_of
+from ..xml import ENDLESS_FRICTION, is_endless, tag_of
 from .document import SdfDocument
 from .values import (
     colour_of,

@@ -13,11 +13,12 @@ from functools import partial
 
 from lxml import etree
 
-from ...core import MAX_NOTES, ModelError, fault, line_of, location, note, shortened, suggestion
+from ...core import MAX_NOTES, fault, line_of, location, note, shortened, suggestion
 from ...description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
 from ...plugin_registry import library_remark
 from ..kinematics import TreeLink
 from ..xml import (
+    ENDLESS_FRICTION,
     LeftOut,
     is_endless,
     parse_numbers,
@@ -29,9 +30,6 @@ from ..xml import (
     to_element,
     truth,
 )
-
-# A negative mu means endless friction in Gazebo, and so does inf.
-ENDLESS_FRICTION = 1e6
 
 _SURFACE_NUMBERS = {'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
                     'minDepth': 'min_depth', 'laserRetro': 'laser_retro'}
@@ -150,29 +148,6 @@ def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
         spec, collisions=collisions, visuals=visuals, sensors=tuple(tags.sensors), **tags.flags
     )
     return replace(link, spec=spec, flags=dict(tags.flags))
-
-
-def inject_namespace(root: etree._Element, robot_namespace: str) -> None:
-    """Give each <plugin>, at any depth, a <robotNamespace> unless it has one, in place.
-
-    An empty `robot_namespace` changes nothing (gazebo_ros_pkgs 2.9.2).
-
-    Raises:
-        ModelError: XML cannot hold the text.
-    """
-    if not robot_namespace:
-        return
-    for plugin in root.iter('plugin'):
-        if plugin.find('robotNamespace') is None:
-            child = etree.SubElement(plugin, 'robotNamespace')
-            try:
-                child.text = robot_namespace
-            except ValueError:
-                raise ModelError(
-                    f"robot_namespace is '{robot_namespace}', which has a control character in it; "
-                    'a namespace takes a-z, A-Z, 0-9, _ and slashes'
-                ) from None
-            child.sourceline = plugin.sourceline
 
 
 def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]) -> None:

@@ -11,9 +11,18 @@ from ...description.inertia import impossible, possible, turnable
 from ...meshes import check_mesh
 from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
 from ..kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
-from ..xml import XACRO_CURE, check_name, foreign_tags, origin, remove_xacro, required_name, tag_of
+from ..xml import (
+    XACRO_CURE,
+    check_name,
+    foreign_tags,
+    inject_namespace,
+    origin,
+    remove_xacro,
+    required_name,
+    tag_of,
+)
 from .elements import LinkReader, read_joint
-from .gazebo_tags import GazeboTags, apply_tags, inject_namespace, read_gazebo_tags
+from .gazebo_tags import GazeboTags, apply_tags, read_gazebo_tags
 
 logger = logging.getLogger(__name__)
 

@@ -2,7 +2,9 @@
 
 from .foreign_markup import foreign_tags, remove_xacro
 from .omissions import LeftOut
+from .robot_namespace import inject_namespace
 from .values import (
+    ENDLESS_FRICTION,
     XACRO_CURE,
     check_name,
     is_endless,
@@ -26,8 +28,8 @@ from .values import (
 )
 
 __all__ = [
-    'XACRO_CURE', 'LeftOut', 'check_name', 'foreign_tags', 'is_endless', 'limit_number', 'number',
-    'numbers', 'origin', 'parse_numbers', 'positive', 'remove_xacro', 'require_damping',
-    'require_mass', 'require_near', 'require_size', 'required_name', 'scalar', 'scalar_number',
-    'scalar_numbers', 'tag_of', 'to_element', 'truth',
+    'ENDLESS_FRICTION', 'XACRO_CURE', 'LeftOut', 'check_name', 'foreign_tags', 'inject_namespace',
+    'is_endless', 'limit_number', 'number', 'numbers', 'origin', 'parse_numbers', 'positive',
+    'remove_xacro', 'require_damping', 'require_mass', 'require_near', 'require_size',
+    'required_name', 'scalar', 'scalar_number', 'scalar_numbers', 'tag_of', 'to_element', 'truth',
 ]

@@ -23,6 +23,7 @@ from ...description import Element
 XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
+ENDLESS_FRICTION = 1e6  # what a negative mu and inf mean in Gazebo
 MOST_DAMPED = 1000.0  # [1/s] with steps of a millisecond a link then stands at once
 
 _CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')

@@ -18,7 +18,7 @@ from rosbots_description.sim.description.model_spec import (
     Surface,
 )
 from rosbots_description.sim.formats.sdf.sdf import load_sdf, load_sdf_light
-from rosbots_description.sim.formats.urdf.gazebo_tags import ENDLESS_FRICTION
+from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 from rosbots_description.sim.meshes.loader import check_mesh, read_mesh
 from rosbots_description.sim.resources.search_path import BUILT_IN_MODELS, ModelSearch
 

@@ -4,8 +4,8 @@ import pytest
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.description.model_spec import Material, Surface
-from rosbots_description.sim.formats.urdf.gazebo_tags import ENDLESS_FRICTION
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
+from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 
 GREY = (0.7, 0.7, 0.7, 1.0)
 BALL = '<geometry><sphere radius="1"/></geometry>'
