@@ -4,10 +4,11 @@ import math
 from collections.abc import Callable, Iterator
 
 from rosbots_description.sim.core.transforms import Twist
-from rosbots_description.sim.formats.sdf.world_file import open_world, populate
+from rosbots_description.sim.formats.sdf.world_file import open_world
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.runtime.model import Joint, Link
+from rosbots_description.sim.runtime.population import populate
 from rosbots_description.sim.runtime.world import World
 
 from .recorded import DATA, Difference, load

@@ -58,7 +58,6 @@ ARROWS = {
 
 # Arrows that are there and should not be: this list is to become empty.
 TO_BE_CUT = {
-    'sim/formats/sdf': 'sim/runtime',
     'sim/runtime': 'sim/physics/bullet',
     'sim/plugins/force': 'sim/physics/bullet',
     'ros_api/messages': 'sim/core sim/runtime',

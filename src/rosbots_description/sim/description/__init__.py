@@ -6,6 +6,7 @@ from .model_spec import (
     FIXED,
     PRISMATIC,
     REVOLUTE,
+    WORLD,
     Box,
     Collision,
     Cylinder,
@@ -36,9 +37,9 @@ from .world_spec import (
 )
 
 __all__ = [
-    'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN', 'Box',
-    'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial', 'JointSpec', 'LightSpec',
-    'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState', 'PhysicsSettings', 'Plane',
-    'PluginSpec', 'SceneSpec', 'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check',
-    'gazebo_material', 'inertia',
+    'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN',
+    'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
+    'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
+    'PhysicsSettings', 'Plane', 'PluginSpec', 'SceneSpec', 'Sphere', 'Surface', 'Visual',
+    'WorldSpec', 'check', 'gazebo_material', 'inertia',
 ]

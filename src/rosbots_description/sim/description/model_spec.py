@@ -172,6 +172,7 @@ class LinkSpec:
 REVOLUTE = 'revolute'  # includes continuous: a revolute joint without limits
 PRISMATIC = 'prismatic'
 FIXED = 'fixed'
+WORLD = 'world'  # as the parent of a joint: the child is fixed to, or moves against, the world
 
 
 @dataclass(frozen=True)
@@ -185,7 +186,7 @@ class JointSpec:
 
     name: str
     type: str
-    parent: str  # a link's name, or 'world'
+    parent: str  # a link's name, or WORLD
     child: str
     pose: Pose = IDENTITY
     axis: Vector = (0.0, 0.0, 1.0)

@@ -3,10 +3,11 @@
 from .model import Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin_life import Plugin
+from .population import populate
 from .scheduler import NEVER, Herald, Hook
 from .world import WORLD_FRAMES, Entity, World
 
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Herald', 'Hook', 'Joint', 'JointStates',
-    'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'World',
+    'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'World', 'populate',
 ]

@@ -10,8 +10,9 @@ from support import LIBRARY, SETTLED, SPAWN_POSE, robot_spec
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, compose, to_rpy
 from rosbots_description.sim.description.model_spec import Box
-from rosbots_description.sim.formats.sdf.world_file import load_world, open_world, populate
+from rosbots_description.sim.formats.sdf.world_file import load_world, open_world
 from rosbots_description.sim.resources.search_path import ModelSearch, find_world
+from rosbots_description.sim.runtime.population import populate
 from rosbots_description.sim.runtime.world import World
 
 STILL = 0.001  # [m] that something at rest may creep in the time below

@@ -2,9 +2,9 @@
 
 from .fixed_joint_reduction import Lumped, lump, require_links
 from .frame_references import repoint_plugin
-from .kinematic_tree import FREE, WORLD, Tree, TreeJoint, TreeLink, build_tree
+from .kinematic_tree import FREE, Tree, TreeJoint, TreeLink, build_tree
 
 __all__ = [
-    'FREE', 'WORLD', 'Lumped', 'Tree', 'TreeJoint', 'TreeLink', 'build_tree', 'lump',
-    'repoint_plugin', 'require_links',
+    'FREE', 'Lumped', 'Tree', 'TreeJoint', 'TreeLink', 'build_tree', 'lump', 'repoint_plugin',
+    'require_links',
 ]

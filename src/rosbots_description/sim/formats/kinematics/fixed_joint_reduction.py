@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from ...core import IDENTITY, ModelError, Pose, compose, fault
-from ...description import Collision, Element, Inertial, JointSpec, LinkSpec, Visual
+from ...description import WORLD, Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 from ...description.inertia import merge
 from .frame_references import move_part
-from .kinematic_tree import FREE, WORLD, Tree, TreeJoint
+from .kinematic_tree import FREE, Tree, TreeJoint
 
 _LUMPED = '_fixed_joint_lump__'
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from lxml import etree
 
 from ...core import IDENTITY, Pose, fault, line_of, suggestion
-from ...description import FIXED, JointSpec, LinkSpec
+from ...description import FIXED, WORLD, JointSpec, LinkSpec
 
-WORLD = 'world'  # a root of that name stands for the world: the model is bolted to it
 FREE = 'free'  # a joint type that ties nothing: the child becomes a tree of its own
 
 

@@ -1,6 +1,6 @@
 """Reads SDF: models, lights and worlds."""
 
 from .sdf import load_sdf, load_sdf_light
-from .world_file import open_world, populate
+from .world_file import open_world
 
-__all__ = ['load_sdf', 'load_sdf_light', 'open_world', 'populate']
+__all__ = ['load_sdf', 'load_sdf_light', 'open_world']

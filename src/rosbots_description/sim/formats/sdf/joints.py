@@ -6,8 +6,7 @@ from dataclasses import replace
 from lxml import etree
 
 from ...core import IDENTITY, Pose, Vector, compose, conjugate, fault, relative, rotate
-from ...description import FIXED, PRISMATIC, REVOLUTE, JointSpec, LinkSpec
-from ..kinematics import WORLD
+from ...description import FIXED, PRISMATIC, REVOLUTE, WORLD, JointSpec, LinkSpec
 from ..xml import required_name
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames

@@ -7,8 +7,7 @@ from dataclasses import replace
 from lxml import etree
 
 from ...core import IDENTITY, Pose, fault, relative, to_rpy
-from ...description import Collision, Element, Inertial, LinkSpec, Visual
-from ..kinematics import WORLD
+from ...description import WORLD, Collision, Element, Inertial, LinkSpec, Visual
 from ..xml import require_mass, required_name, to_element
 from .document import SdfDocument
 from .frames import Frames

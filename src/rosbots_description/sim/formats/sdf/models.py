@@ -11,9 +11,8 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from ...core import AbsentError, Pose, compose, fault, location, shortened
-from ...description import Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
+from ...description import WORLD, Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
 from ...description.inertia import impossible, possible, turnable
-from ..kinematics import WORLD
 from ..xml import required_name, to_element
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames

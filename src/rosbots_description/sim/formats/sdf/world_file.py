@@ -1,4 +1,4 @@
-"""From a world file to a `WorldSpec`, and from that into a `World`."""
+"""From a world file to a `WorldSpec`."""
 
 import logging
 import os
@@ -9,17 +9,16 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from ...core import ModelError, Pose, SimError, fault
+from ...core import ModelError, Pose, fault
 from ...description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
 from ...resources import MAX_XML_BYTES, FindModel, FindPackage, read_file
-from ...runtime import World
 from ..xml import required_name
 from .document import SdfDocument, SdfLibrary
 from .frames import Frames
 from .lights import read_light
 from .models import ModelParts, model_spec, read_include, read_model, read_plugin
 from .physics import read_physics
-from .state import apply_state, read_states
+from .state import read_states
 from .values import colour_of, text_of, truth_of
 
 logger = logging.getLogger(__name__)
@@ -27,11 +26,6 @@ logger = logging.getLogger(__name__)
 _READ = ('model', 'include', 'light', 'plugin', 'scene', 'physics', 'gravity', 'state', 'frame')
 # What only cameras, sounds and other sensors' models would show.
 _IDLE = ('gui', 'audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
-
-
-# World plugins whose work the server does anyway.
-_SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
-           'libgazebo_ros_init.so', 'libgazebo_ros_factory.so')
 
 # What is said of an element that is no good.
 _WITHOUT = {
@@ -116,34 +110,6 @@ def open_world(
     """
     text = read_file(os.fspath(path), MAX_XML_BYTES, 'world file')
     return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package)
-
-
-def populate(world: World, spec: WorldSpec) -> None:
-    """Put everything that moves or stands into a world that is empty, and set its clock.
-
-    Lights and scene stay in `spec` for those who serve them; plugins of the world that do more
-    than the server does anyway are named as not run. A model that the world does not take is an
-    error in the log, and the others stand.
-    """
-    world.set_physics(spec.physics)
-    world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
-    for model, pose in spec.models:
-        try:
-            world.spawn(model, model.name, pose)
-        except SimError as error:
-            logger.error("model '%s': %s; %s", model.name, error, _WITHOUT['model'])
-    for state in spec.states:
-        model = world.models.get(state.name)
-        if model is None:
-            logger.warning("the world's <state> has a model '%s' that is not there", state.name)
-        else:
-            apply_state(model, state)
-    for plugin in spec.plugins:
-        if plugin.filename not in _SERVED:
-            logger.warning(
-                "world plugin '%s' (%s, line %d) is not run here", plugin.name, plugin.filename,
-                plugin.element.line,
-            )
 
 
 @contextmanager

@@ -6,11 +6,11 @@ from dataclasses import replace
 from lxml import etree
 
 from ...core import IDENTITY, ModelError, Pose, fault, location, note, shortened
-from ...description import LinkSpec, ModelSpec
+from ...description import WORLD, LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, turnable
 from ...meshes import check_mesh
 from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
-from ..kinematics import WORLD, Lumped, Tree, build_tree, lump, repoint_plugin, require_links
+from ..kinematics import Lumped, Tree, build_tree, lump, repoint_plugin, require_links
 from ..xml import (
     XACRO_CURE,
     check_name,

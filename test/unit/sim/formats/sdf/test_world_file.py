@@ -6,18 +6,10 @@ import math
 import pytest
 
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.built_in import GROUND_PLANE
-from rosbots_description.sim.description.model_spec import (
-    PRISMATIC,
-    REVOLUTE,
-    JointSpec,
-    LinkSpec,
-    ModelSpec,
-)
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.description.world_spec import ModelState, SceneSpec
-from rosbots_description.sim.formats.sdf.state import joint_positions
+from rosbots_description.sim.description.world_spec import SceneSpec
 from rosbots_description.sim.formats.sdf.world_file import load_world, open_world
 from rosbots_description.sim.resources.search_path import ModelSearch
 
@@ -189,29 +181,6 @@ def test_a_saved_state_is_kept_apart_from_the_poses_that_models_reset_to():
         'link': (1.0, 0.0, 0.0), 'in::l': (2.0, 0.0, 0.0)
     }
 
-
-@pytest.mark.parametrize('kind, axis, moved, position', [
-    (REVOLUTE, (0.0, 0.0, 1.0), Pose(orientation=from_rpy(0.0, 0.0, 0.7)), 0.7),
-    (REVOLUTE, (0.0, -1.0, 0.0), Pose(orientation=from_rpy(0.0, 0.4, 0.0)), -0.4),
-    (PRISMATIC, (1.0, 0.0, 0.0), Pose((0.3, 0.0, 0.0)), 0.3),
-])
-def test_joint_positions_follow_from_where_the_links_stood(kind, axis, moved, position):
-    frame = Pose((0.0, 0.5, 0.0), from_rpy(0.1, 0.2, 0.3))  # of the joint in the child
-    child = Pose((1.0, 2.0, 3.0), from_rpy(0.3, 0.2, 0.1))  # at position zero
-    spec = ModelSpec('m', (LinkSpec('a'), LinkSpec('b', child)),
-                     (JointSpec('j', kind, 'a', 'b', frame, axis),))
-    world = Pose((5.0, 5.0, 0.0), from_rpy(0.0, 0.0, 1.0))
-    # The child moves about the joint's frame, not about its own origin.
-    joint = compose(compose(child, frame), moved)
-    back = Pose((0.0, -0.5, 0.0))
-    turned = compose(joint, Pose(orientation=_inverse(frame.orientation)))
-    placed = compose(turned, back)
-    state = ModelState('m', world, {'a': world, 'b': compose(world, placed)})
-    assert joint_positions(spec, state) == {'j': pytest.approx(position)}
-
-
-def _inverse(q):
-    return (-q[0], -q[1], -q[2], q[3])
 
 
 @pytest.mark.parametrize('body, part', [

@@ -1,0 +1,44 @@
+"""Fills a world with what a world file describes."""
+
+import logging
+
+from ..core import SimError
+from ..description import WorldSpec
+from .saved_state import apply_state
+from .world import World
+
+logger = logging.getLogger(__name__)
+
+# World plugins whose work the server does anyway.
+_SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
+           'libgazebo_ros_init.so', 'libgazebo_ros_factory.so')
+
+
+def populate(world: World, spec: WorldSpec) -> None:
+    """Put everything that moves or stands into a world that is empty, and set its clock.
+
+    Lights and scene stay in `spec` for those who serve them; plugins of the world that do more
+    than the server does anyway are named as not run. A model that the world does not take is an
+    error in the log, and the others stand.
+    """
+    world.set_physics(spec.physics)
+    world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
+    for model, pose in spec.models:
+        try:
+            world.spawn(model, model.name, pose)
+        except SimError as error:
+            logger.error(
+                "model '%s': %s; the world stands without this model", model.name, error
+            )
+    for state in spec.states:
+        model = world.models.get(state.name)
+        if model is None:
+            logger.warning("the world's <state> has a model '%s' that is not there", state.name)
+        else:
+            apply_state(model, state)
+    for plugin in spec.plugins:
+        if plugin.filename not in _SERVED:
+            logger.warning(
+                "world plugin '%s' (%s, line %d) is not run here", plugin.name, plugin.filename,
+                plugin.element.line,
+            )
