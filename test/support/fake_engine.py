@@ -2,9 +2,8 @@
 
 import math
 
-from rosbots_description.sim.core.transforms import NO_ROTATION, Twist, compose
-from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
-from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
+from rosbots_description.sim.core.transforms import Twist, compose
+from rosbots_description.sim.physics.bullet.body import Body
 from rosbots_description.sim.physics.compiled_model import CompiledModel
 
 
@@ -20,6 +19,7 @@ class FakeEngine:
     def __init__(self, physics, *_):
         self.steps = []  # how many each call of `step` has made
         self.slips = {}  # by link
+        self.rigid = set()  # links that cannot slip
         self.bodies = []
         self.apply(physics)
 
@@ -36,9 +36,6 @@ class FakeEngine:
         body.joints = {joint.name: (0, index) for index, joint in enumerate(spec.joints)}
         body.state = {name: [0.0, 0.0] for name in body.joints}
         body.motors = dict.fromkeys(body.joints, (0.0, 0.0))
-        body.surfaces = {link.name: [Place(0, k)] for k, link in enumerate(spec.links)}
-        body.friction_axes = {
-            place: FrictionAxes(NO_ROTATION, EVENLY) for (place,) in body.surfaces.values()}
         self.bodies.append(body)
         return body
 
@@ -81,6 +78,9 @@ class FakeEngine:
 
     def set_joint_position(self, body, joint, position):
         body.state[joint] = [position, 0.0]
+
+    def can_slip(self, _body, link, _axle):
+        return link not in self.rigid
 
     def let_slip(self, _body, link, _axle, slips):
         self.slips[link] = slips

@@ -38,6 +38,14 @@ class Link:
         """Push during the next step: force [N] at the centre of mass, torque [N m], world axes."""
         self.model.engine.push(self.model.body, self.name, force, torque)
 
+    def can_slip(self, axle: Vector) -> bool:
+        """Tell whether the engine can let it slip along `axle`, a unit vector in its frame."""
+        return self.model.engine.can_slip(self.model.body, self.name, axle)
+
+    def let_slip(self, axle: Vector, slips: tuple[float, float]) -> None:
+        """Let it slip in the next step by compliances along `axle` and across it [m/s per N]."""
+        self.model.engine.let_slip(self.model.body, self.name, axle, slips)
+
 
 class Collision:
     """A touching shape of a link; it can serve as a reference frame."""

@@ -4,9 +4,6 @@ from .body import Body
 from .client import pybullet
 from .crash_sandbox import CrashSandbox
 from .engine import Engine
-from .friction_axes import can_slip
 from .tuning import Tuning
 
-__all__ = [
-    'Body', 'CrashSandbox', 'Engine', 'Tuning', 'can_slip', 'pybullet',
-]
+__all__ = ['Body', 'CrashSandbox', 'Engine', 'Tuning', 'pybullet']

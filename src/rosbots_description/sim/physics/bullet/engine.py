@@ -18,6 +18,7 @@ from .client import pybullet
 from .compiler import BulletModel, compile_model
 from .contact_slip import Slipping
 from .fast_rotation import FastBodies
+from .friction_axes import can_slip
 from .solver_iterations import CHECK, Motor, SolverEffort
 from .springs import Springs
 from .surfaces import overlap_share
@@ -336,6 +337,10 @@ class Engine:
             readings = pybullet.getJointStates(number, indices, self._client)
             self._joint_readings[number] = readings
         return readings[indices.index(index)]
+
+    def can_slip(self, body: Body, link: str, axle: Vector) -> bool:
+        """Tell whether a link can slip along an axis of its frame, a unit vector."""
+        return can_slip(body, link, axle)
 
     def let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
         """Let what a link touches slide in the next step as its slip compliance has it.

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from ...core import PluginError
 from ...description import Element
-from ...physics.bullet import can_slip
 from ...plugin_registry import register
 from ..base import PeriodicPlugin
 from ..wheel_geometry import radius_of
@@ -76,12 +75,11 @@ class WheelSlip(PeriodicPlugin):
 
     def update(self, _elapsed: float) -> None:
         """Let each tyre slip by its speed."""
-        model = self.model
         for wheel in self.wheels:
-            spec = wheel.joint.spec
             slip = abs(wheel.joint.velocity) * wheel.radius / wheel.normal_force
             slips = slip * wheel.lateral, slip * wheel.longitudinal
-            model.engine.let_slip(model.body, spec.child, spec.axis_in_child, slips)
+            spec = wheel.joint.spec
+            self.model.links[spec.child].let_slip(spec.axis_in_child, slips)
 
     def _wheel(self, element: Element) -> SlippingWheel:
         name = element.attributes.get('link_name', '')
@@ -98,7 +96,7 @@ class WheelSlip(PeriodicPlugin):
         for tag, value in (('wheel_radius', radius), ('wheel_normal_force', numbers[NUMBERS[2]])):
             if value <= 0.0:
                 raise PluginError(f"<wheel link_name='{name}'>: <{tag}> must be above 0")
-        if not can_slip(self.model.body, name, joint.spec.axis_in_child):
+        if not link.can_slip(joint.spec.axis_in_child):
             raise PluginError(f"<wheel link_name='{name}'>: its axle is no principal axis of its "
                               'inertia, and the engine can weaken friction along these alone')
         lateral, longitudinal = (max(0.0, numbers[tag]) for tag in NUMBERS[:2])

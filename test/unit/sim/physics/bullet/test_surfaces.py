@@ -16,8 +16,10 @@ from rosbots_description.sim.description.model_spec import (
     LinkSpec,
     Surface,
 )
+from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
 from rosbots_description.sim.physics.bullet.friction_axes import (
     EVENLY,
+    can_slip,
     friction_scales,
     restitution,
 )
@@ -101,3 +103,12 @@ def test_without_a_direction_the_first_mu_acts_along_the_models_y_axis():
 ])
 def test_a_pair_of_equal_surfaces_gives_back_their_restitution(surface, expected):
     assert restitution(Surface(**surface)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(('turns', 'can'), [((0.0, math.pi / 2), True), ((0.0, 0.3), False)])
+def test_a_link_slips_along_what_is_an_axis_of_all_its_parts(turns, can):
+    body, places = Body(0), [Place(0, index) for index in range(len(turns))]
+    body.surfaces = {'wheel': places}
+    body.friction_axes = {place: FrictionAxes(from_rpy(turn, 0.0, 0.0), EVENLY)
+                          for place, turn in zip(places, turns, strict=True)}
+    assert can_slip(body, 'wheel', (0.0, 1.0, 0.0)) == can

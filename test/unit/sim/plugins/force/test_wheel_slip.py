@@ -8,10 +8,7 @@ from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_o
 
 from rosbots_description.ros_api.reconfigure import wheel_slip
 from rosbots_description.sim.core.errors import PluginError
-from rosbots_description.sim.core.transforms import from_rpy
 from rosbots_description.sim.description.model_spec import Element
-from rosbots_description.sim.physics.bullet.body import FrictionAxes
-from rosbots_description.sim.physics.bullet.friction_axes import EVENLY
 from rosbots_description.sim.physics.bullet.slip_compliance import LEAST, Touch, shares
 from rosbots_description.sim.plugins.force.wheel_slip import WheelSlip
 
@@ -71,9 +68,7 @@ def test_a_wheel_that_makes_no_sense_is_left_out_with_a_sentence(bad, told, capl
 
 def test_a_wheel_whose_axle_the_engine_does_not_know_is_left_out(caplog):
     model = fake_model(wheel_of(0.1))
-    for place in model.body.friction_axes:
-        askew = FrictionAxes(from_rpy(0.3, 0.0, 0.0), EVENLY)
-        model.body.friction_axes[place] = askew
+    model.engine.rigid = {'left_link'}
     with pytest.raises(PluginError, match='no <wheel> that can slip'):
         load(wheel(), model=model)
     assert 'no principal axis' in caplog.text
