@@ -200,6 +200,21 @@ def test_only_ros_api_imports_rospy():
     assert all(name.startswith('ros_api/') for name in using)
 
 
+def test_only_transport_touches_rospys_internals():
+    inner = {'impl', 'core', 'topics', 'exceptions', 'rostime', '_connection_header'}
+    found = []
+    for module, tree in modules().items():
+        if folder_of(module) == 'ros_api/transport':
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                if node.module.startswith('rospy.'):
+                    found.append((module, node.module))
+            elif isinstance(node, ast.Attribute) and node.attr in inner:
+                found.append((module, ast.unparse(node)))
+    assert found == []
+
+
 def test_the_simulator_imports_no_messages():
     found = {(module, name) for module, tree in modules().items() if module.startswith('sim/')
              for name in imported_packages(tree) if MESSAGES.fullmatch(name)}

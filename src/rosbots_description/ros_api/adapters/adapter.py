@@ -2,17 +2,24 @@
 
 import logging
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import rospy
 from genpy import Message
-from rospy.impl.registration import get_topic_manager
 
 from ...sim.plugins import ModelPlugin
 from ..server import Server
-from ..transport import ReaderWatch, find_tf_prefix, frame_name, is_for_all, stop_publishing
+from ..transport import (
+    ReaderWatch,
+    find_tf_prefix,
+    frame_name,
+    is_for_all,
+    published_types,
+    stop_publishing,
+    subscribed_types,
+)
 
 if TYPE_CHECKING:
     from .declarations import Declaration
@@ -83,7 +90,7 @@ class Adapter:
         self, topic: str, message_class: type[Message], queue_size: int, latch: bool = False
     ) -> rospy.Publisher | None:
         """Publish on a topic from now on; None, with an error, if this node sends others there."""
-        if not self._is_free(topic, message_class, get_topic_manager().get_publications()):
+        if not self._is_free(topic, message_class, published_types()):
             return None
         watch = self._watch
         publisher = rospy.Publisher(
@@ -95,7 +102,7 @@ class Adapter:
         self, topic: str, message_class: type[Message], take: Callable, queue_size: int
     ) -> rospy.Subscriber | None:
         """Take messages from now on; None, with an error, if this node takes others there."""
-        if not self._is_free(topic, message_class, get_topic_manager().get_subscriptions()):
+        if not self._is_free(topic, message_class, subscribed_types()):
             return None
         subscriber = rospy.Subscriber(topic, message_class, take, queue_size=queue_size)
         self.on_close(subscriber.unregister)
@@ -106,13 +113,13 @@ class Adapter:
         self._opened.append(close)
 
     def _is_free(
-        self, topic: str, message_class: type[Message], entries: Iterable[tuple[str, str]]
+        self, topic: str, message_class: type[Message], types: Mapping[str, str]
     ) -> bool:
-        """Tell whether `entries` has the topic with no other type; rospy would mix the two."""
+        """Tell whether `types` has the topic with no other type; rospy would mix the two."""
         if not is_for_all(topic):
             logger.warning('%s: the topic %s is only for nodes in Python: - or a dot is in it',
                            where(self.plugin), topic)
-        there = dict(entries).get(rospy.resolve_name(topic), message_class._type)
+        there = types.get(rospy.resolve_name(topic), message_class._type)
         if there != message_class._type:
             logger.error(
                 "%s: the topic %s is left out as %s: this node has it as %s; give it another name",

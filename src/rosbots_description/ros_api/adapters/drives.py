@@ -24,7 +24,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins.drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from ...sim.runtime import FrameTransform
-from ..server import TOPIC as STATIC_FRAMES
+from ..server import STATIC_TOPIC
 from ..transport import reader_names, set_level, subscribers
 from .adapter import Adapter
 from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite
@@ -72,7 +72,7 @@ class WheelStatesTopic(PublishedTopic):
         """Advertise it."""
         if self.has_output:
             server = self.adapter.server
-            followers, holding = subscribers(rospy.resolve_name(self.name), STATIC_FRAMES)
+            followers, holding = subscribers(rospy.resolve_name(self.name), STATIC_TOPIC)
             self._followers = frozenset(followers)
             # What they hold may be on its way, and the first wheels would be told twice.
             expected = (holding & followers) - {rospy.get_name()}

@@ -16,6 +16,8 @@ import rospy
 from joint_state_publisher import JointStatePublisher
 from sensor_msgs.msg import JointState
 
+from ..transport import sender_of
+
 NAME = 'joint_state_publisher'
 
 
@@ -29,7 +31,7 @@ def main() -> int:
         return 1
 
     def pass_on(message: JointState) -> None:
-        if message._connection_header['callerid'] != rospy.get_name():
+        if sender_of(message) != rospy.get_name():
             joints.source_cb(message)
 
     if not joints.sources:

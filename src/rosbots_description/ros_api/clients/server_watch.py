@@ -9,15 +9,14 @@ import socket
 from collections.abc import Callable
 from urllib.parse import urlsplit
 
-import rosgraph
-import rosgraph.names
-from rosgraph.names import resolve_name
+from rosgraph.names import make_caller_id, resolve_name
 
-from ..transport import NO_MASTER
+from ..transport import node_address
 
 TIMEOUT = 2.0  # for the simulator to take a connection [s, wall]
 NOTICE = 'the simulator has gone'
-NODE, TOPIC = 'gazebo', 'gazebo/visual_markers'
+NODE = 'gazebo'
+MARKERS_TOPIC = 'gazebo/visual_markers'
 
 
 class ServerWatch:
@@ -32,7 +31,7 @@ class ServerWatch:
             node: the simulator's name, as in this program's namespace.
         """
         self._tell = tell
-        self._node = resolve_name(node, rosgraph.names.make_caller_id('gzclient'))
+        self._node = resolve_name(node, make_caller_id('gzclient'))
         self._address: str | None = None  # where it was seen last
         self._there: bool | None = None  # None: it has not been seen yet
 
@@ -48,14 +47,9 @@ class ServerWatch:
     def _is_there(self) -> bool:
         if self._address is not None and _takes_connections(self._address):
             return True
-        self._address = self._lookup()  # one that was killed is still in the master's table
+        # One that was killed is still in the master's table.
+        self._address = node_address(self._node, '/gzclient')
         return self._address is not None and _takes_connections(self._address)
-
-    def _lookup(self) -> str | None:
-        try:
-            return rosgraph.Master('/gzclient').lookupNode(self._node)
-        except (*NO_MASTER, rosgraph.MasterException):
-            return None
 
 
 def _takes_connections(address: str) -> bool:
@@ -78,13 +72,13 @@ class Notice:
         import rospy  # noqa: PLC0415  a window seldom needs it
         from visualization_msgs.msg import MarkerArray  # noqa: PLC0415
 
-        from ..transport import init_node  # noqa: PLC0415
+        from ..transport import init_node, is_node  # noqa: PLC0415
         from ..views.markers import notice  # noqa: PLC0415
 
-        if not rospy.core.is_initialized():
+        if not is_node():
             init_node('gzclient_notice', [], anonymous=True, disable_signals=True,
                       disable_rostime=True, disable_rosout=True)
-        self._publisher = rospy.Publisher(TOPIC, MarkerArray, latch=True, queue_size=1)
+        self._publisher = rospy.Publisher(MARKERS_TOPIC, MarkerArray, latch=True, queue_size=1)
         self._publisher.publish(MarkerArray([notice(NOTICE)]))
 
     def withdraw(self) -> None:

@@ -11,7 +11,6 @@ import time
 from collections.abc import Sequence
 from xml.sax.saxutils import escape
 
-import rosgraph
 import rospy
 from gazebo_msgs.msg import ModelStates
 from gazebo_msgs.srv import DeleteModel
@@ -20,7 +19,7 @@ from rosbots_msgs.srv import GetModelOmissions
 from std_srvs.srv import Empty
 
 from ...sim.core import from_rpy
-from ..transport import AddressError, start_node
+from ..transport import AddressError, has_service, start_node
 from .gazebo_interface import (
     interruptibly,
     set_model_configuration_client,
@@ -166,8 +165,9 @@ def _tell_omissions(model: str, gazebo_namespace: str) -> None:
     Gazebo has no such service, so whatever fails here is nobody's business.
     """
     service = rospy.resolve_name(gazebo_namespace + '/get_model_omissions')
-    with contextlib.suppress(rosgraph.MasterException, rospy.ServiceException, rospy.ROSException):
-        rosgraph.Master(rospy.get_name()).lookupService(service)
+    with contextlib.suppress(rospy.ServiceException, rospy.ROSException):
+        if not has_service(service):
+            return
         ask = rospy.ServiceProxy(service, GetModelOmissions)
         omissions = interruptibly(lambda: ask(model), patience=_SETTLE).omissions
         if omissions:

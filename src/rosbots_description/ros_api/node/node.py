@@ -17,7 +17,6 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
 
-import rosgraph
 import rospy
 
 from ...sim.description import WorldSpec
@@ -30,7 +29,6 @@ from ..server import Loop, Server
 from ..services import EXTENSIONS, SERVICES, advertise
 from ..topics import advertise_clock, advertise_performance, advertise_states, subscribe_states
 from ..transport import (
-    NO_MASTER,
     Outlets,
     Registrar,
     connect_logging,
@@ -38,6 +36,7 @@ from ..transport import (
     guard_messages,
     holder,
     init_node,
+    is_master_there,
     leave_rosout,
     node_name,
     require_address,
@@ -45,11 +44,11 @@ from ..transport import (
     set_level,
     successor,
     wait_for_answers,
+    watch_master,
 )
 from ..views.camera import advertise_view
 from ..views.frames import advertise_frames
 from ..views.visuals import advertise_visuals
-from .master_watch import watch_master
 from .packages import find_model, find_package
 from .world_loading import fill_world, held_records, read_world, replay
 
@@ -132,7 +131,7 @@ def _simulate(
     replay(records)
     world.paused = options.paused
     _connect(server, spec)
-    watch_master(server)
+    watch_master(server.registrar, server.parameters)
     gc.freeze()  # else each full collection looks at all modules, for tens of steps
     gc.collect()  # else the next waits until a quarter of all those objects has come anew
     loop.run(options.steps)
@@ -186,16 +185,11 @@ def _wait_for_master() -> None:
     """
     require_address()
     reminder = time.monotonic()
-    while True:
-        try:
-            rosgraph.Master(f'/{NAME}').getPid()
-        except (*NO_MASTER, rosgraph.MasterException):
-            if time.monotonic() >= reminder:
-                _warn('No ROS master - start roscore to continue...')
-                reminder += REMINDER
-            time.sleep(MASTER_PERIOD)
-        else:
-            return
+    while not is_master_there(f'/{NAME}'):
+        if time.monotonic() >= reminder:
+            _warn('No ROS master - start roscore to continue...')
+            reminder += REMINDER
+        time.sleep(MASTER_PERIOD)
 
 
 def _take_name(name: str, replace: bool) -> None:

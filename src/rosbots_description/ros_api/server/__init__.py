@@ -2,6 +2,6 @@
 
 from .loop import Loop
 from .server import Server
-from .static_frames import TOPIC, from_root
+from .static_frames import STATIC_TOPIC, from_root
 
-__all__ = ['TOPIC', 'Loop', 'Server', 'from_root']
+__all__ = ['STATIC_TOPIC', 'Loop', 'Server', 'from_root']

@@ -10,6 +10,7 @@ Subscribes:
     /tf_static (tf2_msgs/TFMessage).
 """
 
+import contextlib
 from collections.abc import Callable, Mapping
 
 import rospy
@@ -18,9 +19,10 @@ from tf2_msgs.msg import TFMessage
 from ...sim.core import Pose, compose, inverse
 from ...sim.runtime import FrameTransform
 from ..messages import read_transform
+from ..transport import publisher_names, sender_of
 from .loop import Loop
 
-TOPIC = '/tf_static'
+STATIC_TOPIC = '/tf_static'
 PERIOD = 0.5  # time between two looks whether who published is still there [s, wall]
 
 Parents = Mapping[str, tuple[str, Pose]]  # by frame: its parent, and where it stands in that
@@ -44,18 +46,17 @@ class StaticFrames:
         """Listen from now on."""
         self._watching = True
         subscriber = rospy.Subscriber(
-            TOPIC, TFMessage, lambda message: loop.post(lambda: self._take(message))
+            STATIC_TOPIC, TFMessage, lambda message: loop.post(lambda: self._take(message))
         )
 
         def look() -> None:
-            topic = subscriber.impl
-            if topic is not None:  # else the node is shutting down
-                self.keep({connection.callerid_pub for connection in topic.connections})
+            with contextlib.suppress(rospy.ROSInterruptException):
+                self.keep(publisher_names(subscriber))
 
         loop.every(PERIOD, look)
 
     def _take(self, message: TFMessage) -> None:
-        self.add(message._connection_header['callerid'], message)
+        self.add(sender_of(message), message)
 
     def add(self, node: str, message: TFMessage) -> None:
         """Note what a node holds still; what is no pose is left out, as TF leaves it out."""

@@ -36,6 +36,43 @@ def require_address() -> None:
         ) from None
 
 
+def is_master_there(name: str) -> bool:
+    """Tell whether a master answers the node `name`, which need not be registered."""
+    try:
+        rosgraph.Master(name).getPid()
+    except (*NO_MASTER, rosgraph.MasterException):
+        return False
+    return True
+
+
+def node_address(node: str, asking: str) -> str | None:
+    """Return the XML-RPC address that the master knows of a node.
+
+    None: it knows of no such node, or nobody answers.
+
+    Args:
+        node: its global name.
+        asking: global name of who asks.
+    """
+    try:
+        return rosgraph.Master(asking).lookupNode(node)
+    except (*NO_MASTER, rosgraph.MasterException):
+        return None
+
+
+def has_service(name: str) -> bool:
+    """Tell whether a service is registered with the master, by its resolved name.
+
+    Raises:
+        Exception: one of `NO_MASTER`.
+    """
+    try:
+        rosgraph.Master(rospy.get_name()).lookupService(name)
+    except rosgraph.MasterException:
+        return False
+    return True
+
+
 def once_there(ask: Callable[[], Answer]) -> Answer:
     """Return what `ask()` gets from the master; wait while there is none, as rospy's topics do.
 

@@ -40,6 +40,11 @@ def init_node(name: str, arguments: Sequence[str], **options) -> None:
                       lost_name)
 
 
+def is_node() -> bool:
+    """Tell whether this process has become a node."""
+    return rospy.core.is_initialized()
+
+
 def _address_without_name() -> str | None:
     """Let others find this node by localhost if this machine's name does not resolve.
 

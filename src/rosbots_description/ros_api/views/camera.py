@@ -81,7 +81,7 @@ class Camera:
             values = [rospy.get_param('~view/eye', EYE), rospy.get_param('~view/target', TARGET)]
             self.sight = line_of_sight(*values)
         except OSError:
-            pass  # there is no master now, which master_watch tells
+            pass  # there is no master now, which `watch_master` tells
         except RequestError as error:
             if str(error) != self._complaint:
                 self._complaint = str(error)

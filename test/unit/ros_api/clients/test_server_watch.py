@@ -12,7 +12,7 @@ from rosbots_description.ros_api.clients.server_watch import ServerWatch
 def place(monkeypatch):
     """Where the master says the simulator is; None is nowhere."""
     found = {'address': None}
-    monkeypatch.setattr(ServerWatch, '_lookup', lambda _: found['address'])
+    monkeypatch.setattr(server_watch, 'node_address', lambda *_: found['address'])
     return found
 
 

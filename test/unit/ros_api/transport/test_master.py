@@ -8,8 +8,7 @@ import rosgraph
 import rospy
 
 from rosbots_description.ros_api.clients import spawn_model
-from rosbots_description.ros_api.node import master_watch
-from rosbots_description.ros_api.transport import master
+from rosbots_description.ros_api.transport import master, registrations
 from rosbots_description.ros_api.transport.master import (
     AddressError,
     once_there,
@@ -110,6 +109,6 @@ def test_nobody_waits_for_a_master_while_the_node_shuts_down(monkeypatch):
 def test_a_master_that_was_told_of_one_model_only_does_not_know_us_yet(there):
     who = rosgraph.Master('/unnamed')
     there.services = {'/unnamed/some_service': 'rosrpc://localhost:1'}
-    assert master_watch._is_known(who) is False
+    assert registrations._is_known(who) is False
     there.services['/unnamed/get_loggers'] = 'rosrpc://localhost:1'
-    assert master_watch._is_known(who) is True
+    assert registrations._is_known(who) is True

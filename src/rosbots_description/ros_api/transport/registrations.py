@@ -1,4 +1,4 @@
-"""Brings the simulator back into the graph of a ROS master that was started anew.
+"""What this node has registered, told again to a ROS master that was started anew.
 
 A ROS node registers once; when its master dies, the next one knows nothing of it. Gazebo has to be
 started again then. Here the simulation goes on meanwhile, and who is connected stays so.
@@ -6,6 +6,7 @@ started again then. Here the simulation goes on meanwhile, and who is connected 
 
 import logging
 import threading
+from collections.abc import Callable, Iterable
 from xmlrpc.client import Error as XmlRpcError
 
 import rosgraph
@@ -17,8 +18,8 @@ from rospy.impl.registration import (
     get_topic_manager,
 )
 
-from ..server import Server
-from ..transport import NO_MASTER
+from .master import NO_MASTER
+from .registrar import Registrar
 
 logger = logging.getLogger(__name__)
 
@@ -26,12 +27,29 @@ PERIOD = 1.0  # time between two looks for the master [s, wall]
 PATIENCE = 30.0  # how long a registration may take before it is begun again [s, wall]
 
 
-def watch_master(server: Server) -> None:
-    """Look after the master from now on, on a thread of its own."""
-    threading.Thread(target=_watch, args=(server,), name='master_watch', daemon=True).start()
+def published_types() -> dict[str, str]:
+    """Return the type of each topic that this node publishes, by its resolved name."""
+    return dict(get_topic_manager().get_publications())
 
 
-def _watch(server: Server) -> None:
+def subscribed_types() -> dict[str, str]:
+    """Return the type of each topic that this node subscribes to, by its resolved name."""
+    return dict(get_topic_manager().get_subscriptions())
+
+
+def watch_master(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> None:
+    """Look after the master from now on, on a thread of its own.
+
+    Args:
+        registrar: registers everything again with a new master.
+        parameters: what sets our parameters there again; it may grow meanwhile.
+    """
+    threading.Thread(
+        target=_watch, args=(registrar, parameters), name='master_watch', daemon=True
+    ).start()
+
+
+def _watch(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> None:
     master = rosgraph.Master(rospy.get_name())
     gone, ended = False, threading.Event()
     rospy.on_shutdown(ended.set)
@@ -42,8 +60,8 @@ def _watch(server: Server) -> None:
         if known is None and not gone:
             logger.warning('the ROS master is gone; the simulation goes on and waits for a new one')
         if known is False:
-            server.registrar.post(lambda: _introduce(server))
-            server.registrar.wait(PATIENCE)
+            registrar.post(lambda: _introduce(parameters))
+            registrar.wait(PATIENCE)
         gone = known is None
         if ended.wait(PERIOD):
             return
@@ -60,7 +78,7 @@ def _is_known(master: rosgraph.Master) -> bool | None:
     return True
 
 
-def _introduce(server: Server) -> None:
+def _introduce(parameters: Iterable[Callable[[], None]]) -> None:
     """Tell the master everything that was told to the one before; rospy has no public way."""
     listeners, topics = get_registration_listeners(), get_topic_manager()
     services = dict(get_service_manager().get_services())
@@ -73,8 +91,8 @@ def _introduce(server: Server) -> None:
     ):
         for name, told in entries:
             listeners.notify_added(name, told, kind)
-    for tell in server.parameters:
-        tell()
+    for write in parameters:
+        write()
     logger.info('registered with a new ROS master')
 
 

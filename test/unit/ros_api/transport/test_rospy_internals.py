@@ -1,0 +1,95 @@
+"""What transport relies on in rospy, though rospy promises none of it."""
+
+import inspect
+from unittest.mock import Mock
+
+import pytest
+import rospy
+import rospy.core
+import rospy.exceptions
+import rospy.impl.init
+import rospy.topics
+from rospy.impl import registration, rosout, tcpros_base, tcpros_service
+from rospy.impl.tcpros_pubsub import TCPROSSub
+from rospy.rostime import _set_rostime
+
+CALLED = {  # by us or, where we put a function in its place, by rospy
+    rospy.topics.QueuedConnection: 'connection queue_size',
+    rospy.topics.QueuedConnection.write_data: 'self data',
+    tcpros_base.TCPServer.run: 'self',
+    tcpros_base.recv_buff: 'sock b buff_size',
+    tcpros_service.ServiceImpl.handle: 'self transport header',
+    tcpros_service.ServiceImpl.error_handler: 'self e exc_type exc_value tb',
+    tcpros_service.ServiceImpl._handle_request: 'self transport request',
+    tcpros_service.ServiceImpl._write_service_error: 'self transport err_msg',
+    registration.RegistrationListeners.notify_added: 'self resolved_name data_type reg_type',
+    registration.get_registration_listeners: '',
+    registration.get_service_manager: '',
+    registration.get_topic_manager: '',
+    rospy.core.add_shutdown_hook: 'h',
+    rospy.core.is_initialized: '',
+    rospy.core.is_shutdown_requested: '',
+    _set_rostime: 't',
+}
+
+
+def connection():
+    return tcpros_base.TCPROSTransport(TCPROSSub('/t', rospy.AnyMsg), '/t')
+
+
+def server():
+    server = tcpros_base.TCPServer(Mock())
+    server.shutdown()
+    return server
+
+
+HELD = {  # what makes an object, and the attributes that we read or set
+    connection: 'done socket stat_bytes stat_num_msg endpoint_id callerid_pub header close '
+                'write_data',
+    lambda: rospy.topics._PublisherImpl('/t', rospy.AnyMsg):
+        'connections subscriber_listeners seq message_data_sent',
+    lambda: rospy.topics._SubscriberImpl('/t', rospy.AnyMsg): 'connections',
+    server: 'server_sock is_shutdown inbound_handler',
+    registration.get_registration_listeners: 'listeners',
+    registration.get_service_manager: 'get_services',
+    registration.get_topic_manager: 'get_publications get_subscriptions',
+    lambda: rosout.RosOutHandler: 'emit',
+    lambda: registration.Registration: 'PUB SUB SRV',
+    lambda: rospy.exceptions: 'TransportException TransportTerminated',
+}
+
+
+@pytest.mark.parametrize('function', CALLED, ids=lambda function: function.__qualname__)
+def test_what_we_call_or_replace_takes_what_it_took(function):
+    assert list(inspect.signature(function).parameters) == CALLED[function].split()
+
+
+@pytest.mark.parametrize(('make', 'names'), HELD.items(), ids=HELD.values())
+def test_what_we_look_into_has_the_attributes_that_it_had(make, names):
+    thing = make()
+    assert [name for name in names.split() if not hasattr(thing, name)] == []
+
+
+@pytest.mark.parametrize(('function', 'name'), [
+    (rospy.topics._PublisherImpl.add_connection, 'QueuedConnection'),
+    (tcpros_base.TCPROSTransport.receive_once, 'recv_buff'),
+    (rospy.impl.init.start_node, 'time'),
+])
+def test_rospy_looks_up_at_each_call_what_we_replace_in_its_modules(function, name):
+    assert name in function.__globals__
+    assert name in function.__code__.co_names
+
+
+@pytest.mark.parametrize(('function', 'name'), [
+    (rospy.impl.init.start_node, 'sleep'),
+    (tcpros_base.TCPROSTransport.receive_once, '_connection_header'),
+    (registration.RegManager.__init__, 'cond'),
+])
+def test_rospy_has_these_names_where_we_rely_on_them(function, name):
+    assert name in function.__code__.co_names
+
+
+def test_a_topic_is_listed_with_its_type():
+    manager = type(registration.get_topic_manager())()
+    manager.pubs['/t'] = rospy.topics._PublisherImpl('/t', rospy.AnyMsg)
+    assert dict(manager.get_publications()) == {'/t': rospy.AnyMsg._type}
