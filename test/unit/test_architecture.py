@@ -184,6 +184,15 @@ def test_all_that_is_public_is_there():
             assert public_names(room) <= bound | files
 
 
+def test_no_two_classes_have_one_name():
+    where = {}
+    for module, tree in modules().items():
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef):
+                where.setdefault(node.name, []).append(module)
+    assert {name: found for name, found in where.items() if len(found) > 1} == {}
+
+
 def test_pybullet_is_imported_in_one_place():
     using = [name for name, tree in modules().items() if 'pybullet' in imported_packages(tree)]
     assert using == ['sim/physics/bullet/client']

@@ -44,7 +44,7 @@ DRIVE = (
 
 
 @dataclass(frozen=True)
-class Motion:
+class MeanMotion:
     """Mean velocity in the frame of what moves."""
 
     speed: float  # [m/s] along its x
@@ -56,12 +56,12 @@ class Row:
     """A segment of the drive and what came of it."""
 
     segment: Segment
-    odometry: Motion
-    truth: Motion
+    odometry: MeanMotion
+    truth: MeanMotion
     real_time_factor: float
 
 
-def steady_motion(samples: Sequence[PlanarSample]) -> Motion:
+def steady_motion(samples: Sequence[PlanarSample]) -> MeanMotion:
     """Return the mean velocity once SETTLING has passed since the first sample.
 
     Raises:
@@ -78,7 +78,7 @@ def steady_motion(samples: Sequence[PlanarSample]) -> Motion:
         path += (after.x - before.x) * math.cos(heading) + (after.y - before.y) * math.sin(heading)
         turned += step
     time = steady[-1].stamp - steady[0].stamp
-    return Motion(path / time, turned / time)
+    return MeanMotion(path / time, turned / time)
 
 
 def real_time_factor(samples: Sequence[PlanarSample]) -> float:
@@ -87,9 +87,9 @@ def real_time_factor(samples: Sequence[PlanarSample]) -> float:
     return (last.stamp - first.stamp) / (last.wall - first.wall)
 
 
-def expected_motion(segment: Segment) -> Motion:
+def expected_motion(segment: Segment) -> MeanMotion:
     """Return the velocity of the real geometry without slip."""
-    return Motion(SPEED_RATIO * segment.speed, TURN_RATIO * segment.turn_rate)
+    return MeanMotion(SPEED_RATIO * segment.speed, TURN_RATIO * segment.turn_rate)
 
 
 def complaint(row: Row) -> str | None:

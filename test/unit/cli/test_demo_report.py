@@ -7,7 +7,7 @@ import pytest
 from rosbots_description.cli.demo_report import (
     DRIVE,
     SETTLING,
-    Motion,
+    MeanMotion,
     Row,
     Segment,
     complaint,
@@ -76,18 +76,20 @@ def test_expected_motion_comes_from_the_true_geometry():
 ])
 def test_what_gazebo_measured_passes_without_complaint(name, speed, turn_rate):
     segment = next(segment for segment in DRIVE if segment.name == name)
-    motion = Motion(speed, turn_rate)
+    motion = MeanMotion(speed, turn_rate)
     assert complaint(Row(segment, motion, motion, 1.0)) is None
 
 
-@pytest.mark.parametrize('truth', [Motion(0.0, 0.0), Motion(-0.44, 0.55), Motion(0.44, -0.55)])
+@pytest.mark.parametrize('truth', [
+    MeanMotion(0.0, 0.0), MeanMotion(-0.44, 0.55), MeanMotion(0.44, -0.55),
+])
 def test_standing_still_and_wrong_signs_are_named(truth):
     segment = Segment('arc', 0.5, 0.5, 4.0)
     assert 'part "arc"' in complaint(Row(segment, truth, truth, 1.0))
 
 
 def test_table_has_a_line_for_each_segment_with_its_numbers_in_order():
-    rows = [Row(DRIVE[0], Motion(0.4401, -0.0002), Motion(0.4312, 0.0123), 0.9987)]
+    rows = [Row(DRIVE[0], MeanMotion(0.4401, -0.0002), MeanMotion(0.4312, 0.0123), 0.9987)]
     lines = table(rows).splitlines()
     assert len(lines) == 3
     assert lines[2].split() == [

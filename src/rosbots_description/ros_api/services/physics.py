@@ -13,7 +13,7 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Vector3
 
-from ...sim.description import check
+from ...sim.description import check_physics
 from ..messages import read_vector
 from ..server import Server
 from .registry import service
@@ -54,7 +54,7 @@ def set_physics_properties(
         gravity=read_vector(request.gravity),
         **{name: getattr(request.ode_config, name) for name in ODEPhysics.__slots__},
     )
-    check(physics)
+    check_physics(physics)
     server.world.set_physics(physics)
     server.physics_changed()
     return SetPhysicsPropertiesResponse(True, 'physics engine updated')

@@ -32,7 +32,7 @@ def visual_marker(namespace: str, number: int, visual: Visual) -> Marker:
     return marker
 
 
-def place(marker: Marker, link_pose: Pose, visual: Visual) -> None:
+def place_marker(marker: Marker, link_pose: Pose, visual: Visual) -> None:
     """Move a marker to where its visual is while its link stands at `link_pose` in the world."""
     pose = compose(link_pose, visual.pose)
     if isinstance(visual.geometry, Plane):

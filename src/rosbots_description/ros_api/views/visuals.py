@@ -13,7 +13,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...sim.core import Pose, compose
 from ...sim.runtime import Link, Model, World
 from ..server import Server
-from .markers import clearance, place, removal, visual_marker
+from .markers import clearance, place_marker, removal, visual_marker
 from .shading import shade
 
 PERIOD = 0.04  # time between two looks at the world [s, wall]
@@ -47,7 +47,7 @@ class LinkView:
             return []
         self._shown = pose
         for marker, visual in zip(self.markers, self._link.spec.visuals, strict=True):
-            place(marker, pose, visual)
+            place_marker(marker, pose, visual)
         return self.markers
 
 

@@ -10,7 +10,7 @@ from .errors import (
     SimError,
     one_line,
 )
-from .limits import HEAVIEST, LARGEST, LIGHTEST, LONGEST, MOST_INERT
+from .limits import HEAVIEST, LARGEST, LIGHTEST, LONGEST, MOST_INERT, SLOWEST_RATE
 from .messages import (
     MAX_NOTES,
     document_url,
@@ -50,10 +50,10 @@ from .xml_text import is_expanded_xacro, plain_text
 
 __all__ = [
     'ALONG', 'END', 'HEAVIEST', 'IDENTITY', 'LARGEST', 'LIGHTEST', 'LONGEST', 'MAX_NOTES',
-    'MOST_INERT', 'NANOSECONDS', 'NO_ROTATION', 'UP', 'AbsentError', 'ModelError', 'NotFoundError',
-    'PluginError', 'Pose', 'Quaternion', 'ShapeError', 'SimClock', 'SimError', 'Twist', 'Vector',
-    'add', 'compose', 'conjugate', 'cross', 'document_url', 'dot', 'fault', 'from_rpy', 'inverse',
-    'is_expanded_xacro', 'line_of', 'location', 'normalise', 'note', 'one_line', 'owner',
-    'plain_text', 'relative', 'rotate', 'shortened', 'source_of', 'subtract', 'suggestion',
-    'to_rpy', 'yaw_of',
+    'MOST_INERT', 'NANOSECONDS', 'NO_ROTATION', 'SLOWEST_RATE', 'UP', 'AbsentError', 'ModelError',
+    'NotFoundError', 'PluginError', 'Pose', 'Quaternion', 'ShapeError', 'SimClock', 'SimError',
+    'Twist', 'Vector', 'add', 'compose', 'conjugate', 'cross', 'document_url', 'dot', 'fault',
+    'from_rpy', 'inverse', 'is_expanded_xacro', 'line_of', 'location', 'normalise', 'note',
+    'one_line', 'owner', 'plain_text', 'relative', 'rotate', 'shortened', 'source_of', 'subtract',
+    'suggestion', 'to_rpy', 'yaw_of',
 ]

@@ -9,6 +9,7 @@ from .model_spec import (
     WORLD,
     Box,
     Collision,
+    Colour,
     Cylinder,
     Element,
     Geometry,
@@ -24,12 +25,11 @@ from .model_spec import (
     Surface,
     Visual,
 )
-from .physics_settings import PhysicsSettings, check
+from .physics_settings import PhysicsSettings, check_physics
 from .world_spec import (
     DIRECTIONAL,
     POINT,
     SPOT,
-    Colour,
     LightSpec,
     ModelState,
     SceneSpec,
@@ -41,5 +41,5 @@ __all__ = [
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
     'PhysicsSettings', 'Plane', 'PluginSpec', 'SceneSpec', 'Sphere', 'Surface', 'Visual',
-    'WorldSpec', 'check', 'gazebo_material', 'inertia',
+    'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
 ]

@@ -1,8 +1,6 @@
 """Colours of the material scripts that come with Gazebo, by name (their diffuse part)."""
 
-from .model_spec import Material
-
-Colour = tuple[float, float, float, float]
+from .model_spec import Colour, Material
 
 # The textured ones (wood, grass, ...) are given their texture's prevailing colour.
 _COLOURS: dict[str, Colour] = {

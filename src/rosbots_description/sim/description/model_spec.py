@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose, Vector, rotate
 
+Colour = tuple[float, float, float, float]  # red, green, blue, alpha in 0..1
+
 
 @dataclass(frozen=True)
 class Box:
@@ -94,7 +96,7 @@ class Collision:
 class Material:
     """How a visual looks: colour as red, green, blue, alpha in 0..1, and Gazebo's script name."""
 
-    rgba: tuple[float, float, float, float] = (0.7, 0.7, 0.7, 1.0)
+    rgba: Colour = (0.7, 0.7, 0.7, 1.0)
     script: str = ''
 
 

@@ -3,10 +3,9 @@
 import math
 from dataclasses import astuple, dataclass, fields
 
-from ..core import SimError, Vector
+from ..core import SLOWEST_RATE, SimError, Vector
 
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 10.0  # [s]; the clock counts nanoseconds
-SLOWEST_RATE = 0.001  # [Hz] beside 0, which means as fast as possible
 MOST_ITERATIONS = 10_000  # of the solver; more would only make a step take for ever
 MOST_CONTACTS = 10_000_000
 
@@ -37,7 +36,7 @@ class PhysicsSettings:
     friction_cone: bool = False
 
 
-def check(physics: PhysicsSettings) -> None:
+def check_physics(physics: PhysicsSettings) -> None:
     """Refuse settings that no world can have.
 
     Raises:

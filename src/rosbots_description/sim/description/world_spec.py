@@ -4,10 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose, Vector
-from .model_spec import ModelSpec, PluginSpec
+from .model_spec import Colour, ModelSpec, PluginSpec
 from .physics_settings import PhysicsSettings
-
-Colour = tuple[float, float, float, float]
 
 POINT, DIRECTIONAL, SPOT = 'point', 'directional', 'spot'
 

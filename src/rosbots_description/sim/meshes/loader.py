@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core import LONGEST, AbsentError, ModelError, shortened
+from ..description import Colour
 from ..resources import read_file, regular_state, within
 from .collada_limits import ColladaError, safe_collada
 from .decimation import thinned
@@ -34,7 +35,6 @@ FINEST = 400_000  # triangles that are simulated and shown; more are thinned
 MAX_LIBRARY_BYTES = 1_000_000
 FORMATS = ('.dae', '.stl', '.obj')
 
-Colour = tuple[float, float, float, float]
 GREY: Colour = (0.7, 0.7, 0.7, 1.0)
 
 # A material this transparent is nearly always an exporter's slip: the part is shown.
@@ -45,13 +45,13 @@ _SILENCE = threading.Lock()
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MeshPart:
     """Triangles of one colour."""
 
     vertices: np.ndarray  # (n, 3) [m]
     faces: np.ndarray  # (m, 3), numbers of vertices
     normals: np.ndarray | None  # (n, 3), unit vectors at the vertices
-    rgba: Colour  # red, green, blue, alpha in 0..1
+    rgba: Colour
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class MeshData:
     """A mesh file's content; `digest` identifies the file's bytes."""
 
     digest: str
-    parts: tuple[Part, ...]
+    parts: tuple[MeshPart, ...]
 
     def triangles(self) -> tuple[np.ndarray, np.ndarray]:
         """Return all parts as one: vertices (n, 3) [m] and faces (m, 3)."""
@@ -141,7 +141,7 @@ def _fault(path: str, sentence: str, kind: type[ModelError] = ModelError) -> Mod
     return kind(f"mesh file '{path}' {sentence}")
 
 
-def _parse(path: str, extension: str, content: bytes) -> list[Part]:
+def _parse(path: str, extension: str, content: bytes) -> list[MeshPart]:
     # A broken file may raise anything, memory and interrupts apart: the parsers are not ours.
     try:
         with _SILENCE, warnings.catch_warnings(), np.errstate(all='ignore'):
@@ -154,14 +154,14 @@ def _parse(path: str, extension: str, content: bytes) -> list[Part]:
         raise _fault(path, f'is broken or no {extension} file: {reason}') from error
 
 
-def _parse_collada(content: bytes, path: str) -> list[Part]:
+def _parse_collada(content: bytes, path: str) -> list[MeshPart]:
     from .collada import read_collada  # noqa: PLC0415  as it says
 
     parts, unit = read_collada(safe_collada(content))
     return [_collada_part(part, unit) for part in parts]
 
 
-def _parse_obj(content: bytes, path: str) -> list[Part]:
+def _parse_obj(content: bytes, path: str) -> list[MeshPart]:
     folder = os.path.dirname(path)
 
     def read_library(name: str) -> str:
@@ -178,26 +178,26 @@ def _parse_obj(content: bytes, path: str) -> list[Part]:
     return [_obj_part(part) for part in read_obj(content, read_library)]
 
 
-def _obj_part(part: ObjPart) -> Part:
+def _obj_part(part: ObjPart) -> MeshPart:
     normals = part.normals
     if normals is not None:
         normals = _turn_normals(normals, np.eye(3), len(part.vertices))
     rgba = GREY
     if part.colour is not None and np.isfinite(part.colour).all():
         rgba = (*(min(1.0, max(0.0, value)) for value in part.colour), 1.0)
-    return Part(part.vertices, part.faces, normals, rgba)
+    return MeshPart(part.vertices, part.faces, normals, rgba)
 
 
-def _parse_stl(content: bytes, path: str) -> list[Part]:
+def _parse_stl(content: bytes, path: str) -> list[MeshPart]:
     corners = read_stl(content)
     faces = np.arange(3 * len(corners)).reshape(-1, 3)
-    return [Part(corners.reshape(-1, 3), faces, None, GREY)]
+    return [MeshPart(corners.reshape(-1, 3), faces, None, GREY)]
 
 
 _PARSERS = {'.dae': _parse_collada, '.obj': _parse_obj, '.stl': _parse_stl}
 
 
-def _collada_part(part: 'ColladaPart', unit: float) -> Part:
+def _collada_part(part: 'ColladaPart', unit: float) -> MeshPart:
     faces, normals = part.faces, part.normals
     linear, offset = part.matrix[:3, :3], part.matrix[:3, 3]
     vertices = (np.asarray(part.vertices, dtype=float) @ linear.T + offset) * unit
@@ -205,7 +205,7 @@ def _collada_part(part: 'ColladaPart', unit: float) -> Part:
         faces = faces[:, ::-1]  # a mirror turns the triangles inside out
     if normals is not None:
         normals = _turn_normals(np.asarray(normals, dtype=float), linear, len(vertices))
-    return Part(vertices, faces, normals, _colour(part.rgba))
+    return MeshPart(vertices, faces, normals, _colour(part.rgba))
 
 
 def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.ndarray | None:
@@ -226,7 +226,7 @@ def _colour(rgba: np.ndarray | None) -> Colour:
     return (red, green, blue, alpha if alpha > _INVISIBLE else 1.0)
 
 
-def _check_parts(path: str, parts: list[Part]) -> list[Part]:
+def _check_parts(path: str, parts: list[MeshPart]) -> list[MeshPart]:
     parts = [part for part in parts if len(part.faces)]
     count = sum(len(part.faces) for part in parts)
     if count == 0:
@@ -243,7 +243,7 @@ def _check_parts(path: str, parts: list[Part]) -> list[Part]:
     return parts
 
 
-def _thin(path: str, parts: list[Part]) -> list[Part]:
+def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
     """Return the parts with no more triangles than are simulated and shown."""
     count = sum(len(part.faces) for part in parts)
     if count <= FINEST:
@@ -253,7 +253,7 @@ def _thin(path: str, parts: list[Part]) -> list[Part]:
         most = max(1, FINEST * len(part.faces) // count)
         vertices, faces, kept, cell = thinned(part.vertices, part.faces, most)
         normals = None if part.normals is None else part.normals[kept]
-        thin.append(Part(vertices, faces, normals, part.rgba))
+        thin.append(MeshPart(vertices, faces, normals, part.rgba))
         widest = max(widest, cell)
     logger.warning(
         "mesh file '%s' has %d triangles; %d are used, of points that lie %.2g m apart", path,
@@ -262,9 +262,9 @@ def _thin(path: str, parts: list[Part]) -> list[Part]:
     return thin
 
 
-def _by_colour(parts: list[Part]) -> tuple[Part, ...]:
+def _by_colour(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
     """Return the parts with those of equal colour joined, in order of first appearance."""
-    groups: dict[Colour, list[Part]] = {}
+    groups: dict[Colour, list[MeshPart]] = {}
     for part in parts:
         groups.setdefault(part.rgba, []).append(part)
     joined = []
@@ -275,5 +275,5 @@ def _by_colour(parts: list[Part]) -> tuple[Part, ...]:
         for array in (vertices, faces, normals):
             if array is not None:
                 array.setflags(write=False)  # it is shared by all who read the file
-        joined.append(Part(vertices, faces, normals, rgba))
+        joined.append(MeshPart(vertices, faces, normals, rgba))
     return tuple(joined)

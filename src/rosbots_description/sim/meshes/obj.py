@@ -15,7 +15,7 @@ import numpy as np
 MAX_LIBRARIES = 8  # .mtl files of one .obj
 MAX_MATERIALS = 1000  # each a part of its own; what uses yet another has no colour
 
-Colour = tuple[float, float, float]
+RGB = tuple[float, float, float]
 ReadLibrary = Callable[[str], str]  # the name of a .mtl file -> its text, '' if there is none
 
 
@@ -25,7 +25,7 @@ class ObjPart(NamedTuple):
     vertices: np.ndarray  # (n, 3)
     faces: np.ndarray  # (m, 3), numbers of vertices
     normals: np.ndarray | None  # (n, 3), as written
-    colour: Colour | None  # red, green, blue in 0..1
+    colour: RGB | None  # red, green, blue in 0..1
 
 
 class _Faces:
@@ -81,7 +81,7 @@ def read_obj(content: bytes, read_library: ReadLibrary) -> list[ObjPart]:
         return []
     points = np.asarray(positions).reshape(-1, 3)
     directions = np.asarray(normals).reshape(-1, 3)
-    colours: dict[str, Colour] = {}
+    colours: dict[str, RGB] = {}
     for name in libraries:
         colours |= _read_colours(read_library(name))
     return [
@@ -100,7 +100,7 @@ def _from_start(number: int, count: int) -> int:
 
 
 def _part(
-    faces: _Faces, points: np.ndarray, directions: np.ndarray, colour: Colour | None
+    faces: _Faces, points: np.ndarray, directions: np.ndarray, colour: RGB | None
 ) -> ObjPart:
     corners = _fans(np.asarray(faces.sizes))
     vertices = _checked(np.asarray(faces.vertices), len(points))[corners]
@@ -136,9 +136,9 @@ def _fans(sizes: np.ndarray) -> np.ndarray:
     return np.stack([first, first + step + 1, first + step + 2], axis=1)
 
 
-def _read_colours(text: str) -> dict[str, Colour]:
+def _read_colours(text: str) -> dict[str, RGB]:
     """Return the diffuse colour of each material of a .mtl file that gives one."""
-    colours: dict[str, Colour] = {}
+    colours: dict[str, RGB] = {}
     name = ''
     for line in text.splitlines():
         word, _, rest = line.strip().partition(' ')

@@ -5,14 +5,13 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..core import PluginError
+from ..core import SLOWEST_RATE, PluginError
 from ..description import Element
 
 logger = logging.getLogger(__name__)
 
 Value = TypeVar('Value', str, float, bool)
 Missing = Callable[[str, str | float | bool], str]  # a tag and its default -> a warning
-SLOWEST_RATE = 1e-3  # [Hz] anything rarer is a mistake
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 
 

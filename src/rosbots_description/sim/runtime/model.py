@@ -1,8 +1,7 @@
 """Models, links, joints and collisions as they are in a world, to ask and to move by name."""
 
 from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
-from ..description import Collision as CollisionSpec
-from ..description import JointSpec, LinkSpec, ModelSpec
+from ..description import Collision, JointSpec, LinkSpec, ModelSpec
 from ..physics import CompiledModel
 from ..physics.bullet import Body, Engine
 from .plugin_life import Plugin
@@ -18,7 +17,7 @@ class Link:
         self.scoped_name = f'{model.name}::{spec.name}'
         # A link of a model within the model is called `inner::link` here and `link` in its own.
         self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
-        self.collisions = {c.name: Collision(self, c) for c in spec.collisions}
+        self.collisions = {c.name: CollisionFrame(self, c) for c in spec.collisions}
 
     @property
     def pose(self) -> Pose:
@@ -47,10 +46,10 @@ class Link:
         self.model.engine.let_slip(self.model.body, self.name, axle, slips)
 
 
-class Collision:
+class CollisionFrame:
     """A touching shape of a link; it can serve as a reference frame."""
 
-    def __init__(self, link: Link, spec: CollisionSpec) -> None:
+    def __init__(self, link: Link, spec: Collision) -> None:
         self.link = link
         self.spec = spec
         self.name = spec.name

@@ -23,7 +23,7 @@ from ..physics.bullet import Engine, Tuning
 from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
 from .divergence_watchdog import Guard
 from .external_forces import Jobs
-from .model import Collision, Joint, Link, Model
+from .model import CollisionFrame, Joint, Link, Model
 from .nested_model import InnerModel, inner_models
 from .plugin_life import Plugin
 from .scheduler import Schedule
@@ -31,7 +31,7 @@ from .scheduler import Schedule
 logger = logging.getLogger(__name__)
 
 WORLD_FRAMES = ('', 'world', 'map', '/map')
-Entity = Model | InnerModel | Link | Collision
+Entity = Model | InnerModel | Link | CollisionFrame
 
 
 class Listener(Protocol):

@@ -21,7 +21,7 @@ from rosbots_description.ros_api.topics.states import clock_frequency
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description.model_spec import JointSpec, ModelSpec
-from rosbots_description.sim.description.physics_settings import PhysicsSettings, check
+from rosbots_description.sim.description.physics_settings import PhysicsSettings, check_physics
 
 HINGE = JointSpec('hinge', 'revolute', 'a', 'b', lower=-1.0, upper=1.0)
 QUARTER = from_rpy(0.0, 0.0, math.pi / 2)
@@ -163,13 +163,13 @@ def test_pace_is_simulated_per_wall_time_and_survives_a_reset():
 )
 def test_settings_that_no_world_can_have_are_refused(changes, words):
     with pytest.raises(SimError, match=words):
-        check(PhysicsSettings(**changes))
+        check_physics(PhysicsSettings(**changes))
 
 
 def test_unusual_settings_are_taken():
-    check(PhysicsSettings())
-    check(PhysicsSettings(step_size=10.0, max_update_rate=0.0, gravity=(0.0, 0.0, 0.0),
-                          sor_pgs_iters=0, max_contacts=0))
+    check_physics(PhysicsSettings())
+    check_physics(PhysicsSettings(step_size=10.0, max_update_rate=0.0, gravity=(0.0, 0.0, 0.0),
+                                  sor_pgs_iters=0, max_contacts=0))
 
 
 def test_every_reconfigure_parameter_has_a_value_and_its_type():

@@ -2,9 +2,9 @@
 
 from .fixed_joint_reduction import Lumped, lump, require_links
 from .frame_references import repoint_plugin
-from .kinematic_tree import FREE, Tree, TreeJoint, TreeLink, build_tree
+from .kinematic_tree import FREE, KinematicTree, TreeJoint, TreeLink, build_tree
 
 __all__ = [
-    'FREE', 'Lumped', 'Tree', 'TreeJoint', 'TreeLink', 'build_tree', 'lump', 'repoint_plugin',
-    'require_links',
+    'FREE', 'KinematicTree', 'Lumped', 'TreeJoint', 'TreeLink', 'build_tree', 'lump',
+    'repoint_plugin', 'require_links',
 ]

@@ -13,7 +13,7 @@ from ...core import IDENTITY, ModelError, Pose, compose, fault
 from ...description import WORLD, Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 from ...description.inertia import merge
 from .frame_references import move_part
-from .kinematic_tree import FREE, Tree, TreeJoint
+from .kinematic_tree import FREE, KinematicTree, TreeJoint
 
 _LUMPED = '_fixed_joint_lump__'
 
@@ -32,7 +32,7 @@ class Lumped:
     conflicts: tuple[str, ...]  # lumped links whose flags changed their heir
 
 
-def lump(tree: Tree) -> Lumped:
+def lump(tree: KinematicTree) -> Lumped:
     """Merge what fixed joints hold together.
 
     A link without mass is not simulated, nor is anything that hangs on it by a joint that stays;
@@ -61,7 +61,7 @@ def lump(tree: Tree) -> Lumped:
     )
 
 
-def _homes(tree: Tree, order: Sequence[str]) -> dict[str, tuple[str, Pose]]:
+def _homes(tree: KinematicTree, order: Sequence[str]) -> dict[str, tuple[str, Pose]]:
     """Return for each link the link it belongs to (itself, or its heir) and its pose in that."""
     homes: dict[str, tuple[str, Pose]] = {}
     for name in order:
@@ -75,7 +75,7 @@ def _homes(tree: Tree, order: Sequence[str]) -> dict[str, tuple[str, Pose]]:
 
 
 def _massless(
-    tree: Tree, order: Sequence[str], homes: Mapping[str, tuple[str, Pose]]
+    tree: KinematicTree, order: Sequence[str], homes: Mapping[str, tuple[str, Pose]]
 ) -> tuple[set[str], list[str]]:
     """Return the links that vanish, and among them those without mass, which are the cause.
 
@@ -111,7 +111,7 @@ def _mass(inertial: Inertial | None) -> float:
     return 0.0 if inertial is None else inertial.mass
 
 
-def _poses_in_model(tree: Tree, order: Sequence[str]) -> dict[str, Pose]:
+def _poses_in_model(tree: KinematicTree, order: Sequence[str]) -> dict[str, Pose]:
     poses: dict[str, Pose] = {}
     for name in order:
         joint = tree.joint_to.get(name)
@@ -124,7 +124,7 @@ def _rehang(joint: TreeJoint, homes: Mapping[str, tuple[str, Pose]]) -> JointSpe
 
 
 def _merge_link(
-    tree: Tree,
+    tree: KinematicTree,
     name: str,
     members: Sequence[str],
     homes: Mapping[str, tuple[str, Pose]],
@@ -171,7 +171,7 @@ def _named(shapes: Sequence[Shape], heir: str, suffix: str) -> tuple[Shape, ...]
     return tuple(named)
 
 
-def _conflicts(tree: Tree, members: Mapping[str, Sequence[str]]) -> list[str]:
+def _conflicts(tree: KinematicTree, members: Mapping[str, Sequence[str]]) -> list[str]:
     """Return the lumped links whose flags change what their heir would have been."""
     return [
         member for heir, names in members.items() for member in names
@@ -182,7 +182,7 @@ def _conflicts(tree: Tree, members: Mapping[str, Sequence[str]]) -> list[str]:
     ]
 
 
-def require_links(tree: Tree, lumped: Lumped) -> None:
+def require_links(tree: KinematicTree, lumped: Lumped) -> None:
     """Refuse a model of which nothing remains.
 
     Raises:

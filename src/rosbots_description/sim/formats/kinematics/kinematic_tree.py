@@ -35,7 +35,7 @@ class TreeJoint:
 
 
 @dataclass(frozen=True)
-class Tree:
+class KinematicTree:
     """All links and joints, connected: one root, every other link child of exactly one joint."""
 
     root: str
@@ -63,7 +63,7 @@ class Tree:
 
 def build_tree(
     robot: etree._Element, links: Sequence[TreeLink], joints: Sequence[TreeJoint]
-) -> Tree:
+) -> KinematicTree:
     """Connect links and joints.
 
     Raises:
@@ -92,7 +92,7 @@ def build_tree(
             )
         below.setdefault(joint.spec.parent, []).append(joint)
     root = _find_root(robot, by_name, joint_to)
-    tree = Tree(
+    tree = KinematicTree(
         root, by_name, joint_to,
         {name: tuple(sorted(group, key=lambda joint: joint.spec.name))
          for name, group in below.items()},
@@ -132,7 +132,7 @@ def _find_root(
     )
 
 
-def _refuse_rings(tree: Tree) -> None:
+def _refuse_rings(tree: KinematicTree) -> None:
     reached = set(tree.depth_first())
     lost = [name for name in tree.links if name not in reached]
     if lost:

@@ -37,7 +37,7 @@ def add_joint_frame(frames: Frames, element: etree._Element) -> None:
     frames.add(required_name(element), element, base, carrier=child or None)
 
 
-def read_joint(
+def read_sdf_joint(
     document: SdfDocument, element: etree._Element, frames: Frames
 ) -> JointSpec | None:
     """Return the joint of a <joint>, or None where its type is noted as not simulated.

@@ -16,7 +16,7 @@ from ...description.inertia import impossible, possible, turnable
 from ..xml import required_name, to_element
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
-from .joints import add_joint_frame, as_trees, read_joint
+from .joints import add_joint_frame, as_trees, read_sdf_joint
 from .links import UNIT_INERTIAL, read_link
 from .values import text_of, truth_of
 
@@ -107,7 +107,7 @@ def _add_joint(
 ) -> None:
     """Add a joint to a model; as in Gazebo it stands without one whose links are not there."""
     try:
-        joint = read_joint(document, element, frames)
+        joint = read_sdf_joint(document, element, frames)
     except AbsentError as error:
         document.notes.left_out.part(f"joint '{shortened(element.get('name'), 100)}'", error)
         return

@@ -5,7 +5,7 @@ from dataclasses import fields
 from lxml import etree
 
 from ...core import SimError, fault
-from ...description import PhysicsSettings, check
+from ...description import PhysicsSettings, check_physics
 from ..xml import scalar, tag_of
 from .document import SdfDocument
 from .values import number_of, numbers_of
@@ -90,6 +90,6 @@ def _value(physics: etree._Element, path: str, default: object) -> object:
 def _check_setting(element: etree._Element, name: str, value: object) -> None:
     """Refuse what no world can have, as the services do, and say where it stands."""
     try:
-        check(PhysicsSettings(**{name: value}))
+        check_physics(PhysicsSettings(**{name: value}))
     except SimError as error:
         raise fault(element, f'<{tag_of(element)}> is wrong: {error}') from None

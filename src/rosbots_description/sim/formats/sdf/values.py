@@ -6,6 +6,7 @@ from lxml import etree
 
 from ...core import IDENTITY, Pose, Vector, fault, from_rpy
 from ...core import normalise as normalise_quaternion
+from ...description import Colour
 from ..xml import (
     is_endless,
     require_damping,
@@ -16,8 +17,6 @@ from ..xml import (
     tag_of,
     truth,
 )
-
-Colour = tuple[float, float, float, float]
 
 # SDF's own "no limit" is 1e16; nothing that is simulated comes near this [rad, m, N, N m].
 _ENDLESS = 1e15

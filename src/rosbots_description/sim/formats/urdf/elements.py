@@ -218,7 +218,7 @@ def _inertial(link: etree._Element) -> Inertial | None:
     return inertial if mass > 0.0 else None
 
 
-def read_joint(
+def read_urdf_joint(
     element: etree._Element, kept: Mapping[str, str], notes: list[str]
 ) -> TreeJoint:
     """Return the joint of a <joint> element.

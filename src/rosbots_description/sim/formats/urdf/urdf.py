@@ -10,7 +10,7 @@ from ...description import WORLD, LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, turnable
 from ...meshes import check_mesh
 from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
-from ..kinematics import Lumped, Tree, build_tree, lump, repoint_plugin, require_links
+from ..kinematics import KinematicTree, Lumped, build_tree, lump, repoint_plugin, require_links
 from ..xml import (
     XACRO_CURE,
     check_name,
@@ -21,7 +21,7 @@ from ..xml import (
     required_name,
     tag_of,
 )
-from .elements import LinkReader, read_joint
+from .elements import LinkReader, read_urdf_joint
 from .gazebo_tags import GazeboTags, apply_tags, read_gazebo_tags
 
 logger = logging.getLogger(__name__)
@@ -96,7 +96,7 @@ def load_urdf(
 
 def _read(
     robot: etree._Element, notes: list[str], find_model: FindModel
-) -> tuple[Tree, GazeboTags]:
+) -> tuple[KinematicTree, GazeboTags]:
     link_elements, joint_elements = robot.findall('link'), robot.findall('joint')
     tags = read_gazebo_tags(
         robot,
@@ -104,7 +104,7 @@ def _read(
         [required_name(element) for element in joint_elements],
     )
     notes += tags.notes
-    joints = [read_joint(element, tags.kept_joints, notes) for element in joint_elements]
+    joints = [read_urdf_joint(element, tags.kept_joints, notes) for element in joint_elements]
     joints = [
         replace(joint, spec=replace(joint.spec, **tags.joints.get(joint.spec.name, {})))
         for joint in joints

@@ -15,7 +15,7 @@ from .base import Encoders, WheeledDrive, reads_encoders
 
 logger = logging.getLogger(__name__)
 
-REACHED = 0.01  # [m/s] rim speed this close to the target ends a ramp
+RAMP_REACHED = 0.01  # [m/s] rim speed this close to the target ends a ramp
 DRAGGED = 0.015  # share of its speed that a robot loses that drags a caster (doc/physics.md)
 TOLERATED = 0.02  # share by which a wheel may differ from its description without a warning
 
@@ -70,7 +70,7 @@ class DiffDrive(WheeledDrive):
         if limit > 0.0:
             missing = [goal - wheel.velocity * radius
                        for goal, wheel in zip(target, self.wheels, strict=True)]
-            if min(map(abs, missing)) >= REACHED:
+            if min(map(abs, missing)) >= RAMP_REACHED:
                 for i in (0, 1):
                     self._setpoint[i] += max(-limit, min(limit, missing[i]))
                 target = self._setpoint
