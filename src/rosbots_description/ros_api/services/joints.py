@@ -69,7 +69,7 @@ def apply_joint_effort(
     joint = server.world.find_joint(request.joint_name)
     if joint is not None:
         start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
-        server.world.jobs.add(joint, lambda: joint.push(request.effort), start, duration)
+        server.world.external_forces.add(joint, lambda: joint.push(request.effort), start, duration)
     elif not _is_fixed(server.world, request.joint_name):
         return refuse(ApplyJointEffortResponse(), 'ApplyJointEffort: joint not found')
     return ApplyJointEffortResponse(True, 'ApplyJointEffort: effort set')
@@ -78,7 +78,7 @@ def apply_joint_effort(
 @service('clear_joint_forces', JointRequest)
 def clear_joint_forces(server: Server, request: JointRequestRequest) -> JointRequestResponse:
     """End all pushes on joints of that plain name, in all models."""
-    server.world.jobs.cancel(
+    server.world.external_forces.cancel(
         lambda target: isinstance(target, Joint) and target.name == request.joint_name
     )
     return JointRequestResponse()

@@ -113,14 +113,14 @@ def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyB
         link.pose,
     )
     start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
-    world.jobs.add(link, lambda: link.push(force, torque), start, duration)
+    world.external_forces.add(link, lambda: link.push(force, torque), start, duration)
     return ApplyBodyWrenchResponse(success=True)
 
 
 @service('clear_body_wrenches', BodyRequest)
 def clear_body_wrenches(server: Server, request: BodyRequestRequest) -> BodyRequestResponse:
     """End all pushes on the link of that scoped name."""
-    server.world.jobs.cancel(
+    server.world.external_forces.cancel(
         lambda target: isinstance(target, Link) and target.scoped_name == request.body_name
     )
     return BodyRequestResponse()

@@ -17,7 +17,7 @@ from geometry_msgs.msg import Pose, Twist
 from rosgraph_msgs.msg import Clock
 
 from ...sim.core import NANOSECONDS
-from ...sim.runtime import NEVER, Herald, Hook, Link, Model
+from ...sim.runtime import NEVER, Hook, Link, Model, PreRunPublisher
 from ..messages import fill_pose, fill_twist
 from ..server import Server
 from ..transport import publish_serialized
@@ -73,7 +73,7 @@ class Topic:
         """Nothing changes for a topic as such."""
 
 
-class ClockTopic(Topic, Herald):
+class ClockTopic(Topic, PreRunPublisher):
     """/clock, at every step or, with a frequency, at the first step a period after the last one."""
 
     def __init__(self, server: Server, frequency: int) -> None:
@@ -81,7 +81,7 @@ class ClockTopic(Topic, Herald):
         self._period_ns = NANOSECONDS // frequency if frequency > 0 else 0
         self._last_ns = 0
 
-    def announce(self, last: int) -> None:
+    def publish_ahead(self, last: int) -> None:
         """Publish the times of all steps that want it, up to `last`."""
         clock, due = self._world.clock, np.arange(self.due, last + 1)
         if self._period_ns:
@@ -183,7 +183,7 @@ class ModelStatesTopic(StatesTopic):
 def advertise_clock(server: Server) -> None:
     """Publish /clock, before anything that happens at the time it tells."""
     topic = ClockTopic(server, clock_frequency(rospy.get_param('~pub_clock_frequency', 0)))
-    server.world.schedule.add_herald(topic)
+    server.world.schedule.add_pre_run_publisher(topic)
     server.world.listeners.append(topic)
     topic.schedule()
 

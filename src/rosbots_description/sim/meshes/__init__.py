@@ -5,9 +5,9 @@ from .loader import check_mesh, load_readers, visual_parts
 from .stl import read_stl
 from .store import MeshStore
 from .submesh import submesh_file
-from .support_points import farthest
+from .support_points import support_points
 
 __all__ = [
-    'HeldFile', 'MeshStore', 'check_mesh', 'farthest', 'load_readers', 'read_stl', 'submesh_file',
-    'visual_parts',
+    'HeldFile', 'MeshStore', 'check_mesh', 'load_readers', 'read_stl', 'submesh_file',
+    'support_points', 'visual_parts',
 ]

@@ -17,7 +17,7 @@ from ..description.inertia import settle
 from ..resources import HeldFile, HeldFiles
 from .loader import MeshData, check_mesh, read_mesh, visual_parts
 from .stl import write_stl
-from .support_points import farthest
+from .support_points import support_points
 
 __all__ = ['MeshStore', 'check_mesh', 'visual_parts']
 
@@ -84,7 +84,7 @@ def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return points that span nearly the hull of `points`, and triangles that use each of them."""
     points = _distinct(points)
     if len(points) > HULL_DIRECTIONS:
-        points = points[farthest(points, _directions())]
+        points = points[support_points(points, _directions())]
     while len(points) < 3:
         points = np.concatenate([points, points[-1:]])
     first = np.arange(len(points) - 2)

@@ -4,10 +4,10 @@ from .model import Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin_life import Plugin
 from .population import populate
-from .scheduler import NEVER, Herald, Hook
+from .scheduler import NEVER, Hook, PreRunPublisher
 from .world import WORLD_FRAMES, Entity, World
 
 __all__ = [
-    'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Herald', 'Hook', 'Joint', 'JointStates',
-    'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'World', 'populate',
+    'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Hook', 'Joint', 'JointStates', 'Link',
+    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'World', 'populate',
 ]

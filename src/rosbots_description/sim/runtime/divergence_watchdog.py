@@ -13,10 +13,10 @@ PERIOD = 100  # steps between two looks: soon enough that nobody falls far throu
 MOST_WASTE = 1_500_000
 
 
-class Guard(Hook):
-    """Looks at all models now and then and lets the world be mended when one is lost.
+class DivergenceWatchdog(Hook):
+    """Looks at all models now and then and has the world rebuilt when one has diverged.
 
-    The world is mended, too, when deleted models have left too much behind in the engine.
+    The world is rebuilt, too, when deleted models have left too much behind in the engine.
 
     Numbers that are not finite spread inside the engine: other models fall through the ground, even
     after the cause is deleted. So the engine is built anew, the others going on as they were.
@@ -27,10 +27,10 @@ class Guard(Hook):
         self.look_soon()
 
     def before_step(self) -> None:
-        """Mend the world if a model is lost."""
-        lost = [model for model in self._world.models.values() if model.has_diverged()]
-        if lost or self._world.engine.waste > MOST_WASTE:
-            self._world.mend(lost)
+        """Rebuild the world if a model has diverged."""
+        diverged = [model for model in self._world.models.values() if model.has_diverged()]
+        if diverged or self._world.engine.waste > MOST_WASTE:
+            self._world.rebuild(diverged)
         self.due = self._world.clock.steps + PERIOD
 
     def look_soon(self) -> None:

@@ -8,7 +8,7 @@ from .scheduler import NEVER, Hook
 
 
 @dataclass(frozen=True)
-class Job:
+class ExternalForce:
     """Does `push()` in each step from `start_ns` to `end_ns` [ns, simulated]; None: for ever."""
 
     target: object
@@ -17,12 +17,12 @@ class Job:
     end_ns: int | None
 
 
-class Jobs(Hook):
-    """The jobs of a world. They run before all other hooks."""
+class ExternalForces(Hook):
+    """Applies the forces that last for a while. It runs before all other hooks."""
 
     def __init__(self, clock: SimClock) -> None:
         self._clock = clock
-        self._jobs: list[Job] = []
+        self._forces: list[ExternalForce] = []
 
     def add(
         self,
@@ -42,27 +42,27 @@ class Jobs(Hook):
         """
         start_ns = max(start_ns, self._clock.now_ns)
         end_ns = None if duration_ns < 0 else start_ns + duration_ns
-        self._jobs.append(Job(target, push, start_ns, end_ns))
+        self._forces.append(ExternalForce(target, push, start_ns, end_ns))
         self._set_due()
 
     def cancel(self, chosen: Callable[[object], bool]) -> None:
-        """Drop the jobs whose target is chosen."""
-        self._jobs = [job for job in self._jobs if not chosen(job.target)]
+        """Drop the forces whose target is chosen."""
+        self._forces = [force for force in self._forces if not chosen(force.target)]
         self._set_due()
 
     def before_step(self) -> None:
         """Push what is to be pushed in this step and drop what is over."""
         now_ns = self._clock.now_ns
-        self._jobs = [job for job in self._jobs if job.end_ns is None or now_ns <= job.end_ns]
-        for job in self._jobs:
-            if job.start_ns <= now_ns:
-                job.push()
+        self._forces = [one for one in self._forces if one.end_ns is None or now_ns <= one.end_ns]
+        for force in self._forces:
+            if force.start_ns <= now_ns:
+                force.push()
         self._set_due()
 
     def _set_due(self) -> None:
-        if not self._jobs:
+        if not self._forces:
             self.due = NEVER
             return
-        first_ns = min(job.start_ns for job in self._jobs)
+        first_ns = min(force.start_ns for force in self._forces)
         soonest = self._clock.first_step_after(first_ns - 1)
         self.due = max(soonest, self._clock.steps + 1)

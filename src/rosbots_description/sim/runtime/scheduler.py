@@ -30,16 +30,16 @@ class Hook:
         """Do what comes after physics, if the hook watches and `before_step` did not fail."""
 
 
-class Herald:
-    """Something that tells of steps and takes no part in them, so that it can tell of many at once.
+class PreRunPublisher:
+    """Publishes for the steps of a run before they are made, as it depends on their times only.
 
-    `due` is the first step that it has not told of and wants to.
+    `due` is the first step that it has not published for and is to.
     """
 
     due = NEVER
 
-    def announce(self, last: int) -> None:
-        """Tell of the steps that are about to be made, up to `last`, and set the next `due`."""
+    def publish_ahead(self, last: int) -> None:
+        """Publish for the coming steps, up to `last`, and set the next `due`."""
         raise NotImplementedError
 
 
@@ -48,7 +48,7 @@ class Schedule:
 
     def __init__(self) -> None:
         self._hooks: list[Hook] = []
-        self._heralds: list[Herald] = []
+        self._publishers: list[PreRunPublisher] = []
 
     def add(self, hook: Hook) -> None:
         """Let `hook` run from now on, after those that were added before it."""
@@ -58,22 +58,22 @@ class Schedule:
         """Let `hook` run no more."""
         self._hooks.remove(hook)
 
-    def add_herald(self, herald: Herald) -> None:
-        """Let `herald` tell of the steps from now on."""
-        self._heralds.append(herald)
+    def add_pre_run_publisher(self, publisher: PreRunPublisher) -> None:
+        """Let `publisher` publish from the next run on."""
+        self._publishers.append(publisher)
 
-    def announce(self, last: int) -> None:
-        """Let heralds tell of the steps up to `last`, which are about to be made."""
-        for herald in self._heralds:
-            if herald.due <= last:
+    def publish_ahead(self, last: int) -> None:
+        """Let pre-run publishers publish for the coming steps, up to `last`."""
+        for publisher in self._publishers:
+            if publisher.due <= last:
                 try:
-                    herald.announce(last)
+                    publisher.publish_ahead(last)
                 except Exception:
-                    _leave_out(herald, last)
+                    _leave_out(publisher, last)
 
     def next_wanted(self) -> int:
-        """Return the earliest step count that is of interest to a hook or a herald."""
-        return min(self.next_due(), *(herald.due for herald in self._heralds), NEVER)
+        """Return the earliest step count that is of interest to a hook or a pre-run publisher."""
+        return min(self.next_due(), *(one.due for one in self._publishers), NEVER)
 
     def next_due(self) -> int:
         """Return the earliest step count at which a hook wants to run."""
@@ -103,7 +103,7 @@ class Schedule:
 
         What falls between two steps of the new size happens at the later one.
         """
-        for hook in (*self._hooks, *self._heralds):
+        for hook in (*self._hooks, *self._publishers):
             if hook.due != NEVER:
                 hook.due = now + max(1, math.ceil((hook.due - now) / ratio))
 
@@ -118,7 +118,7 @@ def _tried(hook: Hook, work: Callable[[], None], step: int) -> bool:
     return True
 
 
-def _leave_out(failed: Hook | Herald, step: int) -> None:
+def _leave_out(failed: Hook | PreRunPublisher, step: int) -> None:
     """Log the fault that is being handled, and let whose it is wait."""
     logger.exception(
         'internal fault of %s; the simulation goes on, without it for %d steps',

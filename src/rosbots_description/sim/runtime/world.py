@@ -21,8 +21,8 @@ from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec
 from ..physics import CompiledModel
 from ..physics.bullet import Engine, Tuning
 from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
-from .divergence_watchdog import Guard
-from .external_forces import Jobs
+from .divergence_watchdog import DivergenceWatchdog
+from .external_forces import ExternalForces
 from .model import CollisionFrame, Joint, Link, Model
 from .nested_model import InnerModel, inner_models
 from .plugin_life import Plugin
@@ -68,14 +68,14 @@ class World:
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
         self.schedule = Schedule()
-        self.jobs = Jobs(self.clock)
-        self.schedule.add(self.jobs)
+        self.external_forces = ExternalForces(self.clock)
+        self.schedule.add(self.external_forces)
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightSpec] = {}
         self.listeners: list[Listener] = []
         self.paused = False
-        self._guard = Guard(self)
-        self.schedule.add(self._guard)
+        self._watchdog = DivergenceWatchdog(self)
+        self.schedule.add(self._watchdog)
         self.engine = make_engine(self.physics, tuning)
 
     def close(self) -> None:
@@ -93,7 +93,7 @@ class World:
         clock, schedule, engine = self.clock, self.schedule, self.engine
         begin, last = clock.steps, clock.last_step()
         end = min(begin + steps, last)
-        schedule.announce(end)
+        schedule.publish_ahead(end)
         while clock.steps < end:
             quiet = min(schedule.next_due() - 1, end) - clock.steps
             if quiet > 0:
@@ -116,7 +116,7 @@ class World:
         if self.clock.step_ns != step_ns:
             ratio = Fraction(self.clock.step_ns, step_ns)
             self.schedule.change_step(self.clock.steps, ratio)
-            self._guard.look_soon()
+            self._watchdog.look_soon()
         self.engine.apply(physics)
 
     def compile(self, spec: ModelSpec) -> CompiledModel:
@@ -176,14 +176,14 @@ class World:
             raise NotFoundError(f"there is no model named '{name}'")
         for listener in self.listeners:
             listener.model_deleted(model)
-        lost = model.has_diverged()
+        diverged = model.has_diverged()
         self._remove(model)
-        if lost:
-            # What it was lost by would stay in the engine otherwise, and in what it touched.
-            self.mend([other for other in self.models.values() if other.has_diverged()])
+        if diverged:
+            # What made it diverge would stay in the engine otherwise, and in what it touched.
+            self.rebuild([other for other in self.models.values() if other.has_diverged()])
 
     def _remove(self, model: Model) -> None:
-        self.jobs.cancel(lambda target: target.model is model)
+        self.external_forces.cancel(lambda target: target.model is model)
         for plugin in reversed(model.plugins):
             self.schedule.remove(plugin)
             plugin.unload()
@@ -206,8 +206,8 @@ class World:
         Properties that were set meanwhile, such as masses and joint limits, stay.
         """
         self.clock.reset()
-        self._guard.look_soon()
-        self.jobs.cancel(lambda target: True)
+        self._watchdog.look_soon()
+        self.external_forces.cancel(lambda target: True)
         self.engine.reset()
         for model in self.models.values():
             model.enter()
@@ -215,23 +215,23 @@ class World:
             plugin.restart()
         self._tell_reset()
 
-    def mend(self, lost: list[Model]) -> None:
-        """Build the engine anew; `lost` models begin again at their spawn pose, others go on."""
+    def rebuild(self, diverged: list[Model]) -> None:
+        """Build the engine anew; `diverged` models begin at their spawn pose, others go on."""
         motions = {
             model.name: self.engine.motion(model.body)
             for model in self.models.values()
-            if model not in lost
+            if model not in diverged
         }
         self.engine.reset()
         for model in self.models.values():
             model.enter()
             if model.name in motions:
                 self.engine.set_motion(model.body, motions[model.name])
-        for model in lost:
+        for model in diverged:
             for plugin in model.plugins:
                 plugin.restart()
             logger.error(
-                "model '%s' was lost: its pose or velocity was no longer a number of this world. "
+                "model '%s' diverged: its pose or velocity was no longer a number of this world. "
                 'It is back where it was spawned; a command, force or property was too large',
                 model.name,
             )

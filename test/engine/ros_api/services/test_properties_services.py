@@ -61,7 +61,7 @@ def live(bench, calls):
     for name, request in calls:
         bench.call(name, request)
         world.run(3)
-    world.run(PERIOD)  # whatever was broken has been mended
+    world.run(PERIOD)  # whatever was broken has been rebuilt
     check_untouched(world)
     world.set_physics(PhysicsSettings())
     world.reset_simulation()

@@ -1,4 +1,4 @@
-"""A model that is lost to numbers of no world leaves nothing behind that harms the others."""
+"""A model that diverges leaves nothing behind that harms the others."""
 
 import pytest
 from support import box_urdf, empty_world, urdf_spec
@@ -17,10 +17,10 @@ STANDING = Pose((5.0, 0.0, 0.5))
 def test_a_lost_model_that_is_deleted_before_anyone_notices_harms_nobody(lose):
     with empty_world() as world:
         neighbour = world.spawn(BOX, 'neighbour', STANDING)
-        lost = world.spawn(BOX, 'lost', Pose((0.0, 0.0, 0.5)))
-        lose(lost)
+        diverged = world.spawn(BOX, 'diverged', Pose((0.0, 0.0, 0.5)))
+        lose(diverged)
         world.run(3)
-        world.delete('lost')
+        world.delete('diverged')
         world.run(500)
         assert neighbour.state()[0].position == pytest.approx((5.0, 0.0, 0.5), abs=1e-3)
 

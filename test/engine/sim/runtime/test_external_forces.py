@@ -20,7 +20,7 @@ def free_body(com=IDENTITY):
 
 
 def push(world, link, force, torque, start=0.0, duration=1.0):
-    world.jobs.add(
+    world.external_forces.add(
         link,
         lambda: link.push(force, torque),
         round(start * SECOND_NS),
@@ -121,7 +121,7 @@ def test_a_cancelled_push_ends():
         model = world.spawn(free_body(), 'body', HIGH)
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), duration=-1.0)
         world.run(100)
-        world.jobs.cancel(lambda target: target.scoped_name == 'body::link')
+        world.external_forces.cancel(lambda target: target.scoped_name == 'body::link')
         world.run(100)
         assert model.twist.linear[0] == pytest.approx(0.1, abs=0.0015)
 
@@ -152,7 +152,7 @@ def test_an_effort_turns_a_joint_by_its_inertia():
     with empty_world() as world:
         model = world.spawn(pendulum(), 'pendulum', HIGH)
         joint = model.joint('hinge')
-        world.jobs.add(joint, lambda: joint.push(0.1), 0, SECOND_NS)
+        world.external_forces.add(joint, lambda: joint.push(0.1), 0, SECOND_NS)
         world.run(1500)
         assert joint.velocity == pytest.approx(0.1 / MOMENTS[2], rel=0.01)
 

@@ -467,7 +467,7 @@ def test_a_rebuild_needs_no_mesh_file_but_the_converted_one_or_its_source(tmp_pa
         world.reset_simulation()
         world.run(400)
         assert model.pose == at_rest
-        world.mend([model])
+        world.rebuild([model])
 
 
 def test_a_model_that_is_rejected_leaves_no_file_of_a_mesh(tmp_path, monkeypatch):

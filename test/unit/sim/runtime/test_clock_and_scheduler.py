@@ -5,7 +5,13 @@ from fractions import Fraction
 import pytest
 
 from rosbots_description.sim.core.clock import SimClock
-from rosbots_description.sim.runtime.scheduler import LEFT_OUT, NEVER, Herald, Hook, Schedule
+from rosbots_description.sim.runtime.scheduler import (
+    LEFT_OUT,
+    NEVER,
+    Hook,
+    PreRunPublisher,
+    Schedule,
+)
 
 
 def test_time_is_exact_after_a_million_steps():
@@ -126,7 +132,7 @@ def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):
         f'internal fault of Broken; the simulation goes on, without it for {LEFT_OUT} steps'] * 2
 
 
-class Crier(Herald):
+class Crier(PreRunPublisher):
     """Tells of every third step."""
 
     due = 3
@@ -134,7 +140,7 @@ class Crier(Herald):
     def __init__(self):
         self.told = []
 
-    def announce(self, last):
+    def publish_ahead(self, last):
         while self.due <= last:
             self.told.append(self.due)
             self.due += 3
@@ -142,16 +148,16 @@ class Crier(Herald):
 
 def test_heralds_tell_of_many_steps_at_once_and_of_each_one_once():
     schedule, crier = Schedule(), Crier()
-    schedule.add_herald(crier)
+    schedule.add_pre_run_publisher(crier)
     for last in (1, 2, 7, 7, 12):
-        schedule.announce(last)
+        schedule.publish_ahead(last)
     assert crier.told == [3, 6, 9, 12]
 
 
 def test_what_is_wanted_next_is_so_by_hooks_and_heralds():
     schedule, crier = Schedule(), Crier()
     assert schedule.next_wanted() == NEVER
-    schedule.add_herald(crier)
+    schedule.add_pre_run_publisher(crier)
     assert (schedule.next_wanted(), schedule.next_due()) == (3, NEVER)
     schedule.add(Every(2, [], 'a'))
     assert schedule.next_wanted() == 2
@@ -160,7 +166,7 @@ def test_what_is_wanted_next_is_so_by_hooks_and_heralds():
 def test_a_herald_that_fails_is_left_out_for_a_while(caplog):
     schedule, crier = Schedule(), Crier()
     crier.told = None
-    schedule.add_herald(crier)
-    schedule.announce(5)
+    schedule.add_pre_run_publisher(crier)
+    schedule.publish_ahead(5)
     assert crier.due == 5 + LEFT_OUT
     assert 'internal fault of Crier' in caplog.text

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core import Pose, rotate
 from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
-from ...meshes import farthest, read_stl
+from ...meshes import read_stl, support_points
 from .generated_urdf import MeshFile
 
 _ONTO = 1e-6  # share of its size by which a body is taken for larger than it is
@@ -50,9 +50,9 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     points = np.concatenate(placed)
     owners = np.repeat(np.arange(len(placed)), [len(some) for some in placed])
     # A hull of few points, and one that reaches farther out over each side of that.
-    corners = farthest(points, _WAYS)
+    corners = support_points(points, _WAYS)
     sides, _ = _hull(points[corners])
-    corners += sorted({*farthest(points, sides)} - {*corners})
+    corners += sorted({*support_points(points, sides)} - {*corners})
     corners = corners[:_MOST]
     sides, reaches = _hull(points[corners])
     if not len(sides):
