@@ -1,6 +1,6 @@
 """A model as plain values: what every parser produces and the engine simulates.
 
-A `ModelSpec` is complete (defaults filled in), lumped (fixed joints merged as Gazebo does),
+A `ModelSpec` is complete (defaults filled in), reduced (fixed joints merged as Gazebo does),
 validated (finite numbers, one tree per root, known files) and in SI units. Nothing here knows
 URDF, SDF, PyBullet or ROS.
 """
@@ -221,7 +221,7 @@ class ModelSpec:
     joints: tuple[JointSpec, ...] = ()
     plugins: tuple[PluginSpec, ...] = ()
     static: bool = False
-    lumped: Mapping[str, str] = field(default_factory=dict)  # link that disappeared -> its heir
+    reduced: Mapping[str, str] = field(default_factory=dict)  # link that vanished -> its new parent
     inner: Mapping[str, Pose] = field(default_factory=dict)  # model within -> pose of its frame
     left_out: tuple[str, ...] = ()  # what it stands without, each in few words
     # Where its description is, e.g. 'robot_description, line 1', to begin a complaint with.

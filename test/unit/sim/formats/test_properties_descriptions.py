@@ -45,7 +45,7 @@ def test_of_a_urdf_all_mass_is_simulated_where_it_was(description):
         mass, centre = total(spec)
         assert mass == pytest.approx(description.mass, rel=ROUNDING)
         assert centre == pytest.approx(description.centre, rel=ROUNDING, abs=1e-6)
-    assert len(spec.links) + len(spec.lumped) == description.links
+    assert len(spec.links) + len(spec.reduced) == description.links
 
 
 @given(sdfs())

@@ -1,8 +1,8 @@
 """Merge links that fixed joints hold together, as sdformat 9 does for Gazebo (parser_urdf.cc).
 
-The child's mass, shapes and joints go to the nearest ancestor that moves on its own, its heir.
+The child's mass, shapes and joints go to the nearest ancestor that moves on its own, its parent.
 Shapes get the names by which Gazebo's users know them:
-`<heir>_fixed_joint_lump__<child>_collision`.
+`<parent>_fixed_joint_lump__<child>_collision`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,22 +21,22 @@ Shape = TypeVar('Shape', Collision, Visual)
 
 
 @dataclass(frozen=True)
-class Lumped:
+class Reduction:
     """The outcome: links and joints that remain, and what became of the others."""
 
     links: tuple[LinkSpec, ...]
     joints: tuple[JointSpec, ...]
-    heirs: Mapping[str, tuple[str, Pose]]  # lumped link -> its heir, and its pose in the heir
+    parents: Mapping[str, tuple[str, Pose]]  # of reduced links: name, and pose in it
     vanished: tuple[str, ...]  # links that are not simulated
     massless: tuple[str, ...]  # links without mass that are the cause
-    conflicts: tuple[str, ...]  # lumped links whose flags changed their heir
+    conflicts: tuple[str, ...]  # reduced links whose flags changed their parent
 
 
-def lump(tree: KinematicTree) -> Lumped:
+def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
     """Merge what fixed joints hold together.
 
     A link without mass is not simulated, nor is anything that hangs on it by a joint that stays;
-    its own shapes live on where it is lumped into a link that has a mass.
+    its own shapes live on where it is reduced into a link that has a mass.
     """
     order = tree.depth_first()
     homes = _homes(tree, order)
@@ -51,10 +51,12 @@ def lump(tree: KinematicTree) -> Lumped:
         _rehang(tree.joint_to[name], homes) for name in kept
         if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
     )
-    return Lumped(
+    return Reduction(
         links=tuple(_merge_link(tree, name, members[name], homes, poses[name]) for name in kept),
         joints=joints,
-        heirs={name: homes[name] for heir in kept for name in members[heir] if name != heir},
+        parents={
+            name: homes[name] for parent in kept for name in members[parent] if name != parent
+        },
         vanished=tuple(name for name in order if name in vanished),
         massless=tuple(massless),
         conflicts=tuple(_conflicts(tree, members)),
@@ -62,13 +64,13 @@ def lump(tree: KinematicTree) -> Lumped:
 
 
 def _homes(tree: KinematicTree, order: Sequence[str]) -> dict[str, tuple[str, Pose]]:
-    """Return for each link the link it belongs to (itself, or its heir) and its pose in that."""
+    """Return for each link the link it belongs to (itself, or its parent) and its pose in that."""
     homes: dict[str, tuple[str, Pose]] = {}
     for name in order:
         joint = tree.joint_to.get(name)
-        if joint is not None and tree.lumps(joint):
-            heir, frame = homes[joint.spec.parent]
-            homes[name] = (heir, compose(frame, joint.origin))
+        if joint is not None and tree.reduces(joint):
+            parent, frame = homes[joint.spec.parent]
+            homes[name] = (parent, compose(frame, joint.origin))
         else:
             homes[name] = (name, IDENTITY)
     return homes
@@ -79,13 +81,13 @@ def _massless(
 ) -> tuple[set[str], list[str]]:
     """Return the links that vanish, and among them those without mass, which are the cause.
 
-    As in sdformat 9 a lumped link without mass (its own lumped children counted) also takes along
+    As in sdformat 9 a reduced link without mass (its own reduced children counted) also takes along
     what hangs on it by joints that stay.
     """
     mass = {name: _mass(tree.links[name].spec.inertial) for name in order}
     for name in reversed(order):
         joint = tree.joint_to.get(name)
-        if joint is not None and tree.lumps(joint):
+        if joint is not None and tree.reduces(joint):
             mass[joint.spec.parent] += mass[name]
     cut_off: set[str] = set()  # links below which nothing is modelled
     vanished: set[str] = set()
@@ -97,8 +99,8 @@ def _massless(
         above = joint.spec.parent if joint else None
         if above in cut_off or mass[name] == 0.0:
             cut_off.add(name)
-        heir = homes[name][0]
-        if heir in vanished or (heir == name and name in cut_off):
+        parent = homes[name][0]
+        if parent in vanished or (parent == name and name in cut_off):
             vanished.add(name)
             if mass[name] == 0.0 and above not in vanished:
                 causes.append(name)
@@ -155,41 +157,42 @@ def _merge_link(
 
 
 def _move(shape: Shape, frame: Pose, link: str) -> Shape:
-    """Return the shape posed in the heir's frame, under its own name or else its link's."""
+    """Return the shape posed in the parent's frame, under its own name or else its link's."""
     return replace(shape, name=shape.name or link, pose=compose(frame, shape.pose))
 
 
-def _named(shapes: Sequence[Shape], heir: str, suffix: str) -> tuple[Shape, ...]:
+def _named(shapes: Sequence[Shape], parent: str, suffix: str) -> tuple[Shape, ...]:
     """Return the shapes under Gazebo's names: numbered over the whole link from the second on.
 
-    As in sdformat, what already begins with the heir's name gets no prefix.
+    As in sdformat, what already begins with the parent's name gets no prefix.
     """
     named = []
     for i, shape in enumerate(shapes):
         name = shape.name + suffix + (f'_{i}' if i else '')
-        named.append(replace(shape, name=name if name.startswith(heir) else heir + _LUMPED + name))
+        prefix = '' if name.startswith(parent) else parent + _LUMPED
+        named.append(replace(shape, name=prefix + name))
     return tuple(named)
 
 
 def _conflicts(tree: KinematicTree, members: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the lumped links whose flags change what their heir would have been."""
+    """Return the reduced links whose flags change what their parent would have been."""
     return [
-        member for heir, names in members.items() for member in names
-        if member != heir and any(
-            getattr(tree.links[heir].spec, key) != value
+        member for parent, names in members.items() for member in names
+        if member != parent and any(
+            getattr(tree.links[parent].spec, key) != value
             for key, value in tree.links[member].flags.items()
         )
     ]
 
 
-def require_links(tree: KinematicTree, lumped: Lumped) -> None:
+def require_links(tree: KinematicTree, reduction: Reduction) -> None:
     """Refuse a model of which nothing remains.
 
     Raises:
         ModelError: no link has a mass.
     """
-    if not lumped.links:
-        first = tree.links[next(iter(lumped.massless), tree.root)]
+    if not reduction.links:
+        first = tree.links[next(iter(reduction.massless), tree.root)]
         raise _nothing_left(first.spec.name, first.element)
 
 

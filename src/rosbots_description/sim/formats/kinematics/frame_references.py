@@ -1,4 +1,4 @@
-"""Follow lumped links in sensor and plugin blocks: what named the child now names its heir."""
+"""Follow reduced links in sensor and plugin blocks: what named the child now names its parent."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,12 +11,12 @@ _ZERO = (0.0, 0.0, 0.0)
 
 
 def move_part(element: Element, frame: Pose) -> Element:
-    """Return a sensor, light or projector of a lumped link with its <pose> in the heir's frame.
+    """Return a sensor, light or projector of a reduced link with its <pose> in the parent's frame.
 
     A pose with `relative_to` keeps its meaning and so its text.
 
     Args:
-        frame: where the lumped link stands in its heir.
+        frame: where the reduced link stands in its parent.
     """
     old = element.child('pose')
     if frame == IDENTITY or (old is not None and 'relative_to' in old.attributes):
@@ -30,22 +30,22 @@ def move_part(element: Element, frame: Pose) -> Element:
     return replace(element, children=(moved, *others))
 
 
-def repoint_plugin(plugin: PluginSpec, heirs: Mapping[str, tuple[str, Pose]]) -> PluginSpec:
+def repoint_plugin(plugin: PluginSpec, parents: Mapping[str, tuple[str, Pose]]) -> PluginSpec:
     """Return the plugin with its <bodyName> and <frameName> naming links that are still there.
 
-    <xyzOffset> [m] and <rpyOffset> [rad] then say where the lumped link stands in its heir, an
+    <xyzOffset> [m] and <rpyOffset> [rad] then say where the reduced link stands in its parent, an
     offset the plugin already had included. Other tags (<robotBaseFrame>, <linkName>) stay.
 
     Args:
-        heirs: lumped link -> its heir and its pose in the heir's frame.
+        parents: reduced link -> its parent and its pose in the parent's frame.
     """
     element = plugin.element
     for tag in ('bodyName', 'frameName'):
         child = element.child(tag)
-        if child is None or child.text not in heirs:
+        if child is None or child.text not in parents:
             continue
-        heir, frame = heirs[child.text]
-        element = _with_text(element, tag, heir)
+        parent, frame = parents[child.text]
+        element = _with_text(element, tag, parent)
         # Both tags usually name the same link; its offset counts once.
         if tag == 'frameName' and element is not plugin.element and _names_same(plugin.element):
             continue

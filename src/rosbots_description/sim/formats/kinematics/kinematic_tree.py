@@ -16,7 +16,7 @@ class TreeLink:
     """A link as described; shape names are the description's own, '' where it gives none.
 
     `flags` are the fields of `spec` a <gazebo> block sets explicitly; they pass on to the link
-    this one is lumped into.
+    this one is reduced into.
     """
 
     spec: LinkSpec
@@ -31,7 +31,7 @@ class TreeJoint:
     spec: JointSpec
     element: etree._Element
     origin: Pose = IDENTITY
-    lump: bool = False  # the child becomes part of the parent
+    is_reduced: bool = False  # the child becomes part of the parent
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,10 @@ class KinematicTree:
             waiting.extend(joint.spec.child for joint in reversed(self.joints_below.get(name, ())))
         return order
 
-    def lumps(self, joint: TreeJoint) -> bool:
+    def reduces(self, joint: TreeJoint) -> bool:
         """Tell whether a joint's child becomes part of its parent."""
         bolts = self.root == WORLD and joint.spec.parent == WORLD
-        return joint.spec.type == FIXED and joint.lump and not bolts
+        return joint.spec.type == FIXED and joint.is_reduced and not bolts
 
 
 def build_tree(

@@ -1,7 +1,7 @@
 """Models of SDF: links, joints, plugins, models inside models and included ones, made flat.
 
 What belongs to an inner model is called `inner::name` in the outer one, as Gazebo has it. Fixed
-joints stay joints: only URDF is lumped.
+joints stay joints: only those of URDF are reduced.
 """
 
 from collections import Counter

@@ -224,7 +224,7 @@ def read_urdf_joint(
     """Return the joint of a <joint> element.
 
     Args:
-        kept: fixed joints that are not lumped, and what they become (`GazeboTags.kept_joints`).
+        kept: fixed joints that are not reduced, and what they become (`GazeboTags.kept_joints`).
         notes: takes sentences to warn with.
     Raises:
         ModelError: a name, link, type or number is missing or wrong.
@@ -245,11 +245,11 @@ def read_urdf_joint(
             f"'{shortened(child, 60)}' and what hangs on it move freely"
         ))
     if kind in (FIXED, FREE):
-        lump = kind == FIXED and name not in kept
+        is_reduced = kind == FIXED and name not in kept
         limits = {'lower': 0.0, 'upper': 0.0} if kept.get(name) == REVOLUTE else {}
         spec = JointSpec(name, kept.get(name, kind) if kind == FIXED else kind,
                          parent, child, **limits)
-        return TreeJoint(spec, element, origin(element), lump)
+        return TreeJoint(spec, element, origin(element), is_reduced)
     dynamics = element.find('dynamics')
     return TreeJoint(
         JointSpec(

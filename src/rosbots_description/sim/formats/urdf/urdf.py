@@ -10,7 +10,14 @@ from ...description import WORLD, LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, turnable
 from ...meshes import check_mesh
 from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
-from ..kinematics import KinematicTree, Lumped, build_tree, lump, repoint_plugin, require_links
+from ..kinematics import (
+    KinematicTree,
+    Reduction,
+    build_tree,
+    reduce_fixed_joints,
+    repoint_plugin,
+    require_links,
+)
 from ..xml import (
     XACRO_CURE,
     check_name,
@@ -36,7 +43,7 @@ def load_urdf(
     find_package: FindPackage | None = None,
     find_model: FindModel = lambda inner: None,
 ) -> tuple[ModelSpec, Pose]:
-    """Read, check and lump a URDF.
+    """Read and check a URDF, and reduce its fixed joints.
 
     Args:
         name: of the model; the robot's own name does not matter, as in Gazebo.
@@ -71,22 +78,22 @@ def load_urdf(
             raise
         # What is missing is most likely what xacro would have made.
         raise ModelError(f'{error}; {"; ".join(xacro)}') from error
-    lumped = lump(tree)
-    require_links(tree, lumped)
+    reduction = reduce_fixed_joints(tree)
+    require_links(tree, reduction)
     spec = ModelSpec(
         name,
-        _turnable_links(lumped.links, notes),
-        lumped.joints,
-        tuple(repoint_plugin(plugin, lumped.heirs) for plugin in tags.plugins),
+        _turnable_links(reduction.links, notes),
+        reduction.joints,
+        tuple(repoint_plugin(plugin, reduction.parents) for plugin in tags.plugins),
         tags.static,
-        {link: heir for link, (heir, _) in lumped.heirs.items()},
-        left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(lumped.vanished)))),
+        {link: parent for link, (parent, _) in reduction.parents.items()},
+        left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(reduction.vanished)))),
         location=location(robot),
     )
     pose = _robot_origin(robot)
     for sentence in tags.left_out.errors():
         logger.error("model '%s' (%s): %s", name, source, sentence)
-    for sentence in [*notes, *tags.left_out.remarks(), *_lumping_notes(lumped)]:
+    for sentence in [*notes, *tags.left_out.remarks(), *_reduction_notes(reduction)]:
         logger.warning("model '%s' (%s): %s", name, source, sentence.removeprefix(f'{source}, '))
     if tags.idle:
         idle = ', '.join(dict.fromkeys(tags.idle))
@@ -146,16 +153,16 @@ def _possible_link(link: LinkSpec, notes: list[str]) -> LinkSpec:
     return replace(link, inertial=inertial)
 
 
-def _lumping_notes(lumped: Lumped) -> list[str]:
+def _reduction_notes(reduction: Reduction) -> list[str]:
     notes = []
-    if lumped.vanished:
+    if reduction.vanished:
         notes.append(
-            f'{_names(lumped.massless)}: no mass (no <inertial>, or zero), and so '
-            f'not simulated, as in Gazebo: {_names(lumped.vanished)}; give each an <inertial>'
+            f'{_names(reduction.massless)}: no mass (no <inertial>, or zero), and so '
+            f'not simulated, as in Gazebo: {_names(reduction.vanished)}; give each an <inertial>'
         )
-    if lumped.conflicts:
+    if reduction.conflicts:
         notes.append(
-            f'{_names(lumped.conflicts)}: gravity, selfCollide or damping set for a link behind '
+            f'{_names(reduction.conflicts)}: gravity, selfCollide or damping set for a link behind '
             'a fixed joint counts for the whole link it is merged into, as in Gazebo'
         )
     return notes

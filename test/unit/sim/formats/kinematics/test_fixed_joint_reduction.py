@@ -81,8 +81,8 @@ def test_the_articles_lumped_shapes_have_gazebos_names(article):
 
 
 def test_the_articles_lumped_links_have_one_heir(article):
-    assert len(article.lumped) == 14
-    assert set(article.lumped.values()) == {'base_footprint'}
+    assert len(article.reduced) == 14
+    assert set(article.reduced.values()) == {'base_footprint'}
 
 
 def test_shapes_are_named_and_numbered_as_in_gazebo():
@@ -99,7 +99,7 @@ def test_shapes_are_named_and_numbered_as_in_gazebo():
         'base_fixed_joint_lump__own_collision_1',
         'base_fixed_joint_lump__pad_collision_2',
         'base_fixed_joint_lump__tip_collision_3',
-        'base_lid_collision_4',  # begins with the heir's name, so sdformat adds no prefix
+        'base_lid_collision_4',  # begins with the parent's name, so sdformat adds no prefix
     ]
     assert names(spec.links[0].visuals) == [
         'base_fixed_joint_lump__arm_visual', 'base_fixed_joint_lump__tip_visual_1']
