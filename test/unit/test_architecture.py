@@ -106,6 +106,7 @@ def room_of(imported):
     return folder_of(imported) if imported in modules() else imported
 
 
+@cache
 def arrows():
     """Return the pairs of folders of which one imports from the other.
 
@@ -159,6 +160,14 @@ def test_there_are_no_circles_of_folders():
         lowest = {folder for folder, others in below.items() if not others & set(below)}
         assert lowest, f'these import each other: {sorted(below)}'
         below = {folder: others for folder, others in below.items() if folder not in lowest}
+
+
+def test_the_simulator_is_at_most_eight_rooms_deep():
+    @cache
+    def depth(room):
+        return 1 + max((depth(b) for a, b in arrows() if a == room), default=0)
+
+    assert max(depth(room) for room in ARROWS if room.startswith('sim/')) <= 8
 
 
 def test_folders_use_each_others_public_names_only():

@@ -30,7 +30,7 @@ def read_world(name: str) -> WorldSpec:
 
 
 def fill_world(world: World, spec: WorldSpec) -> None:
-    """Put the models and lamps of a world that was read into one that is empty."""
+    """Put the models and lights of a world that was read into one that is empty."""
     populate(world, spec)
     world.lights.update({light.name: light for light in spec.lights})
 

@@ -12,7 +12,7 @@ POINT, DIRECTIONAL, SPOT = 'point', 'directional', 'spot'
 
 @dataclass(frozen=True)
 class LightSpec:
-    """A lamp; defaults are those of SDF. Colours are red, green, blue, alpha in 0..1."""
+    """A light; defaults are those of SDF. Colours are red, green, blue, alpha in 0..1."""
 
     name: str
     type: str = POINT
@@ -32,7 +32,7 @@ class LightSpec:
 
 @dataclass(frozen=True)
 class SceneSpec:
-    """How the world is lit and seen beside its lamps."""
+    """How the world is lit and seen beside its lights."""
 
     ambient: Colour = (0.4, 0.4, 0.4, 1.0)
     background: Colour = (0.7, 0.7, 0.7, 1.0)

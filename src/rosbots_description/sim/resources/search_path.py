@@ -129,29 +129,29 @@ def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
     return found
 
 
-def description_file(path: str, asker: etree._Element) -> str:
+def description_file(path: str, element: etree._Element) -> str:
     """Return the SDF file of a model's folder: the newest one that model.config offers.
 
     A folder without model.config serves by its model.sdf, and a file stands for itself.
 
     Raises:
-        ModelError: there is no such folder, or no description in it; said of `asker`.
+        ModelError: there is no such folder, or no description in it; said of `element`.
     """
     if not os.path.exists(path):
-        raise fault(asker, f"'{path}' does not exist; check the address")
+        raise fault(element, f"'{path}' does not exist; check the address")
     if not os.path.isdir(path):
         return path
     for name in _MANIFESTS:
         manifest = os.path.join(path, name)
         if os.path.isfile(manifest):
-            return os.path.join(path, _chosen(manifest, asker))
+            return os.path.join(path, _chosen(manifest, element))
     plain = os.path.join(path, 'model.sdf')
     if os.path.isfile(plain):
         return plain
-    raise fault(asker, f"'{path}' holds neither model.config nor model.sdf; it is no model")
+    raise fault(element, f"'{path}' holds neither model.config nor model.sdf; it is no model")
 
 
-def _chosen(manifest: str, asker: etree._Element) -> str:
+def _chosen(manifest: str, element: etree._Element) -> str:
     root = parse_xml(read_file(manifest, MAX_XML_BYTES), manifest)
     offers = [
         (_version(entry.get('version', '')), (entry.text or '').strip())
@@ -159,7 +159,7 @@ def _chosen(manifest: str, asker: etree._Element) -> str:
     ]
     offers = [offer for offer in offers if offer[1] and not climbs(offer[1])]
     if not offers:
-        raise fault(asker, f"'{manifest}' names no description; add <sdf>model.sdf</sdf>")
+        raise fault(element, f"'{manifest}' names no description; add <sdf>model.sdf</sdf>")
     # All of them too new: the least new one has the best chance.
     readable = [offer for offer in offers if offer[0] <= _NEWEST]
     return max(readable)[1] if readable else min(offers)[1]

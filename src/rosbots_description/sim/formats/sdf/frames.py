@@ -53,23 +53,23 @@ class Frames:
         """Make a link known by its pose in `base`."""
         self._frames.setdefault(name, _Frame(element, pose, base, None))
 
-    def pose_of(self, name: str, asker: etree._Element) -> Pose:
+    def pose_of(self, name: str, element: etree._Element) -> Pose:
         """Return the pose of a frame.
 
         Raises:
-            ModelError: there is no such frame, or frames are posed in a ring; said of `asker`.
+            ModelError: there is no such frame, or frames are posed in a ring; said of `element`.
         """
         chain: list[tuple[str, _Frame]] = []
         seen: set[str] = set()
         while name not in self._known and not self._is_root(name):
-            frame = self._find(name, asker)
+            frame = self._find(name, element)
             if name in seen:
                 raise fault(
                     frame.element, f"'{name}' is posed relative to itself, in a ring of frames"
                 )
             seen.add(name)
             chain.append((name, frame))
-            name, asker = frame.base, frame.element
+            name, element = frame.base, frame.element
         pose = self._known.get(name, IDENTITY)
         for frame_name, frame in reversed(chain):
             pose = self._known[frame_name] = compose(pose, frame.pose)
@@ -82,10 +82,10 @@ class Frames:
             ModelError: as `pose_of`.
         """
         pose = element.find('pose')
-        asker = element if pose is None else pose
-        return compose(self.pose_of(_base_of(pose, base), asker), pose_in(pose))
+        at = element if pose is None else pose
+        return compose(self.pose_of(_base_of(pose, base), at), pose_in(pose))
 
-    def link_of(self, name: str, asker: etree._Element) -> str:
+    def link_of(self, name: str, element: etree._Element) -> str:
         """Return the link that a frame moves with.
 
         Raises:
@@ -94,22 +94,22 @@ class Frames:
         """
         seen: list[str] = []
         while True:
-            frame = self._find(name, asker)
+            frame = self._find(name, element)
             if frame.carrier is None:
                 return name
             seen.append(name)
             if frame.carrier in seen:
-                raise fault(asker, f"'{seen[0]}' is attached to itself in a ring of frames")
+                raise fault(element, f"'{seen[0]}' is attached to itself in a ring of frames")
             if frame.carrier in self._roots:
-                raise fault(asker, f"'{seen[0]}' is attached to no link; name a link")
+                raise fault(element, f"'{seen[0]}' is attached to no link; name a link")
             name = frame.carrier
 
-    def _find(self, name: str, asker: etree._Element) -> _Frame:
+    def _find(self, name: str, element: etree._Element) -> _Frame:
         frame = self._frames.get(name)
         if frame is None:
             raise fault(
-                asker,
-                f"<{tag_of(asker)}> names '{name}', but no link, joint or frame is called so"
+                element,
+                f"<{tag_of(element)}> names '{name}', but no link, joint or frame is called so"
                 f'{suggestion(name, self._frames)}',
                 AbsentError,
             )

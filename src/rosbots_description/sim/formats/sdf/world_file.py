@@ -54,7 +54,7 @@ def load_world(
 ) -> WorldSpec:
     """Read and check a world file.
 
-    A model, lamp, frame or state that is no good, or an <include> that finds none, is an error in
+    A model, light, frame or state that is no good, or an <include> that finds none, is an error in
     the log and in `WorldSpec.faults`; the others stand, as in Gazebo.
 
     Args:
@@ -154,8 +154,8 @@ def _read_include(
     light = other.root.find('light')
     if other.root.find('model') is None and light is not None:
         posed = light if element.find('pose') is None else element
-        lamp = read_light(other, light, frames.place(posed))
-        content.lights.append(replace(lamp, name=text_of(element, 'name', lamp.name)))
+        spec = read_light(other, light, frames.place(posed))
+        content.lights.append(replace(spec, name=text_of(element, 'name', spec.name)))
         return
     _add_model(document, element, frames, content, lambda: read_include(document, element))
 
