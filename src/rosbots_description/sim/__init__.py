@@ -1,1 +1,42 @@
-"""The simulator: plain values and physics, without ROS."""
+"""The simulator: plain values and physics, without ROS. Here are the names that a script needs.
+
+Each is loaded when it is asked for: who needs a pose or an error does not wait for the engine.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .core import (
+        ModelError,
+        NotFoundError,
+        PluginError,
+        Pose,
+        SimError,
+        Twist,
+        from_rpy,
+        to_rpy,
+        yaw_of,
+    )
+    from .description import PhysicsSettings
+    from .public import World
+    from .runtime import FrameTransform, Joint, JointStates, Link, Model, Odometry, Output
+
+__all__ = [
+    'FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'ModelError', 'NotFoundError',
+    'Odometry', 'Output', 'PhysicsSettings', 'PluginError', 'Pose', 'SimError', 'Twist', 'World',
+    'from_rpy', 'to_rpy', 'yaw_of',
+]
+
+_HOMES = {
+    'description': ('PhysicsSettings',),
+    'public': ('World',),
+    'runtime': ('FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'Odometry', 'Output'),
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    room = next((room for room, names in _HOMES.items() if name in names), 'core')
+    return getattr(import_module(f'.{room}', __name__), name)

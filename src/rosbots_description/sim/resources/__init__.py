@@ -1,5 +1,6 @@
 """Where files are found by their addresses, and how they are opened."""
 
+from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within
 from .scratch import HeldFile, HeldFiles
 from .search_path import (
@@ -24,8 +25,8 @@ from .xml_parser import MAX_XML_BYTES, check_xml_bounds, parse_xml, root_tag
 
 __all__ = [
     'BUILT_IN_MODELS', 'MAX_XML_BYTES', 'FindModel', 'FindPackage', 'HeldFile', 'HeldFiles',
-    'ModelSearch', 'UnknownPackage', 'below_model_path', 'check_xml_bounds', 'description_file',
-    'file_path', 'find_world', 'in_models', 'parse_xml', 'path_directories', 'read_file',
-    'refuse_climbing', 'regular_state', 'root_tag', 'substitute_in_tree', 'substitute_packages',
-    'within',
+    'ModelSearch', 'PackageSearch', 'UnknownPackage', 'below_model_path', 'check_xml_bounds',
+    'description_file', 'file_path', 'find_world', 'in_models', 'parse_xml', 'path_directories',
+    'read_file', 'refuse_climbing', 'regular_state', 'root_tag', 'substitute_in_tree',
+    'substitute_packages', 'within',
 ]

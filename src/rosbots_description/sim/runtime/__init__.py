@@ -1,5 +1,6 @@
 """The world as it runs: models, what happens at which step, and what comes out."""
 
+from .empty_world import add_empty_world
 from .model import Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin_life import Plugin
@@ -9,5 +10,6 @@ from .world import WORLD_FRAMES, Entity, World
 
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Hook', 'Joint', 'JointStates', 'Link',
-    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'World', 'populate',
+    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'World', 'add_empty_world',
+    'populate',
 ]

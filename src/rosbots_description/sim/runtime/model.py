@@ -1,9 +1,13 @@
 """Models, links, joints and collisions as they are in a world, to ask and to move by name."""
 
+from typing import Any
+
 from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from ..description import Collision, JointSpec, LinkSpec, ModelSpec
 from ..physics import CompiledModel
 from ..physics.bullet import Body, Engine
+from ..plugin_registry import library_name
+from .outputs import JointStates
 from .plugin_life import Plugin
 
 
@@ -219,6 +223,44 @@ class Model:
         for joint in spec.joints:
             if joint.name in self.joints:
                 self.joints[joint.name].spec = joint
+
+    @property
+    def joint_states(self) -> JointStates:
+        """Return positions, velocities and efforts of all movable joints, as described."""
+        readings = [(*joint.state(), joint.effort) for joint in self.joints.values()]
+        return JointStates(tuple(self.joints), *zip(*readings, strict=True))
+
+    def link(self, name: str) -> Link:
+        """Return the link of that plain or scoped name.
+
+        Raises:
+            NotFoundError: the model has no such link; fixed joints make one link of two.
+        """
+        link = self.links.get(name.removeprefix(f'{self.name}::'))
+        if link is None:
+            raise NotFoundError(
+                f"model '{self.name}' has no link '{name}'; its links: {', '.join(self.links)}")
+        return link
+
+    def plugin(self, name: str) -> Any:
+        """Return the plugin that the description calls `name`, or the first from that library.
+
+        Args:
+            name: e.g. 'differential_drive_controller', the name in <plugin>; or its library in
+                full, 'libgazebo_ros_diff_drive.so', or for short, 'diff_drive'.
+        Raises:
+            NotFoundError: the model has no such plugin, or it was left out as it was loaded.
+        """
+        libraries = (library_name(name), library_name(f'gazebo_ros_{name}'))
+        for plugin in self.plugins:
+            if plugin.spec.name == name:
+                return plugin
+        for plugin in self.plugins:
+            if library_name(plugin.spec.filename) in libraries:
+                return plugin
+        known = ', '.join(f"'{one.spec.name}' ({one.spec.filename})" for one in self.plugins)
+        raise NotFoundError(
+            f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}")
 
     def joint(self, name: str) -> Joint:
         """Return the joint of that plain or scoped name.

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 
-from ..core import Pose, Twist
+from ..core import NotFoundError, Pose, Twist
 
 Reading = TypeVar('Reading')
 
@@ -43,6 +43,7 @@ class Output(Generic[Reading]):
         """Call `changed()` when the first reader has come, and when the last one has gone."""
         self._changed = changed
         self._readers: tuple[Callable[[Reading], object], ...] = ()
+        self._kept: list[Reading] = []
         self.wanted = False
 
     def connect(self, read: Callable[[Reading], object]) -> None:
@@ -52,6 +53,27 @@ class Output(Generic[Reading]):
     def disconnect(self, read: Callable[[Reading], object]) -> None:
         """Give no more readings to `read`; it may have none already."""
         self._set_readers(tuple(other for other in self._readers if other != read))
+
+    def keep(self) -> None:
+        """Keep the newest reading from now on, for `newest`."""
+        if self._keep not in self._readers:
+            self.connect(self._keep)
+
+    @property
+    def newest(self) -> Reading:
+        """Return the newest reading since `keep`.
+
+        Raises:
+            NotFoundError: there is none yet.
+        """
+        if self._kept:
+            return self._kept[0]
+        if self._keep in self._readers:
+            raise NotFoundError('this output has no reading yet; let the world run on')
+        raise NotFoundError('this output keeps no readings; call its keep() before the world runs')
+
+    def _keep(self, reading: Reading) -> None:
+        self._kept[:] = [reading]
 
     def send(self, reading: Reading) -> None:
         """Give a reading to all readers."""

@@ -1,10 +1,13 @@
 """What a world asks of the plugins of its models."""
 
+from ..description import PluginSpec
 from .scheduler import Hook
 
 
 class Plugin(Hook):
     """Something that lives with a model and runs in the steps it asks for."""
+
+    spec: PluginSpec
 
     def start(self) -> None:
         """Load and begin.

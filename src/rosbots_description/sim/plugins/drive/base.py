@@ -77,7 +77,12 @@ class Drive(PeriodicPlugin):
             linear_x: forward [m/s].
             angular_z: turning left [rad/s].
             linear_y: to the left [m/s].
+        Raises:
+            ValueError: a number is not finite.
         """
+        if not all(map(math.isfinite, (linear_x, angular_z, linear_y))):
+            raise ValueError(f'a velocity command takes finite numbers; it got linear_x {linear_x}, '
+                             f'angular_z {angular_z}, linear_y {linear_y}')
         self.target = (linear_x, linear_y, angular_z)
 
 

@@ -1,0 +1,89 @@
+"""From what a script names, a file, an address or a text, to a model."""
+
+import os
+from collections.abc import Iterable, Mapping
+from xml.sax.saxutils import escape
+
+from ..core import ModelError, Pose
+from ..description import ModelSpec
+from ..formats.sdf import load_sdf
+from ..formats.urdf import expand_xacro, load_urdf
+from ..formats.xml import MAX_BYTES, parse, root_tag
+from ..resources import (
+    FindModel,
+    ModelSearch,
+    PackageSearch,
+    below_model_path,
+    path_directories,
+    read_file,
+)
+
+Paths = Iterable[str | os.PathLike[str]]
+Description = str | os.PathLike[str]
+
+
+class Descriptions:
+    """Reads models, and knows where package:// and model:// addresses lead."""
+
+    def __init__(self, package_path: Paths, model_path: Paths) -> None:
+        self._package_path = tuple(package_path)
+        self.find_model: FindModel = ModelSearch([
+            *model_path,
+            lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
+            os.path.expanduser('~/.gazebo/models'),
+        ])
+
+    def packages(self, inside: str | None = None) -> PackageSearch:
+        """Return the search for packages of a description that the file `inside` holds."""
+        return PackageSearch(self._package_path, inside)
+
+    def read(
+        self, description: Description, name: str, arguments: Mapping[str, str]
+    ) -> tuple[ModelSpec, Pose]:
+        """Return the model of a URDF, xacro or SDF, and the pose that the description gives it.
+
+        Args:
+            name: of the model; '' for the one that the description gives it.
+            arguments: for xacro.
+        Raises:
+            ModelError: it cannot be read or simulated.
+        """
+        text: str | bytes = os.fspath(description)
+        if text.startswith('model://'):
+            name = name or below_model_path(text).partition('/')[0]
+            text = f'<sdf version="1.7"><world name="w"><include><uri>{escape(text)}</uri>' \
+                '</include></world></sdf>'
+        source, find_package = 'the text', self.packages()
+        if not text.lstrip('\ufeff \t\r\n').startswith('<'):
+            source = self._path(text)
+            find_package = self.packages(source)
+            text = expand_xacro(source, arguments, find_package) if source.endswith('.xacro') \
+                else read_file(source, MAX_BYTES, 'model file')
+        tag = root_tag(text)
+        if tag not in ('robot', 'sdf', 'gazebo'):
+            raise ModelError(f'{source}: it is no model; that is XML, and its outermost element is '
+                             f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}')
+        load = load_urdf if tag == 'robot' else load_sdf
+        return load(text, name or _own_name(text, source), source=source,
+                    find_package=find_package, find_model=self.find_model)
+
+    def _path(self, address: str) -> str:
+        """Return the file that an address or a path stands for."""
+        if not address.startswith('package://'):
+            return address
+        package, _, inner = address.removeprefix('package://').partition('/')
+        folder = self.packages()(package)
+        if folder is None:
+            raise ModelError(f"package '{package}' of {address} is unknown; add the folder that "
+                             'holds it to package_path or to ROS_PACKAGE_PATH')
+        return os.path.join(folder, inner)
+
+
+def _own_name(text: str | bytes, source: str) -> str:
+    """Return the name that a description gives its model."""
+    root = parse(text, source)
+    element = root if root.tag == 'robot' else root.find('.//model')
+    name = '' if element is None else element.get('name', '')
+    if not name:
+        raise ModelError(f'{source}: it gives the model no name; give one with name=')
+    return name

@@ -1,0 +1,257 @@
+"""The world of a script: models from files and texts, plugins, time, forces."""
+
+import math
+import os
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Self
+
+from .. import plugins, runtime  # noqa: F401  the former registers what <plugin> tags load
+from ..core import (
+    NANOSECONDS,
+    NotFoundError,
+    Pose,
+    SimError,
+    Vector,
+    compose,
+    from_rpy,
+)
+from ..description import ModelSpec, PhysicsSettings, WorldSpec
+from ..formats.sdf import open_world
+from ..resources import find_world, path_directories
+from ..runtime import Joint, Link, Model, add_empty_world, populate
+from .descriptions import Description, Descriptions, Paths
+
+_LIBRARY = Path(__file__).resolve().parents[2]  # holds worlds/
+_NO_VECTOR: Vector = (0.0, 0.0, 0.0)
+
+
+class World(runtime.World):
+    """A simulated world: models, their plugins and time; for a `with` statement, or `close` it.
+
+    One thread owns it: no method may be called from another. Time advances by `step` and `run`
+    only. The same calls in the same order give the same numbers, bit for bit.
+    """
+
+    def __init__(
+        self,
+        physics: PhysicsSettings | None = None,
+        *,
+        package_path: Paths = (),
+        model_path: Paths = (),
+    ) -> None:
+        """Open a world with nothing in it, not even a ground.
+
+        Args:
+            physics: step size [s], gravity [m/s^2] and the rest; by default 1 ms and -9.8 along z.
+            package_path: folders to search for package:// addresses, before ROS_PACKAGE_PATH and
+                after the package that a description's own file lies in.
+            model_path: folders to search for model:// addresses, before GAZEBO_MODEL_PATH.
+        """
+        self._closed = False
+        self._descriptions = Descriptions(package_path, model_path)
+        super().__init__(physics)
+
+    @classmethod
+    def empty(
+        cls,
+        physics: PhysicsSettings | None = None,
+        *,
+        package_path: Paths = (),
+        model_path: Paths = (),
+    ) -> Self:
+        """Return what Gazebo's empty world is: a ground plane at z = 0, and the sun.
+
+        The arguments are those of `World`.
+        """
+        world = cls(physics, package_path=package_path, model_path=model_path)
+        add_empty_world(world)
+        return world
+
+    @classmethod
+    def from_file(
+        cls, path: str | os.PathLike[str], *, package_path: Paths = (), model_path: Paths = ()
+    ) -> Self:
+        """Return the world that an SDF file describes.
+
+        A model that cannot be simulated is an error in the log, and the world is made without it.
+
+        Args:
+            path: of the file; or the name of one along GAZEBO_RESOURCE_PATH or among our own:
+                'empty', 'maze', 'room', 'shapes'.
+            package_path: see `World`.
+            model_path: see `World`.
+        Raises:
+            NotFoundError: there is no such file.
+            ModelError: it is no SDF with a <world>, or a number of the world itself is wrong.
+        """
+        places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), _LIBRARY]
+        file = find_world(os.fspath(path), places)
+        world = cls(package_path=package_path, model_path=model_path)
+        try:
+            world._populate(open_world(
+                file,
+                find_model=world._descriptions.find_model,
+                find_package=world._descriptions.packages(os.fspath(file)),
+            ))
+        except BaseException:
+            world.close()
+            raise
+        return world
+
+    def _populate(self, spec: WorldSpec) -> None:
+        populate(self, spec)
+        self.lights.update({light.name: light for light in spec.lights})
+
+    def __enter__(self) -> Self:
+        """Return the world."""
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        """Close the world."""
+        self.close()
+
+    def close(self) -> None:
+        """Free what the world holds; it cannot be used afterwards. A second time does nothing."""
+        if not self._closed:
+            self._closed = True
+            super().close()
+
+    @property
+    def time(self) -> float:
+        """Return the simulated time [s]."""
+        return self.clock.now
+
+    def spawn(
+        self,
+        description: Description | ModelSpec,
+        name: str = '',
+        pose: Pose | None = None,
+        *,
+        x: float = 0.0,
+        y: float = 0.0,
+        z: float = 0.0,
+        yaw: float = 0.0,
+        arguments: Mapping[str, str] | None = None,
+    ) -> Model:
+        """Put a model into the world and load its plugins.
+
+        A plugin that fails is an error in the log, and the model is spawned without it.
+
+        Args:
+            description: a URDF, xacro or SDF: the path of a file, its package:// or model://
+                address, or the text itself. A file whose name ends with .xacro is expanded.
+            name: of the model in this world; '' for the one in the description.
+            pose: of the model's frame in the world, in place of x, y, z and yaw.
+            x: position of the model's frame in the world [m].
+            y: the same.
+            z: the same; 0 puts the frame's origin on the ground.
+            yaw: of the model's frame about z, counter-clockwise [rad].
+            arguments: for a xacro file, as in `NAME:=VALUE`.
+        Raises:
+            ModelError: the description cannot be read or simulated, the name is taken, or the pose
+                is too far away. The sentence says where and why.
+            ValueError: a number is not finite, or both `pose` and one of x, y, z, yaw are given.
+        """
+        self._require_open()
+        if pose is None:
+            pose = Pose((x, y, z), from_rpy(0.0, 0.0, yaw))
+        elif any((x, y, z, yaw)):
+            raise ValueError('spawn takes either pose or x, y, z and yaw, not both')
+        _require_finite('the pose', (*pose.position, *pose.orientation))
+        if isinstance(description, ModelSpec):
+            return super().spawn(description, name or description.name, pose)
+        spec, own_pose = self._descriptions.read(description, name, arguments or {})
+        return super().spawn(spec, spec.name, compose(pose, own_pose))
+
+    def model(self, name: str) -> Model:
+        """Return the model of that name.
+
+        Raises:
+            NotFoundError: there is none; the sentence names those that there are.
+        """
+        if name not in self.models:
+            raise NotFoundError(f"there is no model '{name}' in this world; its models: "
+                                f"{', '.join(self.models) or 'none'}")
+        return self.models[name]
+
+    def step(self, steps: int = 1) -> int:
+        """Advance by so many steps; see `run`."""
+        return self.run(steps)
+
+    def run(self, steps: int | None = None, *, seconds: float | None = None) -> int:
+        """Advance simulated time, as fast as the computer can.
+
+        Args:
+            steps: how many, at least 0.
+            seconds: or how long [s], rounded to whole steps.
+        Returns:
+            how many steps were made: all, or fewer where time ends after 136 years.
+
+        Raises:
+            ValueError: a number is negative or not finite, or not one of the two is given.
+        """
+        self._require_open()
+        if (steps is None) == (seconds is None):
+            raise ValueError('run takes either a number of steps or seconds=')
+        if seconds is not None:
+            _require_finite('seconds', (seconds,))
+            steps = round(seconds * NANOSECONDS / self.clock.step_ns)
+        if steps < 0:
+            raise ValueError(f'time goes forward only; {steps} steps cannot be made')
+        return super().run(steps)
+
+    def apply_wrench(
+        self,
+        link: Link,
+        force: Vector = _NO_VECTOR,
+        torque: Vector = _NO_VECTOR,
+        *,
+        seconds: float = math.inf,
+    ) -> None:
+        """Push a link from the next step on, beside all other forces.
+
+        Args:
+            link: of a model in this world.
+            force: (x, y, z) [N] in world axes, at the link's centre of mass.
+            torque: (x, y, z) [N m] in world axes.
+            seconds: how long [s, simulated]; by default until `clear_forces`.
+        Raises:
+            ValueError: a number is not finite, or `seconds` is negative.
+        """
+        _require_finite('force and torque', (*force, *torque))
+        self.jobs.add(link, partial(link.push, force, torque), 0, _duration_ns(seconds))
+
+    def apply_effort(self, joint: Joint, effort: float, *, seconds: float = math.inf) -> None:
+        """Push a joint from the next step on, beside its motor; its effort limit holds.
+
+        Args:
+            joint: of a model in this world.
+            effort: [N m or N], positive along the joint's axis.
+            seconds: how long [s, simulated]; by default until `clear_forces`.
+        Raises:
+            ValueError: a number is not finite, or `seconds` is negative.
+        """
+        _require_finite('effort', (effort,))
+        self.jobs.add(joint, partial(joint.push, effort), 0, _duration_ns(seconds))
+
+    def clear_forces(self, pushed: Link | Joint) -> None:
+        """End all that `apply_wrench` or `apply_effort` does to a link or joint."""
+        self.jobs.cancel(lambda target: target is pushed)
+
+    def _require_open(self) -> None:
+        if self._closed:
+            raise SimError('this world is closed; open another one')
+
+
+def _require_finite(what: str, numbers: tuple[float, ...]) -> None:
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(f'{what} takes finite numbers; it got {numbers}')
+
+
+def _duration_ns(seconds: float) -> int:
+    """Return a duration in ns, negative for one without end."""
+    if math.isnan(seconds) or seconds < 0.0:
+        raise ValueError(f'seconds is {seconds}; a push takes at least 0 s')
+    return -1 if math.isinf(seconds) else round(seconds * NANOSECONDS)
