@@ -1,6 +1,33 @@
-"""Tell catkin which Python packages there are, here and in the companion that links here."""
-from catkin_pkg.python_setup import generate_distutils_setup
+"""Install the Python packages: by catkin, here and in the companion that links here, or by pip."""
+
+from glob import glob
+from xml.etree import ElementTree
+
 from setuptools import find_packages, setup
 
-setup(**generate_distutils_setup(packages=find_packages('src'), package_dir={'': 'src'},
-                                 package_data={'': ['config/*', 'worlds/*']}))
+MANIFEST = ElementTree.parse('package.xml')  # what catkin knows is said there only
+
+
+def told(tag: str) -> str:
+    """Return what the manifest says, in one line."""
+    return ' '.join(MANIFEST.findtext(tag, '').split())
+
+
+setup(
+    name=told('name'),
+    version=told('version'),
+    description=told('description'),
+    license=told('license'),
+    python_requires='>=3.11',
+    packages=find_packages('src'),
+    package_dir={'': 'src'},
+    package_data={'': ['config/*', 'worlds/*', 'py.typed']},
+    # The robot, where its package:// addresses lead; catkin installs it there, too.
+    data_files=[
+        (f'share/{told("name")}/{folder}', files) for folder in ('', 'meshes', 'urdf')
+        if (files := glob(f'{folder}/*') if folder else ['package.xml'])
+    ],
+    # Of `sim` alone; what the ROS side needs comes from Debian, as package.xml has it.
+    install_requires=['lxml', 'numpy', 'pybullet==3.2.7', 'pycollada==0.9.3', 'trimesh==5.2.0'],
+    extras_require={'xacro': ['PyYAML', 'xacro==1.13.3']},
+)
