@@ -48,14 +48,16 @@ class Descriptions:
         Raises:
             ModelError: it cannot be read or simulated.
         """
-        text: str | bytes = os.fspath(description)
-        if text.startswith('model://'):
-            name = name or below_model_path(text).partition('/')[0]
-            text = f'<sdf version="1.7"><world name="w"><include><uri>{escape(text)}</uri>' \
+        given = os.fspath(description)
+        if given.startswith('model://'):
+            name = name or below_model_path(given).partition('/')[0]
+            given = f'<sdf version="1.7"><world name="w"><include><uri>{escape(given)}</uri>' \
                 '</include></world></sdf>'
-        source, find_package = 'the text', self.packages()
-        if not text.lstrip('\ufeff \t\r\n').startswith('<'):
-            source = self._path(text)
+        text: str | bytes
+        if given.lstrip('\ufeff \t\r\n').startswith('<'):
+            text, source, find_package = given, 'the text', self.packages()
+        else:
+            source = self._path(given)
             find_package = self.packages(source)
             text = expand_xacro(source, arguments, find_package) if source.endswith('.xacro') \
                 else read_file(source, MAX_BYTES, 'model file')

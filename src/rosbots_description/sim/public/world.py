@@ -86,7 +86,7 @@ class World(runtime.World):
             NotFoundError: there is no such file.
             ModelError: it is no SDF with a <world>, or a number of the world itself is wrong.
         """
-        places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), _LIBRARY]
+        places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_LIBRARY)]
         file = find_world(os.fspath(path), places)
         world = cls(package_path=package_path, model_path=model_path)
         try:
@@ -193,11 +193,11 @@ class World(runtime.World):
             ValueError: a number is negative or not finite, or not one of the two is given.
         """
         self._require_open()
-        if (steps is None) == (seconds is None):
-            raise ValueError('run takes either a number of steps or seconds=')
-        if seconds is not None:
+        if seconds is not None and steps is None:
             _require_finite('seconds', (seconds,))
             steps = round(seconds * NANOSECONDS / self.clock.step_ns)
+        elif steps is None or seconds is not None:
+            raise ValueError('run takes either a number of steps or seconds=')
         if steps < 0:
             raise ValueError(f'time goes forward only; {steps} steps cannot be made')
         return super().run(steps)

@@ -227,8 +227,13 @@ class Model:
     @property
     def joint_states(self) -> JointStates:
         """Return positions, velocities and efforts of all movable joints, as described."""
-        readings = [(*joint.state(), joint.effort) for joint in self.joints.values()]
-        return JointStates(tuple(self.joints), *zip(*readings, strict=True))
+        joints = self.joints.values()
+        return JointStates(
+            tuple(self.joints),
+            tuple(joint.position for joint in joints),
+            tuple(joint.velocity for joint in joints),
+            tuple(joint.effort for joint in joints),
+        )
 
     def link(self, name: str) -> Link:
         """Return the link of that plain or scoped name.

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from types import ModuleType
 
@@ -41,8 +41,12 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
 
 
 def _resolved(
-    xacro: ModuleType, others, find_package: FindPackage, path: str, text: str
-) -> str:
+    xacro: ModuleType,
+    others: Callable[[str], object],
+    find_package: FindPackage,
+    path: str,
+    text: str,
+) -> object:
     """Return what $(KIND VALUE) stands for; kinds that need ROS are left to `others`."""
     match = _SUBSTITUTION.fullmatch(text)
     if not match:
@@ -62,4 +66,4 @@ def _resolved(
         found = os.path.dirname(os.path.abspath(path)) if kind == 'dirname' else os.getcwd()
     if found is None:
         raise ModelError(f"'{text}' stands for nothing that is known here")
-    return str(found)
+    return found

@@ -81,8 +81,9 @@ class Drive(PeriodicPlugin):
             ValueError: a number is not finite.
         """
         if not all(map(math.isfinite, (linear_x, angular_z, linear_y))):
-            raise ValueError(f'a velocity command takes finite numbers; it got linear_x {linear_x}, '
-                             f'angular_z {angular_z}, linear_y {linear_y}')
+            raise ValueError(
+                f'a velocity command takes finite numbers; it got linear_x {linear_x}, '
+                f'angular_z {angular_z}, linear_y {linear_y}')
         self.target = (linear_x, linear_y, angular_z)
 
 

@@ -1,0 +1,245 @@
+"""The world that scripts use: what it takes, what it gives, and what it says to bad input."""
+
+import importlib
+import math
+import subprocess
+import sys
+
+import pytest
+from support import ROOT, XACRO, box_urdf, empty_world, robot_spec
+
+from rosbots_description import sim
+from rosbots_description.sim import (
+    ModelError,
+    NotFoundError,
+    PhysicsSettings,
+    Pose,
+    SimError,
+    World,
+    from_rpy,
+    yaw_of,
+)
+
+WEIGHTLESS = PhysicsSettings(gravity=(0.0, 0.0, 0.0))
+CRATE = f'<robot name="crate">{box_urdf("1 1 1", 2.0)}</robot>'
+CRATE_SDF = """<sdf version="1.6"><model name="crate"><pose>0 0 1 0 0 0</pose><link name="box">
+<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>
+</sdf>"""
+PENDULUM = f"""<robot name="pendulum"><link name="world"/>{box_urdf("1 1 1", 2.0)}
+<joint name="hinge" type="continuous"><parent link="world"/><child link="box"/><axis xyz="0 0 1"/>
+</joint></robot>"""
+
+
+@pytest.fixture
+def world():
+    with World.empty() as opened:
+        yield opened
+
+
+def test_a_robot_moves_as_in_the_world_that_ros_serves(world):
+    robot = world.spawn(XACRO, z=0.5)
+    robot.plugin('diff_drive').command(0.5, 0.2)
+    world.run(seconds=1.5)
+    with empty_world() as inner:
+        other = inner.spawn(robot_spec(), 'rosbots', Pose((0.0, 0.0, 0.5)))
+        other.plugins[0].command(0.5, 0.2)
+        inner.run(1500)
+        assert (robot.name, robot.state()) == ('rosbots', other.state())
+
+
+@pytest.mark.parametrize('text', [CRATE, CRATE_SDF, f'\ufeff\n {CRATE}'])
+def test_a_text_is_spawned_under_its_own_name_or_another(world, text):
+    assert world.spawn(text, x=-3.0) is world.model('crate')
+    assert world.spawn(text, 'other', x=3.0).name == 'other'
+
+
+def test_a_file_and_an_address_are_spawned(world, tmp_path):
+    folder = tmp_path / 'crate'
+    folder.mkdir()
+    (folder / 'model.sdf').write_text(CRATE_SDF, encoding='utf-8')
+    world.spawn(folder / 'model.sdf')
+    with World(model_path=[tmp_path]) as other:
+        there = other.spawn('model://crate', 'there', x=2.0)
+        assert there.pose.position == (2.0, 0.0, 0.0)  # as in Gazebo, that of the <include> counts
+        assert other.spawn('model://crate').name == 'crate'
+
+
+def test_a_model_appears_where_it_is_told_to(world):
+    first = world.spawn(CRATE, 'first', x=1.0, y=2.0, z=3.0, yaw=0.5)
+    assert first.pose.position == (1.0, 2.0, 3.0)
+    assert yaw_of(first.pose.orientation) == pytest.approx(0.5)
+    pose = Pose((4.0, 5.0, 6.0), from_rpy(0.1, 0.2, 0.3))
+    assert world.spawn(CRATE, 'second', pose).pose.orientation == pytest.approx(pose.orientation)
+
+
+def test_xacro_arguments_reach_the_file(world, tmp_path):
+    file = tmp_path / 'crate.xacro'
+    file.write_text(
+        '<robot name="crate" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        f'<xacro:arg name="mass" default="2"/>{box_urdf("1 1 1", "$(arg mass)")}</robot>')
+    plain = world.spawn(file, z=1.0)
+    heavy = world.spawn(file, 'heavy', x=3.0, arguments={'mass': '5'})
+    assert [model.spec.links[0].inertial.mass for model in (plain, heavy)] == [2.0, 5.0]
+
+
+@pytest.mark.parametrize(('spawn', 'said'), [
+    (lambda world: world.spawn('nowhere.urdf'), "'nowhere.urdf' cannot be read: No such file"),
+    (lambda world: world.spawn('<html/>'), '<robot> (URDF) or <sdf>, not <html>'),
+    (lambda world: world.spawn('<!-- -->'), '<robot> (URDF) or <sdf>, not missing'),
+    (lambda world: world.spawn('<robot/>', 'thing'), 'link'),
+    (lambda world: world.spawn('<robot><link name="l"/></robot>'), 'give one with name='),
+    (lambda world: world.spawn('package://nobodys/robot.urdf'), "package 'nobodys'"),
+    (lambda world: world.spawn('model://nothing'), "'model://nothing' is not to be found"),
+    (lambda world: world.spawn(CRATE, 'ground_plane'), "named 'ground_plane' is in the world"),
+    (lambda world: world.spawn(CRATE, x=1e300), 'm away'),
+    (lambda _: World.from_file('nowhere.world'), "no world file 'nowhere.world'"),
+    (lambda _: World.from_file(XACRO), 'an SDF begins with <sdf'),
+])
+def test_what_cannot_be_spawned_is_said_in_one_sentence(world, spawn, said):
+    with pytest.raises(SimError) as raised:
+        spawn(world)
+    assert said in str(raised.value)
+    assert list(world.models) == ['ground_plane']
+
+
+@pytest.mark.parametrize('call', [
+    lambda world: world.spawn(CRATE, z=math.nan),
+    lambda world: world.spawn(CRATE, pose=Pose((0.0, math.inf, 0.0))),
+    lambda world: world.spawn(CRATE, pose=Pose(), z=1.0),
+    lambda world: world.run(),
+    lambda world: world.run(3, seconds=0.1),
+    lambda world: world.run(seconds=-1.0),
+    lambda world: world.run(seconds=math.inf),
+    lambda world: world.step(-1),
+    lambda world: world.apply_effort(world.spawn(PENDULUM).joint('hinge'), math.nan),
+    lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), (math.inf, 0.0, 0.0)),
+    lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), seconds=-1.0),
+    lambda world: world.spawn(XACRO).plugin('diff_drive').command(math.nan, 0.0),
+])
+def test_a_number_that_makes_no_sense_is_a_value_error(world, call):
+    with pytest.raises(ValueError, match=r'\w+ (takes|goes|is|got)'):
+        call(world)
+
+
+def test_time_advances_by_steps_and_by_seconds():
+    with World(PhysicsSettings(step_size=0.002)) as world:
+        assert (world.step(), world.time) == (1, 0.002)
+        assert (world.run(9), world.time) == (9, 0.02)
+        assert (world.run(seconds=0.1), world.time) == (50, 0.12)
+        assert (world.run(seconds=0.0), world.time) == (0, 0.12)
+
+
+def test_a_world_file_brings_models_lights_and_time():
+    with World.from_file('room') as world:
+        assert 'bookcase' in world.models
+        assert list(world.lights) == ['sun']
+
+
+def test_links_joints_and_plugins_are_found_by_name_or_the_names_are_listed(world):
+    robot = world.spawn(XACRO, 'robot', z=0.5)
+    assert robot.link('robot::wheel_left_link') is robot.link('wheel_left_link')
+    assert robot.joint('robot::wheel_left_joint') is robot.joint('wheel_left_joint')
+    (plugin,) = robot.plugins
+    for name in ('differential_drive_controller', 'diff_drive', 'libgazebo_ros_diff_drive.so',
+                 'gazebo_ros_diff_drive'):
+        assert robot.plugin(name) is plugin
+    for find, known in ((robot.link, 'base_footprint, wheel_left_link'), (world.model, 'robot'),
+                        (robot.plugin, "'differential_drive_controller' (libgazebo_ros_diff_")):
+        with pytest.raises(NotFoundError) as raised:
+            find('nothing')
+        assert known in str(raised.value)
+
+
+def test_joint_states_are_those_of_the_joints(world):
+    robot = world.spawn(XACRO, z=0.5)
+    robot.plugin('diff_drive').command(0.5, 0.0)
+    world.run(seconds=1.0)
+    states = robot.joint_states
+    for name, *numbers in zip(*states, strict=True):
+        joint = robot.joint(name)
+        assert numbers == [joint.position, joint.velocity, joint.effort]
+    assert max(states.velocities) > 1.0
+    assert world.model('ground_plane').joint_states == ((), (), (), ())
+
+
+def test_an_output_keeps_its_newest_reading_once_it_is_told_to(world):
+    odometry = world.spawn(XACRO, z=0.5).plugin('diff_drive').odometry
+    with pytest.raises(NotFoundError, match='call its keep'):
+        _ = odometry.newest
+    odometry.keep()
+    with pytest.raises(NotFoundError, match='no reading yet'):
+        _ = odometry.newest
+    seen = []
+    odometry.connect(seen.append)
+    world.run(seconds=0.1)
+    odometry.keep()  # again, which changes nothing
+    assert odometry.newest is seen[-1]
+    assert len(seen) == 9  # 100 Hz, from the first step after 10 ms
+
+
+def test_a_wrench_gives_the_momentum_that_mechanics_says():
+    with World(WEIGHTLESS) as world:
+        link = world.spawn(CRATE).link('box')
+        world.apply_wrench(link, (4.0, 0.0, 0.0), (0.0, 0.0, 0.01), seconds=0.5)
+        world.run(seconds=1.0)
+        assert link.twist.linear == pytest.approx((1.0, 0.0, 0.0))  # F t / m
+        assert link.twist.angular == pytest.approx((0.0, 0.0, 0.05))  # M t / I
+        world.apply_wrench(link, (-4.0, 0.0, 0.0))
+        world.run(seconds=0.25)
+        world.clear_forces(link)
+        world.run(seconds=1.0)
+        assert link.twist.linear[0] == pytest.approx(0.5)
+
+
+def test_an_effort_turns_a_joint_until_it_is_cleared():
+    with World(WEIGHTLESS) as world:
+        hinge = world.spawn(PENDULUM).joint('hinge')
+        world.apply_effort(hinge, 0.2)
+        world.run(seconds=0.1)
+        assert hinge.velocity == pytest.approx(0.2)  # M t / I
+        world.clear_forces(hinge)
+        world.run(seconds=0.1)
+        assert hinge.velocity == pytest.approx(0.2)
+
+
+def test_a_closed_world_says_so():
+    with World.empty() as world:
+        world.step()
+    world.close()
+    for call in (world.step, lambda: world.spawn(CRATE)):
+        with pytest.raises(SimError, match='this world is closed'):
+            call()
+
+
+def test_a_world_that_cannot_be_filled_leaves_nothing_open(tmp_path, monkeypatch):
+    closed = []
+
+    def close(world):
+        closed.append(world)
+
+    monkeypatch.setattr(World, 'close', close)
+    file = tmp_path / 'broken.world'
+    file.write_text('<sdf version="1.6"><world name="w"><physics type="ode">'
+                    '<max_step_size>none</max_step_size></physics></world></sdf>')
+    with pytest.raises(ModelError, match='max_step_size'):
+        World.from_file(file)
+    assert len(closed) == 1
+
+
+def test_every_public_name_is_the_one_that_type_checkers_see_and_is_documented():
+    for name in sim.__all__:
+        rooms = [importlib.import_module(f'rosbots_description.sim.{room}')
+                 for room in ('core', 'description', 'runtime', 'public')]
+        found = {id(getattr(room, name)) for room in rooms if name in room.__all__}
+        assert {id(getattr(sim, name))} <= found
+        assert getattr(sim, name).__doc__
+    with pytest.raises(AttributeError, match='Wrold'):
+        _ = sim.Wrold
+
+
+def test_an_error_or_a_pose_loads_no_engine():
+    code = 'import sys; from rosbots_description.sim import ModelError, Pose; ' \
+        "print([name for name in ('pybullet', 'numpy', 'lxml') if name in sys.modules])"
+    ended = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True,
+                           cwd=ROOT / 'src')
+    assert ended.stdout.strip() == '[]'

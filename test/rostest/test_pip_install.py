@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""`pip install` into an empty venv gives a library that needs no ROS.
+
+It takes half a minute, most of it downloads; without a way to a package index it is skipped.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rostest
+
+ROOT = Path(__file__).resolve().parents[2]
+PARTS = ('LICENSE', 'package.xml', 'pyproject.toml', 'setup.py', 'meshes', 'src', 'urdf')
+PATIENCE = 240.0  # [s, wall]
+NO_INDEX = re.compile(r'Temporary failure in name resolution|NewConnectionError|ProxyError')
+EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
+
+
+class PipInstallTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp())
+        source = cls.folder / 'source'  # a copy, since building leaves files behind
+        source.mkdir()
+        for part in PARTS:
+            if (ROOT / part).is_dir():
+                shutil.copytree(ROOT / part, source / part,
+                                ignore=shutil.ignore_patterns('__pycache__', '*.egg-info'))
+            else:
+                shutil.copy(ROOT / part, source)
+        cls.venv = cls.folder / 'venv'
+        subprocess.run(['/usr/bin/python3', '-m', 'venv', str(cls.venv)], check=True)
+        installed = cls.run_there(
+            '-m', 'pip', 'install', '--disable-pip-version-check', '--no-input', f'{source}[xacro]')
+        if installed.returncode and NO_INDEX.search(installed.stdout):
+            print('SKIPPED pip_install: no package index can be reached')
+            raise unittest.SkipTest('no package index can be reached')
+        assert installed.returncode == 0, installed.stdout
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def run_there(cls, *arguments):
+        """Run the venv's Python, which sees nothing of ROS and of this source tree."""
+        return subprocess.run(
+            [str(cls.venv / 'bin' / 'python'), '-I', *arguments], cwd=cls.folder, text=True,
+            env={'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)}, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
+
+    def test_all_it_imports_is_declared(self):
+        checked = self.run_there('-m', 'pip', '--disable-pip-version-check', 'check')
+        self.assertEqual(checked.returncode, 0, checked.stdout)
+        modules = [f'rosbots_description.{path.relative_to(ROOT / "src" / "rosbots_description")}'
+                   .removesuffix('.py').removesuffix('/__init__').replace('/', '.')
+                   for path in (ROOT / 'src' / 'rosbots_description' / 'sim').rglob('*.py')]
+        imported = self.run_there(
+            '-c', 'import importlib, sys\n'
+            'for name in [*sys.argv[1:], "trimesh"]: importlib.import_module(name)\n'
+            'assert "rospy" not in sys.modules', *modules)
+        self.assertEqual((imported.returncode, imported.stdout), (0, ''))
+
+    def test_its_types_worlds_and_robot_are_there(self):
+        (package,) = self.venv.glob('lib/python3*/site-packages/rosbots_description')
+        for part in ('py.typed', 'worlds/room.world', 'config/gzclient.rviz'):
+            self.assertTrue((package / part).is_file(), part)
+        share = self.venv / 'share' / 'rosbots_description'
+        for part in ('package.xml', 'meshes/base.dae', 'urdf/rosbots.xacro'):
+            self.assertTrue((share / part).is_file(), part)
+
+    def test_the_examples_of_the_page_run(self):
+        page = (ROOT / 'doc' / 'python_api.md').read_text(encoding='utf-8')
+        examples = EXAMPLE.findall(page)
+        self.assertEqual(len(examples), page.count('```python'))
+        for code, printed in examples:
+            ran = self.run_there('-c', f'import logging; logging.disable()\n{code}')
+            self.assertEqual((ran.returncode, ran.stdout), (0, printed))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('rosbots_description', 'pip_install', PipInstallTest, sys.argv)

@@ -1,0 +1,63 @@
+"""Xacro is expanded without ROS: what $(...) means comes from us."""
+
+import sys
+
+import pytest
+
+from rosbots_description.sim.core import ModelError
+from rosbots_description.sim.formats.urdf import expand_xacro
+
+HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@pytest.fixture(autouse=True)
+def no_ros(monkeypatch):
+    for name in ('roslaunch', 'rospkg'):
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setenv('THERE', 'by the environment')
+
+
+def expand(folder, body, **arguments):
+    file = folder / 'r.xacro'
+    file.write_text(f'{HEAD}{body}</robot>', encoding='utf-8')
+    return expand_xacro(str(file), arguments, {'known': '/somewhere'}.get)
+
+
+@pytest.mark.parametrize(('written', 'meant'), [
+    ('$(find known)/meshes', '/somewhere/meshes'),
+    ('$(env THERE)', 'by the environment'),
+    ('$(optenv THERE no)', 'by the environment'),
+    ('$(optenv NOT_THERE two words)', 'two words'),
+    ('$(arg given)', 'by the caller'),
+    ('$(arg absent)', 'by default'),
+    ('${1 + 2}', '3'),
+])
+def test_an_expression_stands_for_its_value(tmp_path, written, meant):
+    body = '<xacro:arg name="given" default="no"/><xacro:arg name="absent" default="by default"/>' \
+        f'<link name="{written}"/>'
+    assert f'<link name="{meant}"/>' in expand(tmp_path, body, given='by the caller')
+
+
+def test_an_included_file_lies_beside_the_one_that_names_it(tmp_path):
+    (tmp_path / 'inner.xacro').write_text(f'{HEAD}<link name="inner"/></robot>')
+    for name in ('inner.xacro', '$(dirname)/inner.xacro'):
+        assert 'name="inner"' in expand(tmp_path, f'<xacro:include filename="{name}"/>')
+
+
+@pytest.mark.parametrize(('body', 'said'), [
+    ('<link name="$(find unknown)"/>', "'$(find unknown)' stands for nothing"),
+    ('<link name="$(arg unknown)"/>', "'$(arg unknown)' stands for nothing"),
+    ('<link name="${1 / 0}"/>', 'division by zero'),
+    ('<link', 'xacro rejects it'),
+])
+def test_what_xacro_rejects_is_one_sentence_with_the_file(tmp_path, body, said):
+    with pytest.raises(ModelError) as raised:
+        expand(tmp_path, body)
+    assert said in str(raised.value)
+    assert str(raised.value).startswith(f'{tmp_path}/r.xacro: xacro rejects it')
+
+
+def test_without_the_module_the_cure_is_named(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'xacro', None)
+    with pytest.raises(ModelError, match=r'pip install xacro==1\.13\.3'):
+        expand(tmp_path, '')
