@@ -1,0 +1,38 @@
+"""What pip installs is what ./rosbots sets up."""
+
+import runpy
+
+import setuptools
+from support import ROOT
+
+
+def arguments(monkeypatch, folder):
+    """Return what the setup.py of a folder calls setup with."""
+    called = {}
+    monkeypatch.setattr(setuptools, 'setup', lambda **given: called.update(given))
+    monkeypatch.chdir(folder)
+    runpy.run_path('setup.py')
+    return called
+
+
+def test_versions_are_those_of_the_workspace(monkeypatch):
+    called = arguments(monkeypatch, ROOT)
+    extras = [one for of_extra in called['extras_require'].values() for one in of_extra]
+    pinned = {one for one in (*called['install_requires'], *extras) if '==' in one}
+    assert pinned
+    assert pinned <= set((ROOT / 'requirements.txt').read_text(encoding='utf-8').splitlines())
+
+
+def test_the_companion_installs_the_same_packages_under_its_own_name(monkeypatch):
+    ours = arguments(monkeypatch, ROOT)
+    theirs = arguments(monkeypatch, ROOT / 'companions' / 'rosbots_simulator')
+    assert theirs['name'] == 'rosbots_simulator'
+    assert theirs['packages'] == [
+        name.replace('rosbots_description', 'rosbots_simulator') for name in ours['packages']]
+    assert [folder for folder, _ in theirs['data_files']] == ['share/rosbots_simulator/']
+
+
+def test_the_robot_goes_where_its_addresses_lead(monkeypatch):
+    files = dict(arguments(monkeypatch, ROOT)['data_files'])
+    assert 'urdf/rosbots.xacro' in files['share/rosbots_description/urdf']
+    assert 'meshes/base.dae' in files['share/rosbots_description/meshes']
