@@ -127,7 +127,11 @@ class Joint:
 
 
 class Model:
-    """A model in the world. Its frame moves with its first link, the canonical one."""
+    """A model in the world. Its frame moves with its first link, the canonical one.
+
+    `links` and `joints` (the movable ones) are by name, in the order of the description; `plugins`
+    are those that were loaded, and `left_out` says what the model stands without.
+    """
 
     def __init__(self, name: str, compiled: CompiledModel, engine: Engine, pose: Pose) -> None:
         self.name = self.scoped_name = name
