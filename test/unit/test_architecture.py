@@ -39,7 +39,7 @@ ARROWS = {
     'sim/rendering': 'sim/core sim/description sim/meshes sim/physics/bullet sim/runtime',
     'sim/public':
         'sim/core sim/description sim/resources sim/formats/xml sim/formats/urdf sim/formats/sdf '
-        'sim/runtime sim/plugins',
+        'sim/physics sim/runtime sim/plugins',
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim sim/core',

@@ -19,6 +19,7 @@ from ..core import (
 )
 from ..description import ModelSpec, PhysicsSettings, WorldSpec
 from ..formats.sdf import open_world
+from ..physics import CompiledModel
 from ..resources import find_world, path_directories
 from ..runtime import Joint, Link, Model, add_empty_world, populate
 from .descriptions import Description, Descriptions, Paths
@@ -125,7 +126,7 @@ class World(runtime.World):
 
     def spawn(
         self,
-        description: Description | ModelSpec,
+        model: Description | ModelSpec | CompiledModel,
         name: str = '',
         pose: Pose | None = None,
         *,
@@ -140,8 +141,9 @@ class World(runtime.World):
         A plugin that fails is an error in the log, and the model is spawned without it.
 
         Args:
-            description: a URDF, xacro or SDF: the path of a file, its package:// or model://
-                address, or the text itself. A file whose name ends with .xacro is expanded.
+            model: a URDF, xacro or SDF: the path of a file, its package:// or model:// address, or
+                the text itself. A file whose name ends with .xacro is expanded. Or what `compile`
+                has made of one, which saves time where it is spawned again.
             name: of the model in this world; '' for the one in the description.
             pose: of the model's frame in the world, in place of x, y, z and yaw.
             x: position of the model's frame in the world [m].
@@ -160,9 +162,11 @@ class World(runtime.World):
         elif any((x, y, z, yaw)):
             raise ValueError('spawn takes either pose or x, y, z and yaw, not both')
         _require_finite('the pose', (*pose.position, *pose.orientation))
-        if isinstance(description, ModelSpec):
-            return super().spawn(description, name or description.name, pose)
-        spec, own_pose = self._descriptions.read(description, name, arguments or {})
+        if isinstance(model, ModelSpec):
+            return super().spawn(model, name or model.name, pose)
+        if isinstance(model, CompiledModel):
+            return super().spawn(model, name or model.spec.name, pose)
+        spec, own_pose = self._descriptions.read(model, name, arguments or {})
         return super().spawn(spec, spec.name, compose(pose, own_pose))
 
     def model(self, name: str) -> Model:
@@ -221,7 +225,7 @@ class World(runtime.World):
             ValueError: a number is not finite, or `seconds` is negative.
         """
         _require_finite('force and torque', (*force, *torque))
-        self.jobs.add(link, partial(link.push, force, torque), 0, _duration_ns(seconds))
+        self.external_forces.add(link, partial(link.push, force, torque), 0, _duration_ns(seconds))
 
     def apply_effort(self, joint: Joint, effort: float, *, seconds: float = math.inf) -> None:
         """Push a joint from the next step on, beside its motor; its effort limit holds.
@@ -234,11 +238,11 @@ class World(runtime.World):
             ValueError: a number is not finite, or `seconds` is negative.
         """
         _require_finite('effort', (effort,))
-        self.jobs.add(joint, partial(joint.push, effort), 0, _duration_ns(seconds))
+        self.external_forces.add(joint, partial(joint.push, effort), 0, _duration_ns(seconds))
 
     def clear_forces(self, pushed: Link | Joint) -> None:
         """End all that `apply_wrench` or `apply_effort` does to a link or joint."""
-        self.jobs.cancel(lambda target: target is pushed)
+        self.external_forces.cancel(lambda target: target is pushed)
 
     def _require_open(self) -> None:
         if self._closed:

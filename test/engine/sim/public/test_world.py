@@ -72,6 +72,13 @@ def test_a_model_appears_where_it_is_told_to(world):
     assert world.spawn(CRATE, 'second', pose).pose.orientation == pytest.approx(pose.orientation)
 
 
+def test_a_model_that_is_compiled_is_spawned_as_often_as_one_likes(world):
+    compiled = world.compile(robot_spec())
+    for i, name in enumerate(('', 'second')):
+        world.spawn(compiled, name, x=2.0 * i, z=0.5)
+    assert list(world.models) == ['ground_plane', robot_spec().name, 'second']
+
+
 def test_xacro_arguments_reach_the_file(world, tmp_path):
     file = tmp_path / 'crate.xacro'
     file.write_text(
