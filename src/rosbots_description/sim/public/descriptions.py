@@ -8,14 +8,16 @@ from ..core import ModelError, Pose
 from ..description import ModelSpec
 from ..formats.sdf import load_sdf
 from ..formats.urdf import expand_xacro, load_urdf
-from ..formats.xml import MAX_BYTES, parse, root_tag
 from ..resources import (
+    MAX_XML_BYTES,
     FindModel,
     ModelSearch,
     PackageSearch,
     below_model_path,
+    parse_xml,
     path_directories,
     read_file,
+    root_tag,
 )
 
 Paths = Iterable[str | os.PathLike[str]]
@@ -60,7 +62,7 @@ class Descriptions:
             source = self._path(given)
             find_package = self.packages(source)
             text = expand_xacro(source, arguments, find_package) if source.endswith('.xacro') \
-                else read_file(source, MAX_BYTES, 'model file')
+                else read_file(source, MAX_XML_BYTES, 'model file')
         tag = root_tag(text)
         if tag not in ('robot', 'sdf', 'gazebo'):
             raise ModelError(f'{source}: it is no model; that is XML, and its outermost element is '
@@ -83,7 +85,7 @@ class Descriptions:
 
 def _own_name(text: str | bytes, source: str) -> str:
     """Return the name that a description gives its model."""
-    root = parse(text, source)
+    root = parse_xml(text, source)
     element = root if root.tag == 'robot' else root.find('.//model')
     name = '' if element is None else element.get('name', '')
     if not name:
