@@ -11,7 +11,7 @@ CHECK = 40  # steps between two looks at the motors
 # Share of its target by which a motor may miss it on each level but the last. The least number of
 # iterations costs least and may miss by more; who needs more of them anyway gets enough.
 MISSED = (0.04, 0.015)
-REACHED = 0.005  # fewer will do
+REACHED = 0.009  # fewer will do
 SLOWEST = 0.05  # [rad/s or m/s] targets below count as this
 STILL = 0.0025  # [rad/s or m/s] what a target of 0 counts as: who is parked is not to creep
 SATURATED = 0.99  # share of its effort from which on a motor does what it can
@@ -61,7 +61,7 @@ class SolverEffort:
 
     def _shift(self, levels: int) -> None:
         self._level += levels
-        self._missed = REACHED * 2.0  # until it is known
+        self._missed = (REACHED + MISSED[-1]) / 2.0  # until it is known
         self._set_iterations(self._least * FACTOR**self._level)
 
 
