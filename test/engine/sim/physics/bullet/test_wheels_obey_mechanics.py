@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import pytest
 from support import SETTLED, SPAWN_POSE, empty_world, robot_spec, urdf_spec
@@ -21,10 +22,15 @@ from rosbots_description.sim.core.transforms import (
     UP,
     Pose,
     Twist,
+    add,
     compose,
+    conjugate,
+    cross,
+    dot,
     from_rpy,
     inverse,
     rotate,
+    subtract,
     yaw_of,
 )
 from rosbots_description.sim.description.model_spec import Cylinder, Element
@@ -88,6 +94,32 @@ def test_a_robot_that_drives_across_a_slope_does_not_slide_down(spec, degrees, s
         assert after[0] - before[0] > 0.7 * 3.0 * speed - 0.01
 
 
+@pytest.mark.parametrize(('spec', 'degrees', 'speed', 'heading'), [
+    (castered(0.5, 0.15, casters=1), 15.0, 1.0, 0.3), (LIGHT, 20.0, 0.5, 0.8),
+    (LIGHT, 10.0, 0.2, math.pi), (castered(1.0, 0.2), 15.0, 1.0, 0.3), (MIDDLE, -20.0, 1.0, 0.8),
+    (castered(20.0, 0.6, casters=1), 20.0, 1.0, 0.3),
+    (castered(20.0, 0.6, mu=0.1), 25.0, 0.5, 0.8),
+    # At 1 m/s^2 its upper wheel would spin: it carries a quarter of the weight, and drags a caster.
+    (castered(5.0, 0.4, casters=1, acceleration=0.2), 25.0, 0.5, 0.8),
+])
+def test_the_tyres_of_a_robot_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
+    """Measured along the axle: wheels that lag turn the robot a little, which is no slip."""
+    with empty_world() as world:
+        model = placed(world, spec, tilted_floor(world, roll=degrees), heading)
+        command(model, speed, 0.0)
+        before = model.pose.orientation
+        slip = ahead = 0.0
+        for _ in range(3000):
+            world.run(1)
+            pose, twist = model.state()
+            along = rotate(conjugate(pose.orientation), twist.linear)
+            ahead, slip = ahead + 0.001 * along[0], slip + 0.001 * along[1]
+        assert abs(slip) < 0.002 * 3.0
+        assert ahead > 0.5 * 3.0 * speed
+        turn = compose(inverse(Pose(orientation=before)), Pose(orientation=pose.orientation))
+        assert abs(yaw_of(turn.orientation)) < 0.08
+
+
 @pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
     (LIGHT, 15.0, 0.02), (LIGHT, 20.0, 0.22), (LIGHT, 12.0, 0.03), (MIDDLE, 10.0, 0.05),
 ])
@@ -126,6 +158,34 @@ def test_slow_turns_are_obeyed(spec, rate):
         command(model, 0.0, rate)
         world.run(3000)
         assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.05)
+
+
+def share_turned(size, mu):
+    """Return the share of the command at which a robot on two casters turns, by Coulomb's law.
+
+    Eight points carry alike: a caster in front and behind, and three crests of each wheel. At the
+    full rate a wheel turns about its middle: the inner crest pushes, the outer one holds back, the
+    middle one does what it can. If that is less than its caster asks for, the middle slips too, and
+    the wheel turns about its outer crest.
+    """
+    track = caster = 0.4 * size  # from the middle of the robot to that of a wheel, to a caster [m]
+    half = 0.05 * size - 0.001  # from the middle of a wheel to that of an outer crest [m]
+    most = (track - half) + track - (track + half)  # torque of a wheel, in loads of one point
+    return 1.0 if mu * caster <= most else track / (track + half)
+
+
+@pytest.mark.parametrize(('mass', 'size', 'mu', 'rate', 'yaw'), [
+    (0.2, 0.12, 1.0, 0.1, 0.4), (1.0, 0.2, 1.0, -0.1, 0.0), (1.0, 0.2, 0.9, 0.3, 0.4),
+    (5.0, 0.4, 1.0, 0.3, 0.0), (20.0, 0.6, 1.0, -0.1, 0.4), (50.0, 1.0, 1.0, 0.1, 0.0),
+    (0.2, 0.12, 0.6, 0.1, 0.4), (1.0, 0.2, 0.7, 0.3, 0.0), (5.0, 0.4, 0.6, -0.1, 0.4),
+])
+def test_broad_wheels_that_drag_casters_turn_a_robot_as_coulomb_has_it(mass, size, mu, rate, yaw):
+    with empty_world() as world:
+        model = placed(world, castered(mass, size, casters=2, mu=mu), yaw=yaw)
+        command(model, 0.0, rate)
+        world.run(3000)
+        share = turned(model, world, 3000) / 3.0 / rate
+        assert share == pytest.approx(share_turned(size, mu), rel=0.02)
 
 
 @pytest.mark.parametrize(('spec', 'degrees', 'yaw'), [
@@ -202,23 +262,73 @@ def test_a_robot_rides_along_on_what_moves(spec, joint, moves, speed):
         assert math.dist(after.position[:2], expected.position[:2]) < 0.01
 
 
+class Touch(NamedTuple):
+    """A contact of a robot in the last step."""
+
+    limit: float  # mu times the load [N]
+    held: float  # greatest friction along one of the axes [N]
+    power: float  # of the friction [W]
+
+
+def touches(world, model):
+    """Yield all contacts of a robot on a floor that stands."""
+    client = world.engine._client
+    for link, places in model.body.surfaces.items():
+        pose, (linear, angular) = world.engine.link_state(model.body, link)
+        origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # when it touched
+        for place in places:
+            for point in pybullet.getContactPoints(
+                place.body, linkIndexA=place.index, physicsClientId=client
+            ):
+                sides = place, (point[2], point[4])
+                mu = math.prod(pybullet.getDynamicsInfo(*side, client)[1] for side in sides)
+                slip = add(linear, cross(angular, subtract(point[5], origin)))
+                one, two = point[10], point[12]
+                yield Touch(mu * point[9], max(abs(one), abs(two)),
+                            one * dot(point[11], slip) + two * dot(point[13], slip))
+
+
 @pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])
-def test_in_no_step_friction_exceeds_mu_times_the_load_or_speeds_a_robot_up(spec, heading):
+def test_in_no_step_friction_speeds_up_a_robot_that_slides(spec, heading):
     with empty_world() as world:
         model = placed(world, spec, yaw=heading)
         model.set_twist(Twist((0.3 * math.cos(heading) - 0.4 * math.sin(heading),
                                0.3 * math.sin(heading) + 0.4 * math.cos(heading), 0.0)))
-        (number,) = model.body.bodies
         fastest = math.hypot(*model.twist.linear[:2])
         for _ in range(200):
             world.run(1)
-            points = pybullet.getContactPoints(number, physicsClientId=world.engine._client)
-            for point in points:
-                load, *held = point[9], point[10], point[12]
-                if not load:
-                    continue  # PyBullet goes on telling what a point held before it lifted off
-                assert max(map(abs, held)) <= load * (1.0 + 1e-6) + 1e-9  # mu is 1 at most
             assert math.hypot(*model.twist.linear[:2]) <= fastest
+
+
+# Robots on one caster tip onto their front edge when they back at once, and back again.
+@pytest.mark.parametrize(('spec', 'heading', 'degrees', 'commands'), [
+    (LIGHT, 0.4, 0.0, ((0.5, 0.0), (-0.5, 0.0))), (LIGHT, 0.4, 12.0, ((1.0, 1.0), (-1.0, 0.0))),
+    (MIDDLE, 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
+    (castered(5.0, 0.4, casters=1, acceleration=0.0), 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
+    (HEAVY, 0.0, 0.0, ((0.0, 1.5), (0.5, 0.0))),
+    (robot_spec(), 0.4, 0.0, ((-0.5, 0.0), (0.5, 0.0))),
+])
+def test_friction_stays_within_its_limit_and_does_no_work(spec, heading, degrees, commands):
+    """At most mu N of each contact, but for what one keeps that loses its load in the same step."""
+    with empty_world() as world:
+        frame = tilted_floor(world, roll=degrees) if degrees else None
+        model = placed(world, spec, frame, heading)
+        given = taken = 0.0  # [J]
+        for forward, turning in commands:
+            command(model, forward, turning)
+            limits = kept = 0.0  # [N], sums over a second
+            for _ in range(1000):
+                world.run(1)
+                power = 0.0
+                for limit, held, of_it in touches(world, model):
+                    limits, power = limits + limit, power + of_it
+                    if limit:
+                        assert held <= limit * (1.0 + 1e-6) + 1e-9
+                    else:
+                        kept += held
+                given, taken = given + 0.001 * max(power, 0.0), taken - 0.001 * min(power, 0.0)
+            assert kept < 0.01 * limits
+        assert given < 0.002 * taken
 
 
 def soft(spec, kp):
