@@ -99,7 +99,7 @@ def test_a_robot_that_drives_across_a_slope_does_not_slide_down(spec, degrees, s
     (LIGHT, 10.0, 0.2, math.pi), (castered(1.0, 0.2), 15.0, 1.0, 0.3), (MIDDLE, -20.0, 1.0, 0.8),
     (castered(20.0, 0.6, casters=1), 20.0, 1.0, 0.3),
     (castered(20.0, 0.6, mu=0.1), 25.0, 0.5, 0.8),
-    # At 1 m/s^2 its upper wheel would spin: it carries a quarter of the weight, and drags a caster.
+    # At 1 m/s^2 its upper wheel, which carries a quarter of the weight, would spin.
     (castered(5.0, 0.4, casters=1, acceleration=0.2), 25.0, 0.5, 0.8),
 ])
 def test_the_tyres_of_a_robot_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
