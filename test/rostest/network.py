@@ -58,7 +58,8 @@ PUBLISHED = {
 SUBSCRIBED = {'/gazebo/set_link_state': LinkState, '/gazebo/set_model_state': ModelState}
 OF_ROSOUT = {'/rosout'}  # rosout's own /rosout_agg is there where roslaunch starts a master
 OUR_TOPICS = {
-    '/gazebo/visual_markers', '/gazebo/view/frames', '/gazebo/view/image_raw', '/tf_static',
+    '/gazebo/visual_markers', '/gazebo/view/markers', '/gazebo/view/frames',
+    '/gazebo/view/image_raw', '/tf_static',
 }
 OUR_SERVICES = {'get_model_omissions', 'step'}
 # What the article's robot adds when it is spawned.

@@ -4,15 +4,20 @@
 import os
 import re
 import signal
+import subprocess
 import sys
+import tempfile
 import unittest
+from pathlib import Path
 from xmlrpc.client import ServerProxy
 
+import numpy as np
 import rosnode
 import rospy
 import rostest
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState, SpawnModel
+from PIL import Image
 from simulator import BOX, GROUND, pose, proxy, wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
@@ -22,6 +27,21 @@ STEP = 40.0  # [s, wall] for a program to come up on a slow machine
 GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: there is a simulator again'
 # Of itself RViz does so in one start of 28.
 CRASHED = 'gzclient: RViz crashed as it opened'
+
+
+PICTURES = Path(__file__).resolve().parents[2] / 'tools' / 'make_pictures.py'
+# Colours in the room, and ways that faces look which the camera sees. Of the first three the robot
+# is a mesh, and all can move.
+SEEN = [
+    ('the plate of the robot', (0.16, 0.47, 0.86), [(0, 0, 1)]),
+    ('the crate', (0.25, 0.55, 0.6), [(0, 0, 1), (1, 0, 0)]),
+    ('the barrel', (0.9, 0.45, 0.35), [(0, 0, 1)]),
+    ('the bookcase', (0.6, 0.42, 0.26), [(0, 0, 1), (1, 0, 0), (0, -1, 0)]),
+    ('the wall', (0.85, 0.75, 0.55), [(0, 0, 1), (1, 0, 0)]),
+]
+TO_SUN = np.array([0.5, -0.1, 0.9]) / np.linalg.norm([0.5, -0.1, 0.9])  # where Gazebo's sun stands
+CLOSE = 8  # of 255: the picture has few colours
+ENOUGH = 200  # pixels; the smallest of those faces has 350
 
 
 def said_by(window):
@@ -54,7 +74,7 @@ class WindowTest(unittest.TestCase):
         return terminal
 
     def wait_for_rviz(self, node):
-        wait_until(lambda: {'/gazebo/visual_markers', '/gazebo/view/frames'} <= self.read_by(node)
+        wait_until(lambda: {'/gazebo/view/markers', '/gazebo/view/frames'} <= self.read_by(node)
                    and rosnode.rosnode_ping(node, max_count=1, skip_cache=True),
                    f'the window {node}', STEP)
 
@@ -121,9 +141,20 @@ class WindowTest(unittest.TestCase):
         self.assertTrue(proxy('set_model_state', SetModelState)(state).success)
         wait_until(lambda: abs(places()['box'] - 7.0) < 0.01, 'the box where it was set', STEP)
 
+    def test_the_picture_of_the_readme_is_made_and_the_sun_lights_all_in_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([PICTURES, folder, 'gzclient.png'], check=True, timeout=2.0 * STEP)
+            (made,) = Path(folder).iterdir()
+            pixels = np.asarray(Image.open(made).convert('RGB')).astype(float)
+        for thing, colour, normals in SEEN:
+            for normal in normals:
+                lit = 255.0 * np.array(colour) * (0.62 + 0.38 * np.dot(normal, TO_SUN))
+                there = (np.abs(pixels - lit) <= CLOSE).all(axis=2).sum()
+                self.assertGreater(there, ENOUGH, (thing, normal, lit))
+
     def test_it_says_when_the_simulator_has_gone_and_when_there_is_one_again(self):
         server, window = self.server(), self.window()
-        markers = self.collect('/gazebo/visual_markers', MarkerArray)
+        markers = self.collect('/gazebo/view/markers', MarkerArray)
         wait_until(lambda: markers, 'the scene', STEP)
         markers.clear()
         server.process.send_signal(signal.SIGKILL)

@@ -36,7 +36,8 @@ ARROWS = {
     'sim/plugins': 'sim/core sim/description sim/runtime sim/plugin_registry',
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
-    'sim/rendering': 'sim/core sim/description sim/meshes sim/physics/bullet sim/runtime',
+    'sim/rendering':
+        'sim/core sim/description sim/resources sim/meshes sim/physics/bullet sim/runtime',
     'sim/public':
         'sim/core sim/description sim/resources sim/formats/xml sim/formats/urdf sim/formats/sdf '
         'sim/physics sim/runtime sim/plugins',

@@ -1,7 +1,7 @@
 """Whether the simulator is still there, told to who looks at its window.
 
 Publishes:
-    gazebo/visual_markers (visualization_msgs/MarkerArray, latched): the notice, once the simulator
+    gazebo/view/markers (visualization_msgs/MarkerArray, latched): the notice, once the simulator
         has gone; one that comes again clears the scene and shows its own.
 """
 
@@ -16,7 +16,7 @@ from ..transport import node_address
 TIMEOUT = 2.0  # for the simulator to take a connection [s, wall]
 NOTICE = 'the simulator has gone'
 NODE = 'gazebo'
-MARKERS_TOPIC = 'gazebo/visual_markers'
+MARKERS_TOPIC = 'gazebo/view/markers'
 
 
 class ServerWatch:

@@ -26,10 +26,16 @@ def visual_marker(namespace: str, number: int, visual: Visual) -> Marker:
         marker.mesh_use_embedded_materials = True  # a colour of zeros leaves them untinted
     else:
         marker.color = ColorRGBA(*(visual.material or Material()).rgba)
-    # RViz lights from the camera, which leaves wide ground dark; points with colours of their own
-    # are drawn as they are.
+    # RViz lights from the eye, which leaves wide ground dark; points with colours of their own are
+    # drawn as they are.
     marker.colors = [marker.color] * len(marker.points)
     return marker
+
+
+def use_sunlit(marker: Marker, file: str) -> None:
+    """Let a marker show a file of `SunlitMeshes`, which has the colours in it."""
+    marker.type, marker.mesh_resource = Marker.MESH_RESOURCE, Path(file).as_uri()
+    marker.mesh_use_embedded_materials, marker.color = True, ColorRGBA()  # zeros: not tinted
 
 
 def place_marker(marker: Marker, link_pose: Pose, visual: Visual) -> None:

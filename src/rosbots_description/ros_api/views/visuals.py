@@ -3,18 +3,22 @@
 Publishes:
     ~visual_markers (visualization_msgs/MarkerArray, latched): all visuals to who begins to look,
         then those that moved, came or went.
+    ~view/markers (visualization_msgs/MarkerArray, latched): the same for gzclient, in mesh files
+        of this machine that its sun lights.
 """
 
+from collections.abc import Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from typing import Protocol
 
 import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ...sim.core import Pose, compose
+from ...sim.core import Pose
+from ...sim.rendering import SunlitMeshes
 from ...sim.runtime import Link, Model, World
 from ..server import Server
-from .markers import clearance, place_marker, removal, visual_marker
-from .shading import shade
+from .markers import clearance, place_marker, removal, use_sunlit, visual_marker
 
 PERIOD = 0.04  # time between two looks at the world [s, wall]
 # Every so many looks all is shown again: RViz forgets its markers when time jumps back.
@@ -24,17 +28,18 @@ REFRESH = 25
 class LinkView:
     """The markers of one link, and where they were last shown."""
 
-    def __init__(self, link: Link, still: bool) -> None:
+    def __init__(self, link: Link, files: Sequence[str | None] = ()) -> None:
+        """Show a link; by the files of its visuals, as far as there are any."""
         self._link = link
+        self._files = files  # held
         self._shown: Pose | None = None
         self.markers = [
             visual_marker(link.scoped_name, number, visual)
             for number, visual in enumerate(link.spec.visuals)
         ]
-        if still:
-            pose = link.pose
-            for marker, visual in zip(self.markers, link.spec.visuals, strict=True):
-                shade(marker, visual.geometry, compose(pose, visual.pose).orientation)
+        for marker, file in zip(self.markers, files, strict=False):
+            if file is not None:
+                use_sunlit(marker, file)
 
     def forget(self) -> None:
         """Count as moved at the next look."""
@@ -76,14 +81,56 @@ class ShownMarkers:
                 del self._models[name]
         for name, model in models.items():
             if name not in self._models:
-                views = [LinkView(link, model.static)
-                         for link in model.links.values() if link.spec.visuals]
+                views = self._views(name, model)
+                if views is None:
+                    continue
                 self._models[name] = model, views
             for link in self._models[name][1]:
                 if refresh:
                     link.forget()
                 markers += link.moved()
         return markers
+
+    def _views(self, _name: str, model: Model) -> list[LinkView] | None:
+        """Return how a new model is shown; None if that must wait for another look."""
+        return [LinkView(link) for link in _shown_links(model)]
+
+
+class SunlitMarkers(ShownMarkers):
+    """Shows each model as soon as its mesh files are made, on another thread."""
+
+    def __init__(self, world: World, meshes: SunlitMeshes, thread: Executor) -> None:
+        super().__init__(world)
+        self._meshes, self._thread = meshes, thread
+        self._coming: dict[str, tuple[Model, Future[list[LinkView]]]] = {}
+
+    def begin(self) -> None:
+        """Show everything as soon as it can be."""
+        super().begin()
+        self._coming.clear()
+
+    def look(self) -> list[Marker]:
+        """Return the markers that changed since the last look, of models whose files are made."""
+        markers, models = super().look(), self._world.models
+        self._coming = {name: coming for name, coming in self._coming.items() if name in models}
+        return markers
+
+    def _views(self, name: str, model: Model) -> list[LinkView] | None:
+        if self._coming.get(name, (None,))[0] is not model:
+            self._coming[name] = model, self._thread.submit(self._make_views, model)
+        future = self._coming[name][1]
+        if not future.done():
+            return None
+        del self._coming[name]
+        return future.result()
+
+    def _make_views(self, model: Model) -> list[LinkView]:
+        return [LinkView(link, [self._meshes.file(visual) for visual in link.spec.visuals])
+                for link in _shown_links(model)]
+
+
+def _shown_links(model: Model) -> list[Link]:
+    return [link for link in model.links.values() if link.spec.visuals]
 
 
 class Shown(Protocol):
@@ -107,9 +154,14 @@ class Viewers(rospy.SubscribeListener):
 
 def advertise_visuals(server: Server) -> None:
     """Offer the markers and keep them up to date by wall time, so also while paused."""
-    view = ShownMarkers(server.world)
+    thread = ThreadPoolExecutor(1, 'sunlit_meshes')
+    _advertise(server, '~visual_markers', ShownMarkers(server.world))
+    _advertise(server, '~view/markers', SunlitMarkers(server.world, SunlitMeshes(), thread))
+
+
+def _advertise(server: Server, topic: str, view: ShownMarkers) -> None:
     publisher = rospy.Publisher(
-        '~visual_markers', MarkerArray, Viewers(server, view), latch=True, queue_size=10
+        topic, MarkerArray, Viewers(server, view), latch=True, queue_size=10
     )
 
     def show() -> None:

@@ -1,6 +1,7 @@
 """Read what a Collada file shows: the triangles of its scene, node by node.
 
-Of materials only the diffuse colour and how transparent they are count; a texture counts as white.
+Of materials only the diffuse colour and how transparent they are count; a texture counts as white,
+and it is said that there is one.
 To be imported late: pycollada takes a tenth of the simulator's start, and is seldom needed.
 """
 
@@ -11,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from collada import Collada
 from collada.common import DaeError
+from collada.material import Map
 from collada.polylist import Polylist
 from collada.scene import GeometryNode, Node
 from collada.triangleset import TriangleSet
@@ -24,6 +26,7 @@ class ColladaPart(NamedTuple):
     normals: np.ndarray | None  # (n, 3)
     matrix: np.ndarray  # (4, 4), from the node's frame to the scene's
     rgba: np.ndarray | None  # (4,), None without a material
+    textured: bool
 
 
 def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
@@ -42,7 +45,8 @@ def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
 
 def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
     if isinstance(node, GeometryNode):
-        colours = {one.symbol: _colour(one.target) for one in node.materials}
+        colours = {one.symbol: (_colour(one.target), isinstance(one.target.effect.diffuse, Map))
+                   for one in node.materials}
         for primitive in node.geometry.primitives:
             yield from _triangles(primitive, matrix, colours)
     elif isinstance(node, Node):
@@ -51,7 +55,7 @@ def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
 
 
 def _triangles(
-    primitive: object, matrix: np.ndarray, colours: dict[str, np.ndarray]
+    primitive: object, matrix: np.ndarray, colours: dict[str, tuple[np.ndarray, bool]]
 ) -> Iterator[ColladaPart]:
     if isinstance(primitive, Polylist):
         primitive = primitive.triangleset()
@@ -62,7 +66,8 @@ def _triangles(
     if primitive.normal is not None:
         normals = primitive.normal[primitive.normal_index].reshape(-1, 3)
     faces = np.arange(len(vertices)).reshape(-1, 3)
-    yield ColladaPart(vertices, faces, normals, matrix, colours.get(primitive.material))
+    rgba, textured = colours.get(primitive.material, (None, False))
+    yield ColladaPart(vertices, faces, normals, matrix, rgba, textured)
 
 
 def _colour(material: object) -> np.ndarray:

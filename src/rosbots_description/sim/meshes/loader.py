@@ -52,6 +52,7 @@ class MeshPart:
     faces: np.ndarray  # (m, 3), numbers of vertices
     normals: np.ndarray | None  # (n, 3), unit vectors at the vertices
     rgba: Colour
+    textured: bool = False  # a picture gives it more colours than this one
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,7 @@ class MeshData:
 
     digest: str
     parts: tuple[MeshPart, ...]
+    textured: bool = False  # a part of it is
 
     def triangles(self) -> tuple[np.ndarray, np.ndarray]:
         """Return all parts as one: vertices (n, 3) [m] and faces (m, 3)."""
@@ -134,7 +136,8 @@ def _read(path: str, mtime_ns: int, size: int) -> MeshData:
         raise _fault(path, f"format '{extension}' is not read; convert it to {', '.join(FORMATS)}")
     content = read_file(path, MAX_MESH_BYTES, 'mesh file')
     parts = _check_parts(path, _parse(path, extension, content))
-    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_thin(path, parts)))
+    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_thin(path, parts)),
+                    any(part.textured for part in parts))
 
 
 def _fault(path: str, sentence: str, kind: type[ModelError] = ModelError) -> ModelError:
@@ -185,7 +188,7 @@ def _obj_part(part: ObjPart) -> MeshPart:
     rgba = GREY
     if part.colour is not None and np.isfinite(part.colour).all():
         rgba = (*(min(1.0, max(0.0, value)) for value in part.colour), 1.0)
-    return MeshPart(part.vertices, part.faces, normals, rgba)
+    return MeshPart(part.vertices, part.faces, normals, rgba, part.textured)
 
 
 def _parse_stl(content: bytes, path: str) -> list[MeshPart]:
@@ -205,7 +208,7 @@ def _collada_part(part: 'ColladaPart', unit: float) -> MeshPart:
         faces = faces[:, ::-1]  # a mirror turns the triangles inside out
     if normals is not None:
         normals = _turn_normals(np.asarray(normals, dtype=float), linear, len(vertices))
-    return MeshPart(vertices, faces, normals, _colour(part.rgba))
+    return MeshPart(vertices, faces, normals, _colour(part.rgba), part.textured)
 
 
 def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.ndarray | None:

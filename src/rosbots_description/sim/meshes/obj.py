@@ -16,6 +16,7 @@ MAX_LIBRARIES = 8  # .mtl files of one .obj
 MAX_MATERIALS = 1000  # each a part of its own; what uses yet another has no colour
 
 RGB = tuple[float, float, float]
+Look = tuple[RGB | None, bool]  # the colour of a material, and whether it has a texture
 ReadLibrary = Callable[[str], str]  # the name of a .mtl file -> its text, '' if there is none
 
 
@@ -26,6 +27,7 @@ class ObjPart(NamedTuple):
     faces: np.ndarray  # (m, 3), numbers of vertices
     normals: np.ndarray | None  # (n, 3), as written
     colour: RGB | None  # red, green, blue in 0..1
+    textured: bool
 
 
 class _Faces:
@@ -81,11 +83,12 @@ def read_obj(content: bytes, read_library: ReadLibrary) -> list[ObjPart]:
         return []
     points = np.asarray(positions).reshape(-1, 3)
     directions = np.asarray(normals).reshape(-1, 3)
-    colours: dict[str, RGB] = {}
+    looks: dict[str, Look] = {}
     for name in libraries:
-        colours |= _read_colours(read_library(name))
+        looks |= _read_looks(read_library(name))
     return [
-        _part(faces, points, directions, colours.get(name)) for name, faces in groups.items()
+        _part(faces, points, directions, looks.get(name, (None, False)))
+        for name, faces in groups.items()
     ]
 
 
@@ -100,17 +103,17 @@ def _from_start(number: int, count: int) -> int:
 
 
 def _part(
-    faces: _Faces, points: np.ndarray, directions: np.ndarray, colour: RGB | None
+    faces: _Faces, points: np.ndarray, directions: np.ndarray, look: Look
 ) -> ObjPart:
     corners = _fans(np.asarray(faces.sizes))
     vertices = _checked(np.asarray(faces.vertices), len(points))[corners]
     normals = np.asarray(faces.normals)[corners]
     if not len(directions) or not normals.all():
         used, triangles = _renumbered(vertices)
-        return ObjPart(points[used - 1], triangles, None, colour)
+        return ObjPart(points[used - 1], triangles, None, *look)
     base = len(directions) + 1
     used, triangles = _renumbered(base * vertices + _checked(normals, len(directions)))
-    return ObjPart(points[used // base - 1], triangles, directions[used % base - 1], colour)
+    return ObjPart(points[used // base - 1], triangles, directions[used % base - 1], *look)
 
 
 def _renumbered(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -136,9 +139,9 @@ def _fans(sizes: np.ndarray) -> np.ndarray:
     return np.stack([first, first + step + 1, first + step + 2], axis=1)
 
 
-def _read_colours(text: str) -> dict[str, RGB]:
-    """Return the diffuse colour of each material of a .mtl file that gives one."""
-    colours: dict[str, RGB] = {}
+def _read_looks(text: str) -> dict[str, Look]:
+    """Return the diffuse colour of each material of a .mtl file, and whether it has a texture."""
+    looks: dict[str, Look] = {}
     name = ''
     for line in text.splitlines():
         word, _, rest = line.strip().partition(' ')
@@ -149,5 +152,7 @@ def _read_colours(text: str) -> dict[str, RGB]:
                 red, green, blue = map(float, rest.split()[:3])
             except ValueError:
                 continue  # a spectral curve, or nonsense: the part is grey
-            colours[name] = (red, green, blue)
-    return colours
+            looks[name] = (red, green, blue), looks.get(name, (None, False))[1]
+        elif word == 'map_Kd':
+            looks[name] = looks.get(name, (None, False))[0], True
+    return looks

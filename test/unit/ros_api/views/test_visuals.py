@@ -1,23 +1,14 @@
 """The markers of a world: what is sent, and that it is sent only once."""
 
-import math
+from concurrent.futures import Future
 from types import SimpleNamespace
 
 import pytest
 from visualization_msgs.msg import Marker
 
 from rosbots_description.ros_api.views.markers import PLANE_DEPTH, visual_marker
-from rosbots_description.ros_api.views.shading import brightness
-from rosbots_description.ros_api.views.visuals import REFRESH, ShownMarkers
-from rosbots_description.sim.core.transforms import (
-    IDENTITY,
-    Pose,
-    cross,
-    dot,
-    from_rpy,
-    rotate,
-    subtract,
-)
+from rosbots_description.ros_api.views.visuals import REFRESH, ShownMarkers, SunlitMarkers
+from rosbots_description.sim.core.transforms import IDENTITY, Pose
 from rosbots_description.sim.description.model_spec import (
     Box,
     Cylinder,
@@ -32,10 +23,10 @@ from rosbots_description.sim.description.model_spec import (
 RED = Material((1.0, 0.0, 0.0, 0.5))
 
 
-def _model(name, visual, pose=IDENTITY, static=False):
+def _model(name, visual, pose=IDENTITY):
     spec = LinkSpec('link', visuals=(visual,))
     link = SimpleNamespace(scoped_name=f'{name}::link', spec=spec, pose=pose)
-    return SimpleNamespace(name=name, links={'link': link}, static=static)
+    return SimpleNamespace(name=name, links={'link': link})
 
 
 @pytest.fixture
@@ -111,22 +102,61 @@ def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
     assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
 
 
-@pytest.mark.parametrize('geometry', [Box((1.0, 2.0, 3.0)), Cylinder(0.5, 2.0)])
-def test_what_stands_still_is_lit_by_the_sun_and_what_moves_by_rviz(geometry):
-    turned = Pose((1.0, 0.0, 0.0), from_rpy(0.0, 0.0, 0.5))
-    models = {name: _model(name, Visual('v', geometry, material=RED), turned, name == 'wall')
-              for name in ('wall', 'crate')}
-    _, wall, crate = ShownMarkers(SimpleNamespace(models=models)).look()
-    assert crate.type in (Marker.CUBE, Marker.CYLINDER)
-    assert crate.colors == []
-    assert wall.type == Marker.TRIANGLE_LIST
-    assert len(wall.colors) == len(wall.points)
-    for number in range(0, len(wall.points), 3):
-        a, b, c = ((p.x, p.y, p.z) for p in wall.points[number:number + 3])
-        normal = cross(subtract(b, a), subtract(c, a))
-        assert dot(normal, a) > 0.0  # outward, or RViz does not draw it
-        length = math.sqrt(dot(normal, normal))
-        lit = brightness(rotate(turned.orientation, tuple(x / length for x in normal)))
-        assert wall.colors[number].r == pytest.approx(lit)
-        assert wall.colors[number].a == RED.rgba[3]
-    assert brightness((0.0, 0.0, 1.0)) > brightness((1.0, 0.0, 0.0)) > brightness((-1.0, 0.0, 0.0))
+class FakeThread:
+    """Keeps what is to be done until a test does it."""
+
+    def __init__(self):
+        self.jobs = []
+
+    def submit(self, work, *arguments):
+        future = Future()
+        self.jobs.append(lambda: future.set_result(work(*arguments)))
+        return future
+
+
+class FakeMeshes:
+    """Has a file of everything but planes."""
+
+    def file(self, visual):
+        return None if isinstance(visual.geometry, Plane) else f'/made/{visual.name}.mesh'
+
+
+@pytest.fixture
+def thread():
+    return FakeThread()
+
+
+def test_a_model_is_shown_to_the_window_once_its_files_are_made(world, thread):
+    view = SunlitMarkers(world, FakeMeshes(), thread)
+    assert [m.action for m in view.look()] == [Marker.DELETEALL]
+    assert view.look() == []
+    (job,) = thread.jobs
+    job()
+    (marker,) = view.look()
+    assert (marker.type, marker.mesh_resource) == (Marker.MESH_RESOURCE, 'file:///made/v.mesh')
+    assert (marker.scale.x, marker.scale.y, marker.scale.z) == (1.0, 2.0, 3.0)
+    assert marker.mesh_use_embedded_materials
+    assert marker.color.a == 0.0
+
+
+def test_what_has_no_file_is_shown_as_in_any_rviz(world, thread):
+    world.models['box'] = _model('box', Visual('v', Plane()))
+    view = SunlitMarkers(world, FakeMeshes(), thread)
+    view.look()
+    thread.jobs.pop()()
+    (marker,) = view.look()
+    assert marker.type == Marker.TRIANGLE_LIST
+
+
+def test_files_of_a_model_that_has_gone_meanwhile_are_not_shown(world, thread):
+    view = SunlitMarkers(world, FakeMeshes(), thread)
+    view.look()
+    first = thread.jobs.pop()
+    world.models['box'] = _model('box', Visual('other', Sphere(1.0)))
+    first()
+    assert view.look() == []
+    thread.jobs.pop()()
+    (marker,) = view.look()
+    assert marker.mesh_resource == 'file:///made/other.mesh'
+    del world.models['box']
+    assert [m.action for m in view.look()] == [Marker.DELETE]

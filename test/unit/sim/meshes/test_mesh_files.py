@@ -119,6 +119,25 @@ def test_the_colour_of_a_collada_material_is_seen(write):
     assert rgba == pytest.approx((0.2, 0.4, 0.6, 1.0), abs=0.005)
 
 
+def test_it_is_told_whether_a_mesh_has_a_texture(write):
+    picture = ('<library_images><image id="i"><init_from>i.png</init_from></image></library_images>'
+               '<library_effects>')
+    parameters = ('<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface>'
+                  '</newparam><newparam sid="r"><sampler2D><source>s</source></sampler2D>'
+                  '</newparam><technique sid="t">')
+    textured = (collada().replace('<library_effects>', picture)
+                .replace('<technique sid="t">', parameters)
+                .replace('<color>0.2 0.4 0.6 1</color>', '<texture texture="r" texcoord="UV"/>'))
+    assert read_mesh(write('textured.dae', textured)).textured
+    assert not read_mesh(write('m.dae', collada())).textured
+    write('m.mtl', 'newmtl a\nmap_Kd i.png\nKd 1 0 0\nnewmtl b\nKd 1 0 0\nmap_Kd i.png\n'
+                   'newmtl c\nKd 1 0 0\n')
+    for material, expected in (('a', True), ('b', True), ('c', False)):
+        path = write(f'{material}.obj', f'mtllib m.mtl\nusemtl {material}\n{TRIANGLE}')
+        assert read_mesh(path).textured is expected
+        assert visual_parts(path)[0][3] == (1, 0, 0, 1)
+
+
 def test_an_obj_has_a_part_for_each_material_and_grey_where_it_has_none(write):
     write('m.mtl', 'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n')
     path = write('m.obj', 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n'

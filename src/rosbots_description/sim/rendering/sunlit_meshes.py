@@ -1,0 +1,172 @@
+"""Visuals as mesh files that the sun of the window lights.
+
+RViz has one light, at the eye, and markers cannot bring another. But the materials of an Ogre mesh
+file RViz takes by name, and `ogre_media` of the package rosbots_simulator defines ours: its vertex
+program lights each normal from the same side of the world, however the body turns and wherever the
+camera stands.
+"""
+
+import hashlib
+import logging
+import struct
+from collections import deque
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+
+from ..core import ModelError
+from ..description import Box, Colour, Cylinder, Material, Mesh, Sphere, Visual
+from ..meshes import read_mesh
+from ..resources import HeldFile, HeldFiles
+
+logger = logging.getLogger(__name__)
+
+RECENT = 32  # files that stay a while: RViz may not have read one yet when its model has gone
+
+OPAQUE, TRANSPARENT = b'rosbots/sunlit', b'rosbots/sunlit_transparent'  # as in ogre_media
+SEGMENTS = 48  # of a round side
+
+# Vertices (n, 3), faces (m, 3) counter-clockwise, normals (n, 3).
+Surface = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class SunlitMeshes:
+    """Makes the files, each as long as it is held. Any thread may ask for them."""
+
+    def __init__(self) -> None:
+        self._files = HeldFiles('rosbots_sunlit_')
+        self._recent: deque[HeldFile] = deque(maxlen=RECENT)
+
+    def file(self, visual: Visual) -> HeldFile | None:
+        """Return the file of a visual, of unit size but for a mesh; None if there can be none.
+
+        So it is with planes, which need no light, and with textures, which only RViz's own
+        materials show.
+        """
+        try:
+            described = _description(visual)
+            if described is None:
+                return None
+            name = f'{hashlib.sha256(repr(described).encode()).hexdigest()[:32]}.mesh'
+            file = self._files.get(name) or self._files.write(
+                name, ogre_mesh(list(_parts(visual))), getattr(visual.geometry, 'path', name))
+            self._recent.append(file)
+            return file
+        except ModelError as error:
+            logger.warning("visual '%s' is lit from the eye: %s", visual.name, error)
+            return None
+
+
+def ogre_mesh(parts: list[tuple[Surface, Colour]]) -> bytes:
+    """Return an Ogre mesh file of surfaces, each of one colour."""
+    corners = np.concatenate([vertices for (vertices, _, _), _ in parts])
+    bounds = struct.pack('<7f', *corners.min(axis=0), *corners.max(axis=0),
+                         np.linalg.norm(corners, axis=1).max())
+    submeshes = [_submesh(surface, rgba) for surface, rgba in parts]
+    return (struct.pack('<H', 0x1000) + b'[MeshSerializer_v1.100]\n'
+            + _chunk(0x3000, struct.pack('<?', False), *submeshes, _chunk(0x9000, bounds)))
+
+
+# A vertex as the file has it: name, numpy's type, Ogre's type and meaning.
+_ELEMENTS = (('position', '3<f4', 2, 1), ('normal', '3<f4', 2, 4), ('rgba', '4u1', 11, 5))
+_VERTEX = np.dtype([(name, kind) for name, kind, _, _ in _ELEMENTS])
+_TRIANGLE_LIST = 4
+
+
+def _submesh(surface: Surface, rgba: Colour) -> bytes:
+    vertices, faces, normals = surface
+    data = np.empty(len(vertices), _VERTEX)
+    data['position'], data['normal'] = vertices, normals
+    data['rgba'] = np.round(255.0 * np.clip(rgba, 0.0, 1.0))
+    elements = [_chunk(0x5110, struct.pack('<5H', 0, kind, meaning, _VERTEX.fields[name][1], 0))
+                for name, _, kind, meaning in _ELEMENTS]
+    geometry = _chunk(
+        0x5000, struct.pack('<I', len(vertices)), _chunk(0x5100, *elements),
+        _chunk(0x5200, struct.pack('<2H', 0, _VERTEX.itemsize), _chunk(0x5210, data.tobytes())))
+    return _chunk(
+        0x4000, OPAQUE if rgba[3] >= 1.0 else TRANSPARENT, b'\n',
+        struct.pack('<?I?', False, faces.size, True), faces.astype('<u4').tobytes(),
+        geometry, _chunk(0x4010, struct.pack('<H', _TRIANGLE_LIST)))
+
+
+def _chunk(number: int, *contents: bytes) -> bytes:
+    content = b''.join(contents)
+    return struct.pack('<HI', number, len(content) + 6) + content
+
+
+def _description(visual: Visual) -> object:
+    """Return what the file depends on; None if there can be none."""
+    match visual.geometry:
+        case Mesh(path):
+            mesh = read_mesh(path)
+            return (mesh.digest, visual.material) if visual.material or not mesh.textured else None
+        case Box() | Cylinder() | Sphere():
+            return type(visual.geometry).__name__, visual.material
+    return None
+
+
+def _parts(visual: Visual) -> Iterator[tuple[Surface, Colour]]:
+    if isinstance(visual.geometry, Mesh):
+        for part in read_mesh(visual.geometry.path).parts:
+            surface = (_flat(part.vertices[part.faces]) if part.normals is None
+                       else (part.vertices, part.faces, part.normals))
+            yield surface, visual.material.rgba if visual.material else part.rgba
+    else:
+        yield _SHAPES[type(visual.geometry)](), (visual.material or Material()).rgba
+
+
+def _flat(corners: np.ndarray) -> Surface:
+    """Return triangles (n, 3, 3) as a surface with an edge between any two of them."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    return (corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3),
+            np.repeat(normals, 3, axis=0))
+
+
+@cache
+def _box() -> Surface:
+    square = np.array([(1, -1, -1), (1, 1, -1), (1, 1, 1), (1, -1, -1), (1, 1, 1), (1, -1, 1)]) / 2
+    # The side at +x; a turn by 180 degrees about z makes the one at -x of it.
+    sides = np.stack([square, square * (-1, -1, 1)])
+    return _flat(np.concatenate([np.roll(sides, k, axis=2) for k in range(3)]).reshape(-1, 3, 3))
+
+
+@cache
+def _cylinder() -> Surface:
+    return _revolved([[(0.0, -0.5, 0.0, -1.0), (0.5, -0.5, 0.0, -1.0)],
+                      [(0.5, -0.5, 1.0, 0.0), (0.5, 0.5, 1.0, 0.0)],
+                      [(0.5, 0.5, 0.0, 1.0), (0.0, 0.5, 0.0, 1.0)]])
+
+
+@cache
+def _sphere() -> Surface:
+    latitudes = np.linspace(-np.pi / 2.0, np.pi / 2.0, SEGMENTS // 2 + 1)
+    outward = np.stack([np.cos(latitudes), np.sin(latitudes)], axis=1)
+    return _revolved([np.concatenate([outward / 2.0, outward], axis=1)])
+
+
+_SHAPES = {Box: _box, Cylinder: _cylinder, Sphere: _sphere}
+
+
+def _revolved(profile: list) -> Surface:
+    """Return what strips sweep that turn about z.
+
+    Args:
+        profile: for each strip its points from below: (radius, z), and their normal likewise.
+    """
+    angles = np.linspace(0.0, 2.0 * np.pi, SEGMENTS + 1)
+    about = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    vertices, faces, normals, first = [], [], [], 0
+    j = np.arange(SEGMENTS)
+    for strip in map(np.asarray, profile):
+        for radial, vertical, into in ((0, 1, vertices), (2, 3, normals)):
+            ring = strip[:, None, radial, None] * about
+            height = np.broadcast_to(strip[:, None, vertical, None], (*ring.shape[:2], 1))
+            into.append(np.concatenate([ring, height], axis=2).reshape(-1, 3))
+        for i in range(len(strip) - 1):
+            a = first + i * len(angles) + j
+            c = a + len(angles)
+            faces += [np.stack([a, a + 1, c + 1], axis=1), np.stack([a, c + 1, c], axis=1)]
+        first += len(vertices[-1])
+    return np.concatenate(vertices), np.concatenate(faces), np.concatenate(normals)
