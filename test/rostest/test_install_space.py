@@ -60,6 +60,11 @@ class InstallSpaceTest(unittest.TestCase):
         config = self.output(f'python3 -c "{code}"')
         self.assertTrue(config.startswith(str(self.root)), config)
         self.assertTrue(Path(config).is_file(), config)
+        media = self.output('rospack plugins --attrib=ogre_media_path media_export')
+        (folder,) = (line.split()[1] for line in media.splitlines()
+                     if line.startswith('rosbots_simulator '))
+        self.assertTrue(folder.startswith(str(self.root)), folder)
+        self.assertTrue(Path(folder, 'sunlit.material').is_file(), folder)
 
     def test_the_robot_drives_there(self):
         launched = self.start('roslaunch rosbots_description simulation.launch gui:=false')
