@@ -82,6 +82,15 @@ def test_every_package_is_linked_but_those_that_the_user_has(tmp_path):
     assert 'nothing new' in rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='').stdout
 
 
+def test_a_link_by_hand_goes_where_the_user_has_a_package_of_that_name(theirs):
+    by_hand = theirs.parent / 'anything'
+    by_hand.symlink_to(ROOT)
+    said = rosbots('link', str(theirs.parents[1]), ROS_PACKAGE_PATH='').stdout
+    assert f'rosbots_description is yours, in {theirs}; ours is left out' in said
+    assert not by_hand.is_symlink()
+    assert (theirs / 'package.xml').exists()
+
+
 def test_what_is_in_the_way_of_a_link_is_named(tmp_path):
     (tmp_path / 'src' / 'xacro').mkdir(parents=True)
     result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')

@@ -1,6 +1,9 @@
 """Keys to commands: the tables, the speed keys, stopping."""
 
+import re
+
 import pytest
+from support import ROOT
 
 from rosbots_description.cli.teleop_keys import (
     BANNER,
@@ -102,3 +105,8 @@ def test_silence_stops_a_moving_robot_once():
 def test_banner_names_every_key():
     assert all(key in BANNER for key in [*MOVES, *SPEED_STEPS])
     assert BANNER.startswith('\n') and BANNER.endswith('\n')
+
+
+def test_help_and_readme_say_that_a_key_is_to_be_held():
+    for text in (BANNER, (ROOT / 'README.md').read_text(encoding='utf-8')):
+        assert re.search(r'\bhold a key\b.*\blet go\b', text)
