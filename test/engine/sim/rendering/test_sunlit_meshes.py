@@ -1,11 +1,13 @@
 """Mesh files for the window: the form that Ogre reads, the colours, and normals that face out."""
 
 import os
+import re
 import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from rosbots_description.sim.description.model_spec import (
     Box,
@@ -16,7 +18,12 @@ from rosbots_description.sim.description.model_spec import (
     Sphere,
     Visual,
 )
-from rosbots_description.sim.rendering.sunlit_meshes import RECENT, SunlitMeshes
+from rosbots_description.sim.rendering.sunlit_meshes import (
+    OPAQUE,
+    RECENT,
+    TRANSPARENT,
+    SunlitMeshes,
+)
 
 RED, GLASS = Material((1.0, 0.2, 0.0, 1.0)), Material((0.0, 0.0, 1.0, 0.4))
 TWO_COLOURS = """mtllib m.mtl
@@ -92,6 +99,12 @@ def test_a_shape_of_unit_size_has_faces_and_normals_outward(meshes, geometry, ar
     middles = corners.mean(axis=1)
     assert (np.einsum('ij,ij->i', across, middles)[real] > 0.0).all()
     assert (np.einsum('ij,ikj->ik', across, normals)[real] > 0.0).all()
+
+
+def test_the_materials_are_those_that_rviz_is_given():
+    file = ROOT / 'companions' / 'rosbots_simulator' / 'ogre_media' / 'sunlit.material'
+    defined = re.findall(r'^material (\S+)', file.read_text(), re.M)
+    assert defined == [OPAQUE.decode(), TRANSPARENT.decode()]
 
 
 def test_what_is_transparent_says_so(meshes):
