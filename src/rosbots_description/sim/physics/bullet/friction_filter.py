@@ -12,8 +12,11 @@ from typing import NamedTuple
 
 # PyBullet limits the friction of a pair to this; it holds on slopes of up to 84 degrees.
 MOST = 10.0
+# PyBullet's rays are of this group. They are to see each surface once.
+_RAYS = 1
+_FIRST = 1  # bit that is free for the kinds
 # Distinct mu that a world can tell apart, besides 1; the bits of a filter are no more.
-_CLASSES = 19
+_CLASSES = 18
 
 
 class Kind(IntEnum):
@@ -81,7 +84,7 @@ class FrictionFilter:
         if mu == 1.0 or mu in self._bits:
             return False
         if len(self._bits) < _CLASSES:
-            bit = 1 << 2 * len(Kind) + len(self._bits)
+            bit = 1 << _FIRST + 2 * len(Kind) + len(self._bits)
         else:  # it is taken for the nearest one, and holds between both
             bit = self._bits[min(self._bits, key=lambda known: math.fabs(known - mu))]
         self._bits[mu] = bit
@@ -94,14 +97,16 @@ class FrictionFilter:
     def group_and_mask(self, side: Side) -> tuple[int, int]:
         """Return the collision group and mask of a side whose mu has been added."""
         kind, role, mu = side
-        met_as_one = sum(1 << other for other in _MEETS[kind])
+        met_as_one = sum(1 << _FIRST + other for other in _MEETS[kind])
         met_as_both = met_as_one << len(Kind)
         if role is Role.OWN:
             return self._bits[mu], met_as_one | (met_as_both if mu < 1.0 else 0)
+        seen = 0 if kind is Kind.SLAB else _RAYS  # the plane is seen instead
         smoother = 0
         for other, bit in self._bits.items():
             if other <= mu:
                 smoother |= bit
         if role is Role.ONE:
-            return 1 << kind, smoother | (met_as_both if mu > 1.0 else 0)
-        return 1 << kind + len(Kind), smoother | met_as_one | met_as_both
+            return 1 << _FIRST + kind, seen | smoother | (met_as_both if mu > 1.0 else 0)
+        own = 1 << _FIRST + kind + len(Kind)
+        return own, seen | smoother | met_as_one | met_as_both

@@ -36,6 +36,10 @@ RIDER_MASS = 1e-9
 # a chequered one of 9 MB, of a mesh one that takes as long and twice as much memory as the mesh.
 _UNSEEN = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</visual>')
 
+# Group of what moves until it has its collision filter. In PyBullet's own, 1, that of rays,
+# it would meet all that can be seen, and the solver would take contacts in another order for good.
+_LOADED = 2
+
 WORLD_LINK = LinkSpec('world')  # what models are bolted to
 
 MeshFile = Callable[[Mesh], str]  # a mesh -> the path of a clean file at the mesh's scale
@@ -111,7 +115,9 @@ def _link(
     for collision in collisions:
         # Exact surfaces only where nothing moves: a concave mesh in motion is slow and leaky.
         concave = ' concave="yes"' if mass == 0.0 and isinstance(collision.geometry, Mesh) else ''
-        lines += [f'<collision{concave}>', _origin(compose(back, collision.pose)), '<geometry>']
+        group = f' group="{_LOADED}"' if mass else ''
+        lines += [f'<collision{group}{concave}>', _origin(compose(back, collision.pose)),
+                  '<geometry>']
         lines += [_geometry(collision.geometry, mesh_file), '</geometry>', '</collision>']
     lines.append('</link>')
     return lines
