@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.model_spec import ModelSpec
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
+from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
@@ -53,7 +54,7 @@ def empty_world(tuning: Tuning | None = None) -> Iterator[World]:
     Args:
         tuning: other choices of the engine than the usual ones.
     """
-    world = World(tuning=tuning)
+    world = World(make_engine=partial(Engine, tuning=tuning))
     try:
         add_empty_world(world)
         yield world

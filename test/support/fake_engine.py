@@ -1,26 +1,38 @@
 """A physics engine whose motors obey at once, whose joints turn, and whose bodies stay put."""
 
+import copy
 import math
+from collections import defaultdict
+from types import SimpleNamespace
 
+import numpy as np
+
+from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Twist, compose
-from rosbots_description.sim.physics.bullet.body import Body
 from rosbots_description.sim.physics.compiled_model import CompiledModel
+from rosbots_description.sim.physics.engine import JointState, Motion, RayHits, Wrench
+
+NO_WRENCH = Wrench((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class FakeEngine:
-    """Takes the place of `Engine` in a world; all its state is that of the bodies it made.
+    """Takes the place of an engine in a world; all its state is that of the bodies it made.
 
-    A body has `spec`, `pose`, `twist` and, by the name of a joint, `state`: position and velocity,
-    which a test may change.
+    A body has `spec`, `pose`, `twist`, and by the name of a joint `state` (position and velocity)
+    and `reactions`, which a test may change, as well as what the engine says is there: `touching`,
+    by link, and `ray_hits`.
     """
 
-    waste = 0
+    needs_rebuild = False
 
-    def __init__(self, physics, *_):
+    def __init__(self, physics):
         self.steps = []  # how many each call of `step` has made
         self.slips = {}  # by link
         self.rigid = set()  # links that cannot slip
+        self.pushes = []  # in the last step, and for the next one
         self.bodies = []
+        self.touching = defaultdict(list)
+        self.ray_hits = lambda starts, _: RayHits(np.full(len(starts), math.inf), ())
         self.apply(physics)
 
     def apply(self, physics):
@@ -30,12 +42,13 @@ class FakeEngine:
         return CompiledModel(spec, ())
 
     def add(self, model, pose):
-        body, spec = Body(0), model.spec
-        body.spec, body.pose, body.twist = spec, pose, Twist()
-        body.roots = [spec.links[0].name]
-        body.joints = {joint.name: (0, index) for index, joint in enumerate(spec.joints)}
-        body.state = {name: [0.0, 0.0] for name in body.joints}
-        body.motors = dict.fromkeys(body.joints, (0.0, 0.0))
+        spec, root = model.spec, model.spec.links[0].name
+        body = SimpleNamespace(
+            spec=spec, pose=pose, twist=Twist(), roots=[root],
+            fixed_roots={root} if spec.static else set(),
+            joints={joint.name for joint in spec.joints}, state={}, motors={}, reactions={})
+        for joint in spec.joints:
+            body.state[joint.name], body.motors[joint.name] = [0.0, 0.0], (0.0, 0.0)
         self.bodies.append(body)
         return body
 
@@ -50,13 +63,26 @@ class FakeEngine:
 
     def step(self, steps):
         self.steps.append(steps)
+        self.pushes.clear()
         for body in self.bodies:
             for state in body.state.values():
                 for _ in range(steps):
                     state[0] += state[1] * self.step_size
 
+    def overlap(self, one, other):
+        return 0.0
+
     def has_diverged(self, body):
         return not all(map(math.isfinite, (*body.pose.position, *body.twist.linear)))
+
+    def motion(self, body):
+        return Motion({body.roots[0]: (body.pose, body.twist)},
+                      {name: tuple(state) for name, state in body.state.items()}, body.motors)
+
+    def set_motion(self, body, motion):
+        ((body.pose, body.twist),) = motion.roots.values()
+        body.state = {name: list(state) for name, state in motion.joints.items()}
+        body.motors = dict(motion.motors)
 
     def link_pose(self, body, link):
         return compose(body.pose, body.spec.link(link).pose)
@@ -64,23 +90,65 @@ class FakeEngine:
     def link_state(self, body, link):
         return self.link_pose(body, link), body.twist
 
+    def link_states(self, body):
+        return {link.name: self.link_state(body, link.name) for link in body.spec.links}
+
+    def joint_state(self, body, joint):
+        return JointState(*body.state[joint], body.motors[joint][1])
+
+    def joint_states(self, body):
+        return {name: self.joint_state(body, name) for name in body.joints}
+
     def set_root_poses(self, body, poses):
         (body.pose,) = poses.values()
+
+    def set_root_twist(self, body, link, twist):
+        body.twist = twist
 
     def set_twist(self, body, twist):
         body.twist = twist
 
-    def joint_reading(self, body, joint):
-        return (*body.state[joint], (), body.motors[joint][1])
+    def set_joint_position(self, body, joint, position):
+        body.state[joint] = [position, 0.0]
+
+    def motor(self, body, joint):
+        return body.motors[joint]
 
     def set_joint_motor(self, body, joint, velocity, effort):
         body.motors[joint], body.state[joint][1] = (velocity, effort), velocity
 
-    def set_joint_position(self, body, joint, position):
-        body.state[joint] = [position, 0.0]
+    def push(self, body, link, force, torque, place=None):
+        self.pushes.append((link, force, torque, place))
 
-    def can_slip(self, _body, link, _axle):
+    def push_joint(self, body, joint, effort):
+        self.pushes.append((joint, effort))
+
+    def can_slip(self, body, link, axis):
         return link not in self.rigid
 
-    def let_slip(self, _body, link, _axle, slips):
-        self.slips[link] = slips
+    def set_slip_compliance(self, body, link, axis, compliances):
+        self.slips[link] = compliances
+
+    def contacts(self, body, link=None):
+        links = [link] if link else [one.name for one in body.spec.links]
+        return [contact for name in links for contact in self.touching[name]]
+
+    def cast_rays(self, starts, ends, named=False):
+        return self.ray_hits(starts, ends)
+
+    def measure_reaction(self, body, joint, wanted=True):
+        body.reactions = {**body.reactions, joint: NO_WRENCH}
+        if not wanted:
+            del body.reactions[joint]
+
+    def joint_reaction(self, body, joint):
+        return body.reactions.get(joint, NO_WRENCH)
+
+    def snapshot(self):
+        return [(body, copy.deepcopy(self.motion(body))) for body in self.bodies]
+
+    def restore(self, snapshot):
+        if [id(body) for body, _ in snapshot] != [id(body) for body in self.bodies]:
+            raise SimError('the snapshot is of other models')
+        for body, motion in snapshot:
+            self.set_motion(body, motion)

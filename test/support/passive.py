@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from rosbots_description.sim.core.transforms import Twist
 from rosbots_description.sim.formats.sdf.world_file import open_world
+from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.runtime.model import Joint, Link
@@ -40,7 +42,7 @@ def compare_scene(name: str, tuning: Tuning | None = None) -> list[Difference]:
 def _run(name: str, tuning: Tuning | None) -> dict[tuple[str, int], tuple]:
     """Return the state of each recorded link and joint after the steps at which it was recorded."""
     data = load(name)
-    world = World(tuning=tuning)
+    world = World(make_engine=partial(Engine, tuning=tuning))
     try:
         populate(world, open_world(DATA / 'worlds' / f'{name}.world', find_model=ModelSearch()))
         wanted: dict[int, list[str]] = {}

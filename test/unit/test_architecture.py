@@ -62,7 +62,6 @@ ARROWS = {
 
 # Arrows that are there and should not be: this list is to become empty.
 TO_BE_CUT = {
-    'sim/runtime': 'sim/physics/bullet',
     'ros_api/messages': 'sim/core sim/runtime',
     'ros_api/server': 'sim/core sim/resources sim/physics/bullet sim/runtime',
     'ros_api/services':

@@ -127,7 +127,7 @@ def spawn_model(server: Server, arrival: _Arrival | LightSpec) -> SpawnModelResp
         return refusal
     frame_pose, _ = server.world.frame(arrival.frame)
     model = server.world.spawn(arrival.model, arrival.name, compose(frame_pose, arrival.pose))
-    if not (model.static or model.body.bolted):
+    if not (model.static or model.body.fixed_roots):
         warn_overlap(server.world, model)
     return SpawnModelResponse(True, _DONE)
 

@@ -1,5 +1,21 @@
-"""What every physics engine takes and gives; the engines have a folder each."""
+"""Physics engines, one folder each, and the protocol by which the simulator knows them."""
 
+from .bullet import make_engine
 from .compiled_model import CompiledModel
+from .engine import (
+    CollisionName,
+    Contact,
+    EngineBody,
+    EngineFactory,
+    JointState,
+    Motion,
+    PhysicsEngine,
+    RayHits,
+    Snapshot,
+    Wrench,
+)
 
-__all__ = ['CompiledModel']
+__all__ = [
+    'CollisionName', 'CompiledModel', 'Contact', 'EngineBody', 'EngineFactory', 'JointState',
+    'Motion', 'PhysicsEngine', 'RayHits', 'Snapshot', 'Wrench', 'make_engine',
+]

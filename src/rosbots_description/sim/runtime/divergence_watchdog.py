@@ -8,9 +8,6 @@ if TYPE_CHECKING:
     from .world import World
 
 PERIOD = 100  # steps between two looks: soon enough that nobody falls far through a broken ground
-# What bodies that are gone were read from [bytes], some 45 of the article's robots. PyBullet keeps
-# two or three times that. To build the engine anew takes 5 ms for each robot that stays.
-MOST_WASTE = 1_500_000
 
 
 class DivergenceWatchdog(Hook):
@@ -29,7 +26,7 @@ class DivergenceWatchdog(Hook):
     def before_step(self) -> None:
         """Rebuild the world if a model has diverged."""
         diverged = [model for model in self._world.models.values() if model.has_diverged()]
-        if diverged or self._world.engine.waste > MOST_WASTE:
+        if diverged or self._world.engine.needs_rebuild:
             self._world.rebuild(diverged)
         self.due = self._world.clock.steps + PERIOD
 

@@ -4,8 +4,7 @@ from typing import Any
 
 from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
 from ..description import Collision, JointSpec, LinkSpec, ModelSpec
-from ..physics import CompiledModel
-from ..physics.bullet import Body, Engine
+from ..physics import CompiledModel, EngineBody, JointState, PhysicsEngine
 from ..plugin_registry import library_name
 from .outputs import JointStates
 from .plugin_life import Plugin
@@ -41,13 +40,13 @@ class Link:
         """Push during the next step: force [N] at the centre of mass, torque [N m], world axes."""
         self.model.engine.push(self.model.body, self.name, force, torque)
 
-    def can_slip(self, axle: Vector) -> bool:
-        """Tell whether the engine can let it slip along `axle`, a unit vector in its frame."""
-        return self.model.engine.can_slip(self.model.body, self.name, axle)
+    def can_slip(self, axis: Vector) -> bool:
+        """Tell whether it can have a slip compliance along `axis`, a unit vector in its frame."""
+        return self.model.engine.can_slip(self.model.body, self.name, axis)
 
-    def let_slip(self, axle: Vector, slips: tuple[float, float]) -> None:
-        """Let it slip in the next step by compliances along `axle` and across it [m/s per N]."""
-        self.model.engine.let_slip(self.model.body, self.name, axle, slips)
+    def set_slip_compliance(self, axis: Vector, compliances: tuple[float, float]) -> None:
+        """Let it slip from now on by compliances along `axis` and across it [m/s per N]."""
+        self.model.engine.set_slip_compliance(self.model.body, self.name, axis, compliances)
 
 
 class CollisionFrame:
@@ -83,26 +82,26 @@ class Joint:
     @property
     def position(self) -> float:
         """Return the position [rad or m]."""
-        return self._reading()[0]
+        return self._state().position
 
     @property
     def velocity(self) -> float:
         """Return the velocity [rad/s or m/s]."""
-        return self._reading()[1]
+        return self._state().velocity
 
     def state(self) -> tuple[float, float]:
         """Return position and velocity at once."""
-        return self._reading()[:2]
+        return self._state()[:2]
 
     @property
     def effort(self) -> float:
         """Return what the motor gave in the last step [N m or N]."""
-        return self._reading()[3]
+        return self._state().effort
 
     @property
     def motor(self) -> tuple[float, float]:
         """Return the motor's target velocity [rad/s or m/s] and its greatest effort [N m or N]."""
-        return self.model.body.motors[self.name]
+        return self.model.engine.motor(self.model.body, self.name)
 
     def push(self, effort: float) -> None:
         """Push during the next step by `effort` [N m or N], beside the motor.
@@ -122,8 +121,8 @@ class Joint:
         """Put the joint at `position` [rad or m], at rest."""
         self.model.engine.set_joint_position(self.model.body, self.name, position)
 
-    def _reading(self) -> tuple:
-        return self.model.engine.joint_reading(self.model.body, self.name)
+    def _state(self) -> JointState:
+        return self.model.engine.joint_state(self.model.body, self.name)
 
 
 class Model:
@@ -133,7 +132,9 @@ class Model:
     are those that were loaded, and `left_out` says what the model stands without.
     """
 
-    def __init__(self, name: str, compiled: CompiledModel, engine: Engine, pose: Pose) -> None:
+    def __init__(
+        self, name: str, compiled: CompiledModel, engine: PhysicsEngine, pose: Pose
+    ) -> None:
         self.name = self.scoped_name = name
         self.parent_name = ''  # only models within others have one
         self._compiled = compiled
@@ -206,7 +207,7 @@ class Model:
         """Be brought into the engine, which is new or was emptied, at the pose of the spawn."""
         if not self._compiled.has_files:
             self._compiled = self.engine.compile(self.spec)
-        self.body: Body = self.engine.add(self._compiled, self.initial_pose)
+        self.body: EngineBody = self.engine.add(self._compiled, self.initial_pose)
 
     def leave(self) -> None:
         """Be taken out of the engine for good; its mesh files go."""

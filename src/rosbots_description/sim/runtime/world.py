@@ -2,7 +2,7 @@
 
 import contextlib
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Protocol
 
@@ -18,8 +18,7 @@ from ..core import (
     Twist,
 )
 from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec
-from ..physics import CompiledModel
-from ..physics.bullet import Engine, Tuning
+from ..physics import CompiledModel, EngineFactory, make_engine
 from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
@@ -56,14 +55,12 @@ class World:
     def __init__(
         self,
         physics: PhysicsSettings | None = None,
-        tuning: Tuning | None = None,
-        make_engine: Callable[..., Engine] = Engine,
+        make_engine: EngineFactory = make_engine,
     ) -> None:
         """Open an empty world.
 
         Args:
-            tuning: other choices of the engine than the usual ones, to measure what they do.
-            make_engine: takes what `Engine` takes, and gives what does its work.
+            make_engine: makes the physics engine.
         """
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
@@ -76,7 +73,7 @@ class World:
         self.paused = False
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
-        self.engine = make_engine(self.physics, tuning)
+        self.engine = make_engine(self.physics)
 
     def close(self) -> None:
         """Free what the world holds outside Python."""

@@ -1,9 +1,10 @@
-"""What the engine remembers of a model, and how a model moves, as plain values."""
+"""What the engine remembers of a model, as plain values."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...core import Pose, Quaternion, Twist, Vector
+from ...core import Pose, Quaternion, Vector
+from ...description import Collision
 
 
 @dataclass(frozen=True)
@@ -69,22 +70,16 @@ class Body:
         self.size = size  # bytes that were read to make it
         self.parts: dict[str, Part] = {}
         self.joints: dict[str, tuple[int, int]] = {}  # PyBullet's body and index
+        # Axis in the frame of the child link, and whether the joint turns about it.
+        self.joint_axes: dict[str, tuple[Vector, bool]] = {}
         self.indices: dict[int, list[int]] = {}  # those of all joints, by body
         self.roots: list[str] = []  # links that the engine moves as bases
-        self.bolted: set[str] = set()  # roots that the world holds
+        self.fixed_roots: set[str] = set()  # roots that are fixed to the world
         self.bodies: list[int] = []
         # Links that feel no gravity: PyBullet's body and index, and the mass [kg].
         self.weightless: list[tuple[int, int, float]] = []
         self.motors: dict[str, tuple[float, float]] = {}  # last velocity and effort of each joint
         self.masses: dict[int, Masses] = {}  # what moves, by body
         self.surfaces: dict[str, list[Place]] = {}  # what each link touches with
+        self.shapes: dict[Place, tuple[Collision, ...]] = {}  # in the frame of the link
         self.friction_axes: dict[Place, FrictionAxes] = {}  # of each of these
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Where a model is and how it moves: roots, joints, and what its motors are asked for."""
-
-    roots: dict[str, tuple[Pose, Twist]]
-    joints: dict[str, tuple[float, float]]
-    motors: dict[str, tuple[float, float]]

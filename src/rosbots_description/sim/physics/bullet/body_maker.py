@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 from ...core import Pose, Vector, compose, inverse
-from ...description import FIXED, ModelSpec, Surface
+from ...description import FIXED, PRISMATIC, ModelSpec, Surface
 from ...description.inertia import is_balanced
 from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
@@ -78,7 +78,7 @@ class BodyMaker:
         number, *also = numbers
         body.roots.append(tree.links[0].name)
         if tree.fixed_base:
-            body.bolted.add(tree.links[0].name)
+            body.fixed_roots.add(tree.links[0].name)
         index_of = self._indices(number)
         # In a call of its own: together with an inertia PyBullet gives that inertia to the base.
         pybullet.changeDynamics(
@@ -107,6 +107,7 @@ class BodyMaker:
                 self._set_face(body, link.name, Place(number, index), face)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
+                body.joint_axes[joint.name] = joint.axis_in_child, joint.type != PRISMATIC
                 body.indices.setdefault(number, []).append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
                 mass = link.inertial.mass if link.inertial else 0.0
@@ -208,6 +209,7 @@ class BodyMaker:
         if not is_rigid(face.surface):
             self._soft[place] = face.surface, self._parting_rate(place)
             self._set_spring(place)
+        body.shapes[place] = face.shapes
         body.friction_axes[place] = face.axes
         if face.axes.scales != EVENLY:
             self.scale_friction(place, face.axes.scales)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ...core import NO_ROTATION, ModelError, Pose, Quaternion, Vector
-from ...description import Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
+from ...description import Collision, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from ...description.inertia import principal_axes
 from ...meshes import HeldFile, MeshStore
 from ..compiled_model import CompiledModel
@@ -37,6 +37,7 @@ _MASSLESS = Inertial(0.0)
 class CompiledFace:
     """What a part touches with, in PyBullet's terms."""
 
+    shapes: tuple[Collision, ...]
     side: Side
     friction: float
     rolling_friction: float  # [m]
@@ -179,6 +180,7 @@ def _compiled_face(
         return None
     surface = compliant(face.shapes[0].surface, mass)
     return CompiledFace(
+        face.shapes,
         face.side,
         face.friction,
         rolling_arm(face.shapes, joint),

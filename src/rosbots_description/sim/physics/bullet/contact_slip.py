@@ -7,7 +7,7 @@ from ...core import Pose, Twist, Vector, rotate, subtract
 from ...description import ModelSpec
 from .body import Body, Place
 from .client import pybullet
-from .friction_axes import axes_along, can_slip, first_direction
+from .friction_axes import EVENLY, axes_along, can_slip, first_direction
 from .slip_compliance import NONE_SLIPS, Touch, shares, velocity_at
 
 Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances [m/s per N]
@@ -30,6 +30,7 @@ class Slipping:
         """
         self._client, self._scale_friction, self._reach = client, scale_friction, reach
         self.links: list[tuple[Body, str, Slip]] = []
+        self._held: dict[Place, tuple[float, ...]] = {}  # shares of friction given last
 
     def add(self, body: Body, spec: ModelSpec) -> None:
         """Let links slip by slip1 and slip2 of what they touch with."""
@@ -41,19 +42,45 @@ class Slipping:
                     self.links.append((body, link.name, (axis, slips)))
                     break  # its other surfaces slip alike
 
+    def set(self, body: Body, link: str, slip: Slip) -> None:
+        """Let a link slip so from now on, whatever its surfaces say."""
+        entry = body, link, slip
+        for i, (whose, name, _) in enumerate(self.links):
+            if (whose, name) == (body, link):
+                self.links[i] = entry
+                return
+        self.links.append(entry)
+
     def remove(self, body: Body) -> None:
         """Forget the links of a body."""
         self.links = [link for link in self.links if link[0] is not body]
+        for places in body.surfaces.values():
+            for place in places:
+                self._held.pop(place, None)
 
     def clear(self) -> None:
         """Forget all links."""
         self.links.clear()
+        self._held.clear()
+
+    def note(self) -> tuple:
+        """Return what `recall` takes to go back to the present state."""
+        return tuple(self.links), dict(self._held)
+
+    def recall(self, note: tuple) -> None:
+        """Go back to a state of the same bodies."""
+        links, held = note
+        whole = {place: axes.scales for body, _, _ in (*self.links, *links)
+                 for place, axes in body.friction_axes.items()}
+        for place in self._held:
+            self._scale(place, held.get(place, whole.get(place, EVENLY)))
+        self.links, self._held = list(links), dict(held)
 
     def weaken(
         self, body: Body, link: str, state: tuple[Pose, Twist], axle: Vector,
         slips: tuple[float, float], step_size: float,
     ) -> None:
-        """Leave a link so much friction for the next step; arguments as for `Engine.let_slip`."""
+        """Leave a link so much friction for the next step; as `links` has it."""
         pose, twist = state
         for place in body.surfaces[link]:
             held = NONE_SLIPS if not any(slips) else shares(
@@ -64,10 +91,14 @@ class Slipping:
                 continue
             axes = body.friction_axes[place]
             along, ahead = held
-            self._scale_friction(place, [
+            self._scale(place, tuple(
                 scale * (along if is_axle else ahead)
                 for is_axle, scale in zip(axes_along(axes, axle), axes.scales, strict=True)
-            ])
+            ))
+
+    def _scale(self, place: Place, scales: tuple[float, ...]) -> None:
+        self._held[place] = scales
+        self._scale_friction(place, scales)
 
     def _touches(self, place: Place, origin: Vector, twist: Twist) -> Iterator[Touch]:
         """Yield the contacts of a part of a link in the last step."""

@@ -188,7 +188,7 @@ def _live(engine: Engine, model: BulletModel) -> None:
     for link in model.spec.links:
         engine.link_state(body, link.name)
     for joint in body.joints:
-        engine.joint_reading(body, joint)
+        engine.joint_state(body, joint)
     if engine.has_diverged(body):
         raise ModelError(f'its pose or velocity was no finite number within {STEPS} steps')
     engine.remove(body)

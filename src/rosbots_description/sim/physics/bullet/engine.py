@@ -6,19 +6,25 @@ cap on joint speed) are switched off, so that bodies move as rigid-body mechanic
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from itertools import repeat
+
+from numpy.typing import ArrayLike
 
 from ...core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from ...description import ModelSpec, PhysicsSettings
 from ...meshes import MeshStore
-from .body import Body, Motion, Part
+from ..engine import Contact, EngineFactory, JointState, Motion, RayHits, Wrench
+from .body import Body, Part
 from .body_maker import ANY_SPEED, BodyMaker
 from .client import pybullet
 from .compiler import BulletModel, compile_model
 from .contact_slip import Slipping
+from .contacts import Surroundings
 from .fast_rotation import FastBodies
 from .friction_axes import can_slip
+from .snapshot import BulletSnapshot, Snapshots
 from .solver_iterations import CHECK, Motor, SolverEffort
 from .springs import Springs
 from .surfaces import overlap_share
@@ -31,6 +37,9 @@ _TOGETHER = 20  # steps in one call, which costs less than a call each
 # Squared velocity [m^2/s^2] by which no contact or motor changes in the solver's last iteration.
 # PyBullet's own 1e-7 leaves a robot that is parked on a slope 0.01 mm/s.
 _CONVERGED = 1e-8
+# What bodies that are gone were read from [bytes], some 45 of the article's robots. PyBullet keeps
+# two or three times that. To build the engine anew takes 5 ms for each robot that stays.
+MOST_LEAKED = 1_500_000
 
 
 class Engine:
@@ -49,14 +58,18 @@ class Engine:
         self._step = pybullet.stepSimulation
         self._effort = SolverEffort(self._set_iterations)
         self._until_look = CHECK  # steps
-        self._pushed = False  # since the last step
+        self._bodies: dict[Body, None] = {}  # in the order they came
+        self._pushes: list[tuple] = []  # since the last step, with what to call for each
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._fast = FastBodies(self._client)
         self._springs = Springs(self._client)
         self._weightless: list[Body] = []  # those with links that feel no gravity
         self._slipping = Slipping(self._client, self._maker.scale_friction, self._reach)
+        self._surroundings = Surroundings(self._client, self.link_pose,
+                                          partial(self._meshes.engine_file, exact=False))
+        self._snapshots = Snapshots(self._client)
         # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
-        self.waste = 0
+        self._leaked = 0
         # What has been read since the last step, by PyBullet's body, in the order of Body.indices:
         # reading one joint costs as much as reading all of a body's.
         self._joint_readings: dict[int, Sequence[tuple]] = {}
@@ -64,6 +77,7 @@ class Engine:
 
     def close(self) -> None:
         """Free the world and remove its mesh files; the engine cannot be used afterwards."""
+        self._snapshots.clear()
         pybullet.disconnect(self._client)
         self._meshes.close()
 
@@ -84,6 +98,7 @@ class Engine:
             enableFileCaching=0,  # else a second model under a file name gets the first one's text
             minimumSolverIslandSize=1,  # what has converged waits for nobody else
             solverResidualThreshold=_CONVERGED,
+            jointFeedbackMode=pybullet.JOINT_FEEDBACK_IN_JOINT_FRAME,
             physicsClientId=self._client,
         )
         self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.passes)))
@@ -94,9 +109,20 @@ class Engine:
         """Return how many times its limit friction can hold in a level direction, a unit vector."""
         return 1.0 if self._cone else max(1.0, abs(direction[0]) + abs(direction[1]))
 
+    @property
+    def needs_rebuild(self) -> bool:
+        """Whether removed bodies have left much behind."""
+        return self._leaked > MOST_LEAKED
+
     def reset(self) -> None:
         """Remove everything; the same bodies added again then move bit for bit as before."""
+        self._snapshots.clear()
         self._maker.reset()
+        pybullet.setPhysicsEngineParameter(
+            deterministicOverlappingPairs=0, physicsClientId=self._client)
+        self._bodies.clear()
+        self._pushes.clear()
+        self._surroundings.clear()
         self._fast.clear()
         self._springs.clear()
         self._weightless.clear()
@@ -104,7 +130,7 @@ class Engine:
         self._until_look = CHECK
         self._slipping.clear()
         self._joint_readings.clear()
-        self.waste = 0
+        self._leaked = 0
         self.apply(self._physics)
 
     def step(self, steps: int) -> None:
@@ -127,10 +153,10 @@ class Engine:
         """Make steps in which the same bodies are fast."""
         step, client, fast = self._step, self._client, self._fast
         is_sprung = bool(self._springs)
-        if self._pushed and steps > 1:  # a push lasts as long as a call of PyBullet
+        if self._pushes and steps > 1:  # a push lasts as long as a call of PyBullet
             self._step_alike(1)
             steps -= 1
-        self._pushed = False
+        self._pushes.clear()
         if not (fast or is_sprung or self._weightless or self._slipping.links):
             while steps > 1:
                 together = self._together[min(steps, _TOGETHER)]
@@ -142,7 +168,7 @@ class Engine:
             if is_sprung:
                 self._springs.push()
             for body, link, slip in self._slipping.links:
-                self.let_slip(body, link, *slip)
+                self._let_slip(body, link, *slip)
             step(client)
             if fast:
                 fast.after_step()
@@ -181,6 +207,8 @@ class Engine:
         self._fast.add(body.masses)
         self._springs.add(body.masses)
         self._slipping.add(body, spec)
+        self._surroundings.add(body)
+        self._bodies[body] = None
         return body
 
     def remove(self, body: Body) -> None:
@@ -189,10 +217,12 @@ class Engine:
         if body in self._weightless:
             self._weightless.remove(body)
         self._slipping.remove(body)
+        self._surroundings.remove(body)
+        self._bodies.pop(body, None)
         self._driven.pop(body, None)
         self._fast.forget(body.bodies)
         self._springs.forget(body.bodies)
-        self.waste += body.size
+        self._leaked += body.size
         self._maker.remove(body)
 
     def overlap(self, one: Body, other: Body) -> float:
@@ -206,7 +236,7 @@ class Engine:
         """Return where a model is and how it moves, all of it."""
         return Motion(
             {link: self.link_state(body, link) for link in body.roots},
-            {name: self.joint_reading(body, name)[:2] for name in body.joints},
+            {name: state[:2] for name, state in self.joint_states(body).items()},
             dict(body.motors),
         )
 
@@ -256,11 +286,25 @@ class Engine:
         else:
             state = self._link_state(part, velocity=True)
             com, linear, angular = Pose(*state[:2]), state[6], state[7]
-        pose = compose(com, part.origin_in_com)
-        arm = subtract(pose.position, com.position)
-        return pose, Twist(add(linear, cross(angular, arm)), angular)
+        return _state_of_frame(part, com, linear, angular)
 
-    def set_root_poses(self, body: Body, poses: dict[str, Pose]) -> None:
+    def link_states(self, body: Body) -> dict[str, tuple[Pose, Twist]]:
+        """Return pose and twist of all links."""
+        states = {}
+        for number in {part.body: None for part in body.parts.values()}:
+            mine = [(name, part) for name, part in body.parts.items() if part.body == number]
+            indices = [part.index for _, part in mine if part.index >= 0]
+            rows = iter(pybullet.getLinkStates(number, indices, 1, 1, self._client)
+                        if indices else ())
+            for name, part in mine:
+                if part.index < 0:
+                    states[name] = self.link_state(body, name)
+                    continue
+                row = next(rows)
+                states[name] = _state_of_frame(part, Pose(*row[:2]), row[6], row[7])
+        return states
+
+    def set_root_poses(self, body: Body, poses: Mapping[str, Pose]) -> None:
         """Put the frames of root links at these poses; the links they carry come along.
 
         Velocities stay; PyBullet would zero them.
@@ -289,7 +333,7 @@ class Engine:
 
         A root that the world holds stays at rest.
         """
-        if link in body.bolted:
+        if link in body.fixed_roots:
             return
         part = body.parts[link]
         com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
@@ -313,7 +357,7 @@ class Engine:
         force, torque = _at_most(force, _ANY_FORCE), _at_most(torque, _ANY_FORCE)
         pybullet.applyExternalForce(part.body, part.index, force, place, world, client)
         pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
-        self._pushed = True
+        self._pushes.append((self.push, body, link, force, torque, place))
         self._fast.disturb(part.body)
 
     def push_joint(self, body: Body, joint: str, effort: float) -> None:
@@ -322,15 +366,21 @@ class Engine:
         pybullet.setJointMotorControl2(
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
         )
-        self._pushed = True
+        self._pushes.append((self.push_joint, body, joint, effort))
         self._fast.disturb(body.joints[joint][0])
 
-    def joint_reading(self, body: Body, joint: str) -> tuple:
-        """Return PyBullet's state of a joint; all joints of a body are read in one call.
+    def joint_state(self, body: Body, joint: str) -> JointState:
+        """Return the state of a joint."""
+        position, velocity, _, effort = self._joint_reading(body, joint)
+        # Of a motor without effort PyBullet tells what it gave when it had some.
+        return JointState(position, velocity, effort if body.motors[joint][1] else 0.0)
 
-        It begins with position [rad or m] and velocity [rad/s or m/s]; the fourth is what the motor
-        gave in the last step [N m or N].
-        """
+    def joint_states(self, body: Body) -> dict[str, JointState]:
+        """Return the states of all joints."""
+        return {name: self.joint_state(body, name) for name in body.joints}
+
+    def _joint_reading(self, body: Body, joint: str) -> tuple:
+        """Return PyBullet's state of a joint; all joints of a body are read in one call."""
         number, index = body.joints[joint]
         readings, indices = self._joint_readings.get(number), body.indices[number]
         if readings is None:
@@ -338,17 +388,17 @@ class Engine:
             self._joint_readings[number] = readings
         return readings[indices.index(index)]
 
-    def can_slip(self, body: Body, link: str, axle: Vector) -> bool:
-        """Tell whether a link can slip along an axis of its frame, a unit vector."""
-        return can_slip(body, link, axle)
+    def can_slip(self, body: Body, link: str, axis: Vector) -> bool:
+        """Tell whether a link can slip along a unit vector of its frame."""
+        return can_slip(body, link, axis)
 
-    def let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
-        """Let what a link touches slide in the next step as its slip compliance has it.
+    def set_slip_compliance(
+        self, body: Body, link: str, axis: Vector, compliances: tuple[float, float]
+    ) -> None:
+        """Let a link slip so from now on; see `PhysicsEngine`."""
+        self._slipping.set(body, link, (axis, compliances))
 
-        Args:
-            axle: unit vector in the link's frame, along which it can slip (`can_slip`).
-            slips: compliance along the axle and ahead [m/s per N].
-        """
+    def _let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
         state = self.link_state(body, link)
         self._slipping.weaken(body, link, state, axle, slips, self._physics.step_size)
 
@@ -374,12 +424,92 @@ class Engine:
             physicsClientId=self._client,
         )
 
+    def motor(self, body: Body, joint: str) -> tuple[float, float]:
+        """Return the motor's target velocity and greatest effort."""
+        return body.motors[joint]
+
+    def contacts(self, body: Body, link: str | None = None) -> list[Contact]:
+        """Return the contacts of a model, or of one link, in the last step."""
+        return self._surroundings.contacts(body, link)
+
+    def cast_rays(self, starts: ArrayLike, ends: ArrayLike, named: bool = False) -> RayHits:
+        """Return what rays meet first."""
+        return self._surroundings.cast_rays(starts, ends, named)
+
+    def measure_reaction(self, body: Body, joint: str, wanted: bool = True) -> None:
+        """Begin or end to measure what a joint passes on."""
+        self._joint_readings.clear()
+        pybullet.enableJointForceTorqueSensor(*body.joints[joint], int(wanted), self._client)
+
+    def joint_reaction(self, body: Body, joint: str) -> Wrench:
+        """Return what the parent did to the child through a joint in the last step."""
+        # PyBullet tells it in the principal axes of the child, without what the motor does.
+        values = self._joint_reading(body, joint)[2]
+        turn = next(part.com_in_origin.orientation for part in body.parts.values()
+                    if (part.body, part.index) == body.joints[joint])
+        force, torque = rotate(turn, values[:3]), rotate(turn, values[3:])
+        if not any(values):
+            return Wrench(force, torque)
+        axis, turns = body.joint_axes[joint]
+        effort = self.joint_state(body, joint).effort
+        driven = tuple(effort * component for component in axis)
+        return Wrench(force, add(torque, driven)) if turns else Wrench(add(force, driven), torque)
+
+    def snapshot(self) -> BulletSnapshot:
+        """Return the state of everything, between two steps."""
+        idle = [body.joints[joint] for body in self._driven
+                for joint, (_, effort) in body.motors.items() if not effort]
+        snapshot = self._snapshots.take([*self._bodies], self._moving(), idle, self._note)
+        self._recall(snapshot.notes)
+        return snapshot
+
+    def restore(self, snapshot: BulletSnapshot) -> None:
+        """Go back to a snapshot.
+
+        Raises:
+            SimError: models were added, removed or respecified since.
+        """
+        self._recall(self._snapshots.put_back(snapshot, [*self._bodies], self._moving()))
+
+    def _moving(self) -> list[int]:
+        """Return PyBullet's numbers of what it moves."""
+        return [number for body in self._bodies for number in body.masses]
+
+    def _note(self) -> tuple:
+        """Return all state that is not PyBullet's, or that PyBullet does not restore."""
+        for body in self._bodies:
+            for joint in body.joints:
+                self._joint_reading(body, joint)  # its effort is of the last step
+        return (
+            self._physics, self._until_look, self._effort.note(), self._fast.note(),
+            self._slipping.note(), list(self._pushes), dict(self._joint_readings),
+            [(body, dict(body.motors)) for body in self._driven],
+        )
+
+    def _recall(self, notes: tuple) -> None:
+        """Go on as at the time of a note, PyBullet's part being restored."""
+        physics, until_look, effort, fast, slipping, pushes, readings, motors = notes
+        if physics != self._physics:
+            self.apply(physics)
+        self._driven = dict.fromkeys(body for body, _ in motors)
+        for body, targets in motors:
+            for joint, target in targets.items():
+                self.set_joint_motor(body, joint, *target)
+        self._pushes.clear()
+        for call, *arguments in pushes:
+            call(*arguments)
+        self._joint_readings = dict(readings)
+        self._until_look = until_look
+        self._effort.recall(effort)
+        self._fast.recall(fast)
+        self._slipping.recall(slipping)
+
     def _motors(self) -> Iterator[Motor]:
         """Yield all motors: velocity and its target, effort and its limit."""
         for body in self._driven:
             for joint, (target, limit) in body.motors.items():
                 if limit > 0.0:
-                    _, velocity, _, effort = self.joint_reading(body, joint)
+                    _, velocity, _, effort = self._joint_reading(body, joint)
                     yield velocity, target, effort, limit
 
     def _set_iterations(self, count: int) -> None:
@@ -412,6 +542,13 @@ class Engine:
                 )
 
 
+def _state_of_frame(part: Part, com: Pose, linear: Vector, angular: Vector) -> tuple[Pose, Twist]:
+    """Return pose and twist of a link's frame, by those of its centre of mass."""
+    pose = compose(com, part.origin_in_com)
+    arm = subtract(pose.position, com.position)
+    return pose, Twist(add(linear, cross(angular, arm)), angular)
+
+
 def _at_most(vector: Vector, most: float) -> Vector:
     """Return a vector none of whose components is greater than `most`, to either side."""
     x, y, z = (max(min(component, most), -most) for component in vector)  # NaN stays
@@ -430,3 +567,6 @@ def _divisible(step_size: float, most: int) -> list[int]:
         exact = duration / steps == step_size and duration / step_size == steps
         found.append(steps if exact else found[-1])
     return found
+
+
+make_engine: EngineFactory = Engine

@@ -68,6 +68,20 @@ class FastBodies:
         self.disturb(number)
         self.rest = 0
 
+    def note(self) -> tuple:
+        """Return what `recall` takes to go back to the present state."""
+        return self.rest, {number: (one.calm, one.ceiling, one.flies, one.most, one.total)
+                           for number, one in self._swinging.items()}
+
+    def recall(self, note: tuple) -> None:
+        """Go on as at the time of a note; the bodies are the same."""
+        self.rest, swinging = note
+        self._swinging.clear()
+        for number, state in swinging.items():
+            one = _Swinging(self._client, number, self._bodies[number])
+            one.calm, one.ceiling, one.flies, one.most, one.total = state
+            self._swinging[number] = one
+
     def __bool__(self) -> bool:
         """Tell whether there is anything to put right in the next step."""
         return bool(self._swinging)
@@ -130,24 +144,24 @@ class _Swinging:
         self._mass = np.array([part.mass for part in parts])
         self._weight = np.array([part.mass * part.has_weight for part in parts])
         self._moments = np.array([part.moments for part in parts])
-        self._most = 0.0  # the most kinetic energy seen [J]
+        self.most = 0.0  # the most kinetic energy seen [J]
         self.ceiling: float | None = None  # of the energy [J]; None: as it is after the next step
-        self.flies, self._total = False, 0.0  # after the last step
+        self.flies, self.total = False, 0.0  # after the last step
         self.calm = 0
 
     def hold(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
         """See that the last step did not add to the energy."""
         touched = self.touched()
         total, own, kinetic, drift = self._energy(step_size, gravity)
-        self._most = max(self._most, kinetic)
-        slack = _GROWS * self._most
+        self.most = max(self.most, kinetic)
+        slack = _GROWS * self.most
         flew, self.flies = self.flies, not (touched or self._all.is_fixed)
         flies_on = flew and self.flies
         if self.ceiling is None or not touched.isdisjoint(moving):
             self.ceiling = slack + (own if self.flies else total)
         else:
             if flew and touched:
-                self.ceiling = self._total
+                self.ceiling = self.total
             self.ceiling += self._work(step_size)
             excess = min(kinetic, (own if flies_on else total) - self.ceiling)
             if excess > 0.0:
@@ -157,7 +171,7 @@ class _Swinging:
                 self.ceiling = min(self.ceiling, total + slack)
             elif self.flies and not flew:
                 self.ceiling = own
-        self._total = total
+        self.total = total
 
     def _energy(
         self, step_size: float, gravity: Vector

@@ -59,6 +59,15 @@ class SolverEffort:
         elif self._level and self._missed < REACHED and self._wait < 0:
             self._shift(-1)
 
+    def note(self) -> tuple:
+        """Return what `recall` takes to go back to the present state."""
+        return (self._least, self._level, self._missed, self._targets, self._patience, self._wait)
+
+    def recall(self, note: tuple) -> None:
+        """Go on as at the time of a note."""
+        (self._least, self._level, self._missed, self._targets, self._patience, self._wait) = note
+        self._set_iterations(self._least * FACTOR**self._level)
+
     def _shift(self, levels: int) -> None:
         self._level += levels
         self._missed = (REACHED + MISSED[-1]) / 2.0  # until it is known

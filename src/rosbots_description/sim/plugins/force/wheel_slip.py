@@ -79,7 +79,7 @@ class WheelSlip(PeriodicPlugin):
             slip = abs(wheel.joint.velocity) * wheel.radius / wheel.normal_force
             slips = slip * wheel.lateral, slip * wheel.longitudinal
             spec = wheel.joint.spec
-            self.model.links[spec.child].let_slip(spec.axis_in_child, slips)
+            self.model.links[spec.child].set_slip_compliance(spec.axis_in_child, slips)
 
     def _wheel(self, element: Element) -> SlippingWheel:
         name = element.attributes.get('link_name', '')

@@ -1,0 +1,152 @@
+"""Contacts and rays of one PyBullet world, by the names of the collisions in the ModelSpec."""
+
+import math
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...core import Pose, SimError, Vector, conjugate, rotate, subtract
+from ...description import Box, Collision, Cylinder, Mesh, Plane, Sphere
+from ...meshes import read_stl
+from ..engine import CollisionName, Contact, RayHits
+from .body import Body, Place
+from .client import pybullet
+from .generated_urdf import MeshFile
+
+_MOST_RAYS = 8192  # in one call; PyBullet takes twice as many, and forgets the last one
+
+
+class Surroundings:
+    """Tells what touches in a PyBullet world, and what rays meet there."""
+
+    def __init__(
+        self, client: int, link_pose: Callable[[Body, str], Pose], mesh_file: MeshFile
+    ) -> None:
+        """Look at the world of that PyBullet client.
+
+        Args:
+            link_pose: tells where a link's frame stands.
+            mesh_file: gives an .stl file of a mesh.
+        """
+        self._client, self._link_pose, self._mesh_file = client, link_pose, mesh_file
+        self._owners: dict[Place, tuple[Body, str]] = {}
+        self._triangles: dict[Mesh, np.ndarray] = {}
+
+    def add(self, body: Body) -> None:
+        """Know a body by its names from now on."""
+        for link, places in body.surfaces.items():
+            for place in places:
+                self._owners[place] = body, link
+
+    def remove(self, body: Body) -> None:
+        """Forget a body."""
+        for places in body.surfaces.values():
+            for place in places:
+                self._owners.pop(place, None)
+
+    def clear(self) -> None:
+        """Forget all bodies."""
+        self._owners.clear()
+        self._triangles.clear()
+
+    def contacts(self, body: Body, link: str | None) -> list[Contact]:
+        """Return contacts; see `PhysicsEngine.contacts`."""
+        found = []
+        # Asked for one body PyBullet turns normals round where it is the second, but no friction.
+        for point in pybullet.getContactPoints(physicsClientId=self._client):
+            _, a, b, index_a, index_b, on_a, on_b, normal, distance, load, *friction = point
+            if distance > 0.0 and load <= 0.0:
+                continue  # a pair that is about to touch
+            one, other = Place(a, index_a), Place(b, index_b)
+            force = tuple(load * n + friction[0] * p + friction[2] * q
+                          for n, p, q in zip(normal, friction[1], friction[3], strict=True))
+            if not self._is_of(one, body, link):
+                if not self._is_of(other, body, link):
+                    continue
+                one, other, on_a, on_b = other, one, on_b, on_a
+                normal, force = (tuple(-x for x in vector) for vector in (normal, force))
+            found.append(Contact(
+                self._name(one, on_a), self._name(other, on_b), on_a, normal, -distance, force))
+        return found
+
+    def _is_of(self, place: Place, body: Body, link: str | None) -> bool:
+        owner, name = self._owners[place]
+        return owner is body and link in (None, name)
+
+    def cast_rays(self, starts: ArrayLike, ends: ArrayLike, named: bool) -> RayHits:
+        """Return what rays meet first; see `PhysicsEngine.cast_rays`."""
+        starts, ends = (np.asarray(points, dtype=float) for points in (starts, ends))
+        if starts.ndim != 2 or starts.shape[1] != 3 or starts.shape != ends.shape:
+            raise SimError(f'rays take starts and ends of one shape (n, 3), not {starts.shape} and '
+                           f'{ends.shape}')
+        if not (np.isfinite(starts).all() and np.isfinite(ends).all()):
+            raise SimError('rays take finite starts and ends')
+        hits: list[tuple] = []
+        for first in range(0, len(starts), _MOST_RAYS):
+            batch = slice(first, first + _MOST_RAYS)
+            hits += pybullet.rayTestBatch(starts[batch].tolist(), ends[batch].tolist(),
+                                          physicsClientId=self._client)
+        numbers = np.array([hit[0] for hit in hits], dtype=int)
+        shares = np.array([hit[2] for hit in hits], dtype=float)
+        lengths = np.sqrt(((ends - starts) ** 2).sum(axis=1))
+        names = [self._name(Place(*hit[:2]), hit[3]) if hit[0] >= 0 else None
+                 for hit in hits] if named else ()
+        return RayHits(np.where(numbers >= 0, shares * lengths, math.inf), names)
+
+    def _name(self, place: Place, spot: Vector) -> CollisionName:
+        """Return the collision of a part that is at a spot of its surface, in the world."""
+        body, link = self._owners[place]
+        shapes = body.shapes[place]
+        if len({shape.name for shape in shapes}) == 1:
+            return CollisionName(body, link, shapes[0].name)
+        pose = self._link_pose(body, link)
+        local = rotate(conjugate(pose.orientation), subtract(spot, pose.position))
+        nearest = min(shapes, key=lambda shape: abs(self._distance(shape, local)))
+        return CollisionName(body, link, nearest.name)
+
+    def _distance(self, shape: Collision, point: Vector) -> float:
+        """Return how far a point of the link's frame is from the surface of a shape [m]."""
+        x, y, z = local = rotate(conjugate(shape.pose.orientation),
+                                 subtract(point, shape.pose.position))
+        match shape.geometry:
+            case Sphere(radius):
+                return math.hypot(x, y, z) - radius
+            case Box(size):
+                return _outside(abs(a) - b / 2.0 for a, b in zip(local, size, strict=True))
+            case Cylinder(radius, length):
+                return _outside((math.hypot(x, y) - radius, abs(z) - length / 2.0))
+            case Plane(normal):
+                return sum(a * b for a, b in zip(local, normal, strict=True))
+            case Mesh() as mesh:
+                if mesh not in self._triangles:
+                    with open(self._mesh_file(mesh), 'rb') as file:
+                        self._triangles[mesh] = read_stl(file.read())
+                return _to_triangles(self._triangles[mesh], np.array(local))
+
+
+def _outside(reaches: Iterable[float]) -> float:
+    """Return the distance to a convex shape's surface of a point that is so far out each way."""
+    reaches = list(reaches)
+    if max(reaches) <= 0.0:
+        return max(reaches)
+    return math.hypot(*(max(reach, 0.0) for reach in reaches))
+
+
+def _to_triangles(triangles: np.ndarray, point: np.ndarray) -> float:
+    """Return the distance of a point to the nearest of triangles (n, 3, 3) [m]."""
+    a, b, c = (triangles[:, k] - point for k in range(3))
+    nearest = math.inf
+    for start, end in ((a, b), (b, c), (c, a)):
+        side = end - start
+        share = -(start * side).sum(axis=1) / np.maximum((side * side).sum(axis=1), 1e-300)
+        on_side = start + np.clip(share, 0.0, 1.0)[:, None] * side
+        nearest = min(nearest, float((on_side * on_side).sum(axis=1).min()))
+    normal = np.cross(b - a, c - a)
+    sides = [(np.cross(v - u, -u) * normal).sum(axis=1) for u, v in ((a, b), (b, c), (c, a))]
+    above = (np.min(sides, axis=0) >= 0.0) & ((normal * normal).sum(axis=1) > 0.0)
+    if above.any():
+        flat = normal[above]
+        height = (a[above] * flat).sum(axis=1) ** 2 / (flat * flat).sum(axis=1)
+        nearest = min(nearest, float(height.min()))
+    return nearest ** 0.5

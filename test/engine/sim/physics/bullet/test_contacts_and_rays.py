@@ -1,0 +1,184 @@
+"""What touches and what rays meet, by the names in the description, and what joints pass on."""
+
+import math
+
+import numpy as np
+import pytest
+from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+
+from rosbots_description.sim.core.errors import SimError
+from rosbots_description.sim.core.transforms import Pose, Twist
+
+WEIGHT = 9.8
+TWO = (
+    '<link name="body"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" '
+    'ixz="0" iyz="0"/></inertial>'
+    '<collision name="ball"><origin xyz="0.5 0 0"/><geometry><sphere radius="0.1"/></geometry>'
+    '</collision>'
+    '<collision name="can"><origin xyz="-0.5 0.3 0"/><geometry>'
+    '<cylinder radius="0.1" length="0.2"/></geometry></collision>'
+    '<collision name="crate"><origin xyz="-0.5 -0.3 0"/><geometry><box size="0.2 0.2 0.2"/>'
+    '</geometry></collision></link>'
+)
+LIFTED = (
+    '<link name="base"><inertial><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" '
+    'ixz="0" iyz="0"/></inertial><collision name="foot"><geometry><box size="1 1 0.2"/></geometry>'
+    '</collision></link><link name="arm"><inertial><origin xyz="0.3 0.1 0" rpy="0.3 0.2 0.9"/>'
+    '<mass value="0.5"/><inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0" iyz="0"/>'
+    '</inertial></link><joint name="shoulder" type="revolute"><parent link="base"/>'
+    '<child link="arm"/><origin xyz="0 0 0.5" rpy="0 0 0.7"/><axis xyz="0 1 0"/>'
+    '<limit lower="-3" upper="3" effort="9" velocity="9"/></joint>'
+)
+
+
+def total(contacts):
+    return np.sum([contact.force for contact in contacts], axis=0)
+
+
+def names(side):
+    return side.link, side.collision
+
+
+def test_contacts_name_the_collisions_and_add_up_to_the_weight():
+    with empty_world() as world:
+        thing = world.spawn(urdf_spec(TWO), 'thing', Pose((0.0, 0.0, 0.1)))
+        world.run(1500)
+        ground = world.models['ground_plane']
+        contacts = world.engine.contacts(thing.body)
+        # A URDF's collisions are called as sdformat calls them.
+        of = {name: [c for c in contacts if name in c.one.collision]
+              for name in thing.links['body'].collisions}
+        assert len(of) == 3
+        assert all(of.values())
+        assert sum(map(len, of.values())) == len(contacts)
+        for collision, mine in of.items():
+            place = thing.links['body'].collisions[collision].pose.position
+            for contact in mine:
+                assert math.dist(contact.position[:2], place[:2]) < 0.15
+                assert contact.normal == pytest.approx((0.0, 0.0, 1.0))
+                assert abs(contact.depth) < 1e-3
+                assert (contact.one.body, contact.other.body) == (thing.body, ground.body)
+        assert total(contacts) == pytest.approx((0.0, 0.0, WEIGHT), abs=0.02 * WEIGHT)
+        below = world.engine.contacts(ground.body)
+        assert {names(contact.other) for contact in below} == {names(c.one) for c in contacts}
+        assert total(below) == pytest.approx(-total(contacts), abs=1e-9)
+        assert below[0].normal == pytest.approx((0.0, 0.0, -1.0))
+
+
+def test_the_wheels_and_the_caster_of_the_robot_carry_its_weight():
+    with empty_world() as world:
+        robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.run(2500)
+        contacts = world.engine.contacts(robot.body)
+        mass = sum(link.spec.inertial.mass for link in robot.links.values())
+        assert total(contacts)[2] == pytest.approx(mass * WEIGHT, rel=0.02)
+        known = {(link.name, name) for link in robot.links.values() for name in link.collisions}
+        found = {names(contact.one) for contact in contacts}
+        assert found <= known
+        assert ('wheel_left_link', 'wheel_left_link_collision') in found
+        assert any('caster' in collision for _, collision in found)
+        left = world.engine.contacts(robot.body, 'wheel_left_link')
+        assert {contact.one.link for contact in left} == {'wheel_left_link'}
+
+
+@pytest.mark.parametrize('shape', ['box', 'sphere'])
+def test_friction_acts_against_what_slides(shape):
+    urdf = box_urdf('0.2 0.2 0.2', 1.0)
+    if shape == 'sphere':
+        urdf = urdf.replace('<box size="0.2 0.2 0.2"/>', '<sphere radius="0.1"/>')
+    with empty_world() as world:
+        thing = world.spawn(urdf_spec(urdf), 'thing', Pose((0.0, 0.0, 0.1)))
+        world.run(100)
+        thing.set_twist(Twist((2.0, 0.0, 0.0)))
+        world.run(20)
+        ground = world.models['ground_plane'].body
+        assert total(world.engine.contacts(thing.body))[0] == pytest.approx(-WEIGHT, rel=0.02)
+        assert total(world.engine.contacts(ground))[0] == pytest.approx(WEIGHT, rel=0.02)
+
+
+def test_two_links_of_a_model_that_touch_are_one_contact():
+    leg = ('<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
+           'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.2"/>'
+           '</geometry></collision></link><gazebo reference="{0}"><selfCollide>1</selfCollide>'
+           '</gazebo>')
+    joint = ('<joint name="{0}" type="prismatic"><parent link="base"/><child link="{0}"/>'
+             '<origin xyz="{1} 0 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
+             'velocity="1"/></joint>')
+    base = ('<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" '
+            'ixz="0" iyz="0"/></inertial></link>')
+    spec = urdf_spec(base + leg.format('a') + leg.format('b') + joint.format('a', -0.3)
+                     + joint.format('b', 0.3))
+    with empty_world() as world:
+        pair = world.spawn(spec, 'pair', Pose((0.0, 0.0, 5.0)))
+        pair.joints['a'].set_motor(1.0, 20.0)
+        pair.joints['b'].set_motor(-1.0, 20.0)
+        world.run(400)
+        (contact,) = world.engine.contacts(pair.body)
+        (mirrored,) = world.engine.contacts(pair.body, contact.other.link)
+        assert {contact.one.link, contact.other.link} == {'a', 'b'}
+        assert mirrored.one == contact.other
+        assert mirrored.force == pytest.approx([-x for x in contact.force])
+
+
+def test_rays_tell_how_far_what_and_nothing():
+    with empty_world() as world:
+        thing = world.spawn(urdf_spec(TWO), 'thing', Pose((0.0, 0.0, 1.1)))
+        starts = [(0.5, 0.0, 5.0), (-0.5, 0.3, 5.0), (-0.5, -0.3, 5.0), (3.0, 0.0, 5.0),
+                  (3.0, 0.0, 5.0)]
+        ends = [(x, y, -5.0) for x, y, _ in starts[:-1]] + [(9.0, 0.0, 5.0)]
+        distances, met = world.engine.cast_rays(starts, np.array(ends), named=True)
+        assert distances[:4] == pytest.approx([3.8, 3.8, 3.8, 5.0], abs=2e-3)
+        assert distances[4] == math.inf
+        assert [hit.collision for hit in met[:3]] == [
+            name for key in ('ball', 'can', 'crate')
+            for name in thing.links['body'].collisions if key in name]
+        assert met[3].body is world.models['ground_plane'].body
+        assert met[4] is None
+        many = world.engine.cast_rays(np.tile(starts[0], (20000, 1)), np.tile(ends[0], (20000, 1)))
+        assert (many.distances == distances[0]).all()
+        assert len(many.collisions) == 0
+        assert len(world.engine.cast_rays(np.empty((0, 3)), np.empty((0, 3))).distances) == 0
+
+
+@pytest.mark.parametrize(('starts', 'told'), [
+    ([0.0, 0.0, 1.0], 'shape'), ([(0.0, 0.0)], 'shape'), ([(0.0, 0.0, math.nan)], 'finite')])
+def test_rays_of_no_sense_are_refused_with_a_sentence(starts, told):
+    with empty_world() as world, pytest.raises(SimError, match=told):
+        world.engine.cast_rays(starts, starts)
+
+
+@pytest.mark.parametrize('lift', [0.0, 2.0])
+def test_a_joint_passes_on_what_carries_the_child(lift):
+    with empty_world() as world:
+        model = world.spawn(urdf_spec(LIFTED), 'model', Pose((0.0, 0.0, 0.1 + lift)))
+        model.joints['shoulder'].set_motor(0.0, 9.0)
+        engine, body = world.engine, model.body
+        engine.step(5)
+        assert engine.joint_reaction(body, 'shoulder').force == (0.0, 0.0, 0.0)
+        engine.measure_reaction(body, 'shoulder')
+        engine.step(300)
+        force, torque = engine.joint_reaction(body, 'shoulder')
+        if lift:  # in free fall nothing needs to be carried
+            assert (*force, *torque) == pytest.approx((0.0,) * 6, abs=1e-3)
+            return
+        weight = 0.5 * WEIGHT
+        assert force == pytest.approx((0.0, 0.0, weight), abs=1e-3 * weight)
+        # r x F about the joint, r = (0.3, 0.1, 0)
+        assert torque == pytest.approx((0.1 * weight, -0.3 * weight, 0.0), abs=2e-3)
+        assert torque[1] == pytest.approx(engine.joint_state(body, 'shoulder').effort, abs=2e-3)
+        engine.measure_reaction(body, 'shoulder', wanted=False)
+        engine.step(1)
+        assert engine.joint_reaction(body, 'shoulder').force == (0.0, 0.0, 0.0)
+
+
+def test_a_wheel_passes_on_what_the_ground_carries():
+    with empty_world() as world:
+        robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        joint = next(j for j in robot.joints.values() if j.spec.child == 'wheel_left_link')
+        world.engine.measure_reaction(robot.body, joint.name)
+        world.run(2500)
+        wheel = robot.links['wheel_left_link']
+        load = total(world.engine.contacts(robot.body, wheel.name))[2]
+        own = wheel.spec.inertial.mass * WEIGHT
+        force = world.engine.joint_reaction(robot.body, joint.name).force
+        assert math.hypot(*force) == pytest.approx(load - own, rel=0.02)

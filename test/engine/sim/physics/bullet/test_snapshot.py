@@ -1,0 +1,199 @@
+"""Snapshots: the world goes on from them bit for bit, whatever has happened in between."""
+
+import math
+import random
+import time
+
+import pytest
+from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+from support.scenes import castered
+
+from rosbots_description.sim.core.errors import SimError
+from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
+
+# A pair of links that turn on each other, one on a spring; of inertia that makes it tumble.
+ARM = (
+    '<link name="a"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0" '
+    'ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.2 0.2 0.1"/></geometry>'
+    '</collision></link><link name="b"><inertial><origin xyz="0.2 0 0"/><mass value="0.3"/>'
+    '<inertia ixx="0.001" iyy="0.004" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial>'
+    '<collision><origin xyz="0.2 0 0"/><geometry><box size="0.3 0.05 0.05"/></geometry>'
+    '</collision></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
+    '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="9"/>'
+    '<dynamics damping="0.01"/></joint>'
+)
+
+
+def motion(world):
+    """Return how all links and joints stand and move."""
+    return [(world.engine.link_states(model.body), world.engine.joint_states(model.body))
+            for model in world.models.values()]
+
+
+def states(world):
+    """Return that, and all contacts."""
+    return motion(world), [[contact[2:] for contact in world.engine.contacts(model.body)]
+                           for model in world.models.values()]
+
+
+def go_on(world, steps=1000):
+    found = []
+    for k in range(steps // 20):
+        if k == 10:
+            for model in world.models.values():
+                for joint in model.joints.values():
+                    joint.set_motor(-4.0, 3.0)
+        world.engine.step(20)
+        found.append(states(world))
+    return found
+
+
+def mix_up(world, chance):
+    """Let everything be elsewhere, fast, and driven differently."""
+    for model in world.models.values():
+        if model.static:
+            continue
+        if chance.random() < 0.6:
+            place = [chance.uniform(-2.0, 2.0) for _ in range(3)]
+            model.set_pose(Pose((*place[:2], 2.5 + place[2]), from_rpy(*place)))
+            model.set_twist(Twist((0.0, place[0], 0.0), tuple(20.0 * x for x in place)))
+        for joint in model.joints.values():
+            joint.set_motor(chance.uniform(-9.0, 9.0), 5.0)
+    world.engine.step(chance.randrange(1000))
+
+
+def pile(world, chance, boxes):
+    for k in range(boxes):
+        pose = Pose((0.6 + chance.uniform(0.0, 0.5), chance.uniform(-0.4, 0.4), 0.2 + 0.25 * k))
+        world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), f'box{k}', pose)
+
+
+@pytest.mark.parametrize(('seed', 'boxes', 'robots'), [(1, 0, 1), (2, 2, 1), (3, 8, 1), (4, 4, 3)])
+def test_a_world_goes_on_from_a_snapshot_bit_for_bit(seed, boxes, robots):
+    chance = random.Random(seed)
+    with empty_world() as world:
+        pile(world, chance, boxes)
+        for k in range(robots):
+            spec = robot_spec() if not k else castered()
+            world.spawn(spec, f'robot{k}', Pose((0.0, 1.2 * k, 0.5 - 0.35 * bool(k))))
+        world.spawn(urdf_spec(ARM), 'arm', Pose((0.5, 0.0, 3.5), from_rpy(0.1, 0.2, 0.3)))
+        for model in world.models.values():
+            for joint in model.joints.values():
+                joint.set_motor(5.0, 5.0)
+        world.engine.step(1777)
+        before = motion(world)
+        snapshot = world.engine.snapshot()
+        assert motion(world) == before
+        wanted = go_on(world)
+        for _ in range(2):
+            mix_up(world, chance)
+            world.engine.restore(snapshot)
+            assert motion(world) == before
+            found = go_on(world)
+            same = [a == b for a, b in zip(wanted, found, strict=True)]
+            assert all(same), f'differs from step {20 * same.index(False)}'
+
+
+# PyBullet mixes up the contact points of a body of several shapes, as the robot is one. The box
+# is in worlds of its own, since the solver's iterations are common to all and follow the motors.
+@pytest.mark.parametrize(('make_spec', 'tolerances'), [
+    (lambda: urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), (0.0, 0.0)), (robot_spec, (1e-6, 1e-4)),
+], ids=['box', 'robot'])
+def test_taking_a_snapshot_hardly_moves_anything(make_spec, tolerances):
+    with empty_world() as world, empty_world() as other:
+        models = [one.spawn(make_spec(), 'thing', SPAWN_POSE) for one in (world, other)]
+        for one in (world, other):
+            one.run(2500)
+        world.engine.snapshot()
+        for steps, tolerance in zip((1, 999), tolerances, strict=True):
+            for one in (world, other):
+                one.run(steps)
+            assert math.dist(*(model.pose.position for model in models)) <= tolerance  # [m]
+
+
+def test_what_turns_fast_slips_is_pushed_and_runs_in_other_steps_goes_on_as_before():
+    with empty_world() as world:
+        arm = world.spawn(urdf_spec(ARM), 'arm', Pose((0.0, 0.0, 90.0)))
+        box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((3.0, 0.0, 0.1)))
+        arm.set_twist(Twist((0.0, 0.0, 9.0), (0.3, 20.0, 0.2)))
+        world.engine.step(333)
+        world.engine.set_slip_compliance(box.body, 'box', (1.0, 0.0, 0.0), (0.01, 0.02))
+        box.set_twist(Twist((0.5, 0.5, 0.0)))
+        world.engine.step(40)
+        box.links['box'].push((0.0, 0.0, 30.0), (0.0, 0.0, 0.5))
+        arm.joints['j'].push(0.5)
+        snapshot = world.engine.snapshot()
+        wanted = go_on(world, 400)
+        for _ in range(2):
+            box.links['box'].push((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            world.engine.set_slip_compliance(box.body, 'box', (0.0, 1.0, 0.0), (1.0, 1.0))
+            world.set_physics(PhysicsSettings(step_size=0.002, gravity=(0.0, 0.0, -3.0)))
+            world.engine.step(50)
+            box.links['box'].push((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            world.engine.restore(snapshot)
+            assert go_on(world, 400) == wanted
+
+
+def test_what_stands_is_put_back_where_it_stood():
+    with empty_world() as world:
+        shelf = urdf_spec(box_urdf('1 1 0.2', 1.0, '<gazebo><static>true</static></gazebo>'))
+        stand = world.spawn(shelf, 'shelf', Pose((0.0, 0.0, 1.0)))
+        box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.2)))
+        world.engine.step(500)
+        snapshot = world.engine.snapshot()
+        wanted = go_on(world, 500)
+        stand.set_pose(Pose((5.0, 0.0, 1.0)))
+        world.engine.step(500)
+        assert box.pose.position[2] < 0.2
+        world.engine.restore(snapshot)
+        assert go_on(world, 500) == wanted
+
+
+def test_a_snapshot_of_other_models_is_refused_with_a_sentence():
+    with empty_world() as world:
+        snapshot = world.engine.snapshot()
+        world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
+        with pytest.raises(SimError, match='of other models'):
+            world.engine.restore(snapshot)
+        later = world.engine.snapshot()
+        world.reset_simulation()
+        with pytest.raises(SimError, match='of other models'):
+            world.engine.restore(later)
+
+
+def test_after_a_reset_a_world_that_was_saved_moves_as_a_new_one():
+    found = []
+    for saves in (False, True):
+        with empty_world() as world:
+            pile(world, random.Random(5), 4)
+            if saves:
+                world.engine.step(300)
+                world.engine.snapshot()
+                world.reset_simulation()
+            found.append(go_on(world))
+    assert found[0] == found[1]
+
+
+def test_snapshots_that_nobody_holds_are_freed():
+    with empty_world() as world:
+        for _ in range(20):
+            snapshot = world.engine.snapshot()
+        assert len(world.engine._snapshots._kept) == 1
+        del snapshot
+        assert not world.engine._snapshots._kept
+
+
+def test_a_restore_takes_some_steps_time():
+    with empty_world() as world:
+        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+        world.engine.step(2500)
+        snapshot = world.engine.snapshot()
+        restores, steps = [], []
+        for _ in range(9):
+            for times, work in ((restores, lambda: world.engine.restore(snapshot)),
+                                (steps, lambda: world.engine.step(100))):
+                begin = time.process_time()
+                work()
+                times.append(time.process_time() - begin)
+        assert min(restores) < min(steps)
