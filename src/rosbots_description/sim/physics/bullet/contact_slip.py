@@ -104,10 +104,15 @@ class Slipping:
         """Yield the contacts of a part of a link in the last step."""
         number, index = place
         client = self._client
-        for point in pybullet.getContactPoints(number, linkIndexA=index, physicsClientId=client):
+        points = pybullet.getContactPoints(number, linkIndexA=index, physicsClientId=client)
+        # PyBullet reports friction on the first body of a pair, normals on the one it is asked for.
+        as_second = {point[6] for point in pybullet.getContactPoints(
+            bodyB=number, linkIndexB=index, physicsClientId=client)} if points else ()
+        for point in points:
             other, spot, normal, load = (point[2], point[4]), point[5], point[7], point[9]
-            first, one, second, two = point[10:14]
-            force = (first * a + second * b for a, b in zip(one, two, strict=True))
+            along, one, across, two = point[10:14]
+            sign = -1.0 if spot in as_second else 1.0
+            force = (sign * (along * a + across * b) for a, b in zip(one, two, strict=True))
             own = velocity_at(spot, origin, *twist)
             mu = (pybullet.getDynamicsInfo(*each, client)[1] for each in (place, other))
             yield Touch(
