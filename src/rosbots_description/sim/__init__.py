@@ -20,18 +20,30 @@ if TYPE_CHECKING:
     )
     from .description import PhysicsSettings
     from .public import World
-    from .runtime import FrameTransform, Joint, JointStates, Link, Model, Odometry, Output
+    from .runtime import (
+        FrameTransform,
+        Joint,
+        JointStates,
+        Link,
+        Model,
+        Odometry,
+        Output,
+        SavedState,
+    )
 
 __all__ = [
     'FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'ModelError', 'NotFoundError',
-    'Odometry', 'Output', 'PhysicsSettings', 'PluginError', 'Pose', 'SimError', 'Twist', 'World',
-    'from_rpy', 'to_rpy', 'yaw_of',
+    'Odometry', 'Output', 'PhysicsSettings', 'PluginError', 'Pose', 'SavedState', 'SimError',
+    'Twist', 'World', 'from_rpy', 'to_rpy', 'yaw_of',
 ]
 
 _HOMES = {
     'description': ('PhysicsSettings',),
     'public': ('World',),
-    'runtime': ('FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'Odometry', 'Output'),
+    'runtime': (
+        'FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'Odometry', 'Output',
+        'SavedState',
+    ),
 }
 
 

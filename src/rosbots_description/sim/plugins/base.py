@@ -1,7 +1,7 @@
 """What every model plugin is: tags, outputs, a life beside its model, and work at a rate."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from ..core import NANOSECONDS, NotFoundError, PluginError
@@ -66,18 +66,23 @@ class ModelPlugin(Plugin):
 
     def output(self, name: str, asked_for: bool = True) -> Output:
         """Return a new output; if the description asks for it, it has a place in `outputs`."""
-        made = Output(self._count_readers)
+        made = Output(self.count_readers)
         self._all_outputs.append(made)
         if asked_for:
             self.outputs[name] = made
         return made
 
-    def _count_readers(self) -> None:
+    def count_readers(self) -> None:
+        """Take note of which outputs have readers."""
         self.is_read = any(output.wanted for output in self._all_outputs)
         self.readers_changed()
 
     def readers_changed(self) -> None:
         """Take note that an output has its first reader, or lost its last one."""
+
+    def shared(self) -> Iterable[object]:
+        """Return description, tags and outputs."""
+        return (self.spec, self.params, *self._all_outputs)
 
     def joint(self, name: str, what: str) -> 'Joint':
         """Return a joint by its name; `what` it is stands in the message of the `PluginError`."""

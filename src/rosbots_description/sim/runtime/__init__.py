@@ -7,9 +7,10 @@ from .plugin_life import Plugin
 from .population import populate
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .world import WORLD_FRAMES, Entity, World
+from .world_state import SavedState
 
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Hook', 'Joint', 'JointStates', 'Link',
-    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'World', 'add_empty_world',
-    'populate',
+    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState', 'World',
+    'add_empty_world', 'populate',
 ]

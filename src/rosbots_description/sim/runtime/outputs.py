@@ -43,7 +43,7 @@ class Output(Generic[Reading]):
         """Call `changed()` when the first reader has come, and when the last one has gone."""
         self._changed = changed
         self._readers: tuple[Callable[[Reading], object], ...] = ()
-        self._kept: list[Reading] = []
+        self.kept: Reading | None = None  # see `newest`
         self.wanted = False
 
     def connect(self, read: Callable[[Reading], object]) -> None:
@@ -66,14 +66,14 @@ class Output(Generic[Reading]):
         Raises:
             NotFoundError: there is none yet.
         """
-        if self._kept:
-            return self._kept[0]
+        if self.kept is not None:
+            return self.kept
         if self._keep in self._readers:
             raise NotFoundError('this output has no reading yet; let the world run on')
         raise NotFoundError('this output keeps no readings; call its keep() before the world runs')
 
     def _keep(self, reading: Reading) -> None:
-        self._kept[:] = [reading]
+        self.kept = reading
 
     def send(self, reading: Reading) -> None:
         """Give a reading to all readers."""

@@ -1,5 +1,7 @@
 """What a world asks of the plugins of its models."""
 
+from collections.abc import Iterable
+
 from ..description import PluginSpec
 from .scheduler import Hook
 
@@ -23,6 +25,17 @@ class Plugin(Hook):
     def restart(self) -> None:
         """Begin as after `start`: time may be zero again, and all joints are new."""
         self.reset()
+
+    def count_readers(self) -> None:
+        """Take note of which outputs have readers; they may have come or gone."""
+
+    def shared(self) -> Iterable[object]:
+        """Return what the plugin holds that is no part of its state, beside the world's parts.
+
+        Such are outputs, since their readers come from outside, and what never changes. All else
+        that its attributes lead to is copied when the state of the world is saved.
+        """
+        return (self.spec,)
 
     def unload(self) -> None:
         """Let go of what the plugin holds; the model is about to be deleted."""

@@ -26,6 +26,7 @@ from .model import CollisionFrame, Joint, Link, Model
 from .nested_model import InnerModel, inner_models
 from .plugin_life import Plugin
 from .scheduler import Schedule
+from .world_state import SavedState
 
 logger = logging.getLogger(__name__)
 
@@ -210,6 +211,26 @@ class World:
             model.enter()
         for plugin in self._plugins():
             plugin.restart()
+        self._tell_reset()
+
+    def save_state(self) -> SavedState:
+        """Return the state of the world at this moment, for `restore`.
+
+        From here on the world moves bit for bit as it does after each `restore` of this state. To
+        save rounds the motion to what can be restored, some 1e-16 of it.
+        """
+        return SavedState(self, (self.external_forces, self._watchdog, *self._plugins()))
+
+    def restore(self, state: SavedState) -> None:
+        """Go back to a state that was saved, time and what plugins remember included.
+
+        Who reads an output, or listens, stays who it is now.
+
+        Raises:
+            SimError: the state is of another world, or models have come, gone or got other
+                properties since.
+        """
+        state.put_back(self)
         self._tell_reset()
 
     def rebuild(self, diverged: list[Model]) -> None:

@@ -1,0 +1,80 @@
+"""The state of a world at one moment, to go back to as often as one likes."""
+
+import copy
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..core import SimError
+from .outputs import Output
+from .plugin_life import Plugin
+from .scheduler import Hook
+
+if TYPE_CHECKING:
+    from .world import World
+
+
+class SavedState:
+    """What a world was at one moment: motion, time, forces, and what its plugins remember."""
+
+    def __init__(self, world: 'World', hooks: Sequence[Hook]) -> None:
+        """Take the state of a world between two runs, and that of these hooks of its own."""
+        self._world = world
+        self._models = tuple(world.models.values())
+        self._clock = dict(vars(world.clock))
+        self._physics, self._lights, self._paused = world.physics, dict(world.lights), world.paused
+        self._snapshot = world.engine.snapshot()
+        self._shared = tuple(self._find_shared())
+        self._hooks = [(hook, self._copied(vars(hook))) for hook in hooks]
+        self._newest = [(output, output.kept) for output in self._outputs()]
+
+    def put_back(self, world: 'World') -> None:
+        """Bring the world back to this state.
+
+        Raises:
+            SimError: it is of another world, or other models are there now.
+        """
+        if world is not self._world:
+            raise SimError('the state was saved in another world; restore it there')
+        models = tuple(world.models.values())
+        if [*map(id, models)] != [*map(id, self._models)]:
+            raise SimError(
+                f'the state was saved with the models {_listed(self._models)}, and now there are '
+                f'{_listed(models)}; save another one after models have come or gone')
+        world.engine.restore(self._snapshot)
+        vars(world.clock).update(self._clock)
+        world.physics, world.paused = self._physics, self._paused
+        world.lights.clear()
+        world.lights.update(self._lights)
+        for hook, state in self._hooks:
+            vars(hook).clear()
+            vars(hook).update(self._copied(state))
+        for output, reading in self._newest:
+            output.kept = reading
+        for plugin in self._plugins():
+            plugin.count_readers()  # they are those of now
+
+    def _plugins(self) -> Iterator[Plugin]:
+        for model in self._models:
+            yield from model.plugins
+
+    def _outputs(self) -> Iterator[Output[Any]]:
+        for plugin in self._plugins():
+            yield from (one for one in plugin.shared() if isinstance(one, Output))
+
+    def _copied(self, state: dict[str, Any]) -> dict[str, Any]:
+        """Return a copy of all that a hook alone holds; what belongs to others stays the same."""
+        return copy.deepcopy(state, {id(one): one for one in self._shared})
+
+    def _find_shared(self) -> Iterator[object]:
+        """Yield what hooks lead to and do not hold alone."""
+        world = self._world
+        yield from (world, world.clock, world.schedule, world.engine)
+        for model in self._models:
+            yield from (model, model.spec, model.body, *model.links.values())
+            yield from model.joints.values()
+        for plugin in self._plugins():
+            yield from (plugin, *plugin.shared())
+
+
+def _listed(models: Sequence[Any]) -> str:
+    return ', '.join(model.name for model in models) or 'none'

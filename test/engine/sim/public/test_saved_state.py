@@ -1,0 +1,190 @@
+"""A saved state: from it the world goes on bit for bit, as often as one likes."""
+
+import hashlib
+import math
+import time
+
+import pytest
+from support import XACRO, box_urdf
+
+from rosbots_description.sim import PhysicsSettings, Pose, SimError, World
+from rosbots_description.sim.formats.urdf import expand_xacro
+from rosbots_description.sim.resources import PackageSearch
+
+CRATE = f'<robot name="crate">{box_urdf("1 1 1", 2.0)}</robot>'
+WATCHER = """<sdf version="1.6"><model name="puck"><link name="l">
+<inertial><mass>1</mass></inertial>
+<collision name="c"><geometry><box><size>1 1 0.2</size></box></geometry></collision></link>
+<plugin name="move" filename="libgazebo_ros_planar_move.so"><odometryRate>30</odometryRate></plugin>
+</model></sdf>"""
+FAST_RESET = 20e-3  # [s, wall] for the robot in the room, on a machine that does other things, too
+
+
+def digest(world, steps=1500, chunk=70):
+    """Return a fingerprint of what happens: every bit of states and readings."""
+    found = hashlib.sha256()
+    for _ in range(0, steps, chunk):
+        world.run(chunk)
+        for model in world.models.values():
+            found.update(repr((world.time, model.state(), model.joint_states)).encode())
+            for plugin in model.plugins:
+                for output in plugin.outputs.values():
+                    found.update(repr(output.kept).encode())
+    return found.hexdigest()
+
+
+def driving_robot(world):
+    """Spawn the robot with all that it can do: it drives, and its outputs are read."""
+    robot = world.spawn(XACRO, z=0.5)
+    drive = robot.plugin('diff_drive')
+    for output in drive.outputs.values():
+        output.keep()
+    world.run(seconds=0.7)
+    drive.command(0.6, 0.4)
+    world.run(337)
+    return robot
+
+
+@pytest.mark.parametrize('name', ['empty', 'room', 'maze', 'shapes'])
+def test_the_same_bits_follow_each_restore(name):
+    with World.from_file(name) as world:
+        robot = driving_robot(world)
+        state = world.save_state()
+        first = digest(world)
+        for change in (lambda: None,
+                       lambda: robot.plugin('diff_drive').command(-1.0, 0.0),
+                       lambda: robot.set_pose(Pose((2.0, 2.0, 3.0))),
+                       lambda: world.set_physics(PhysicsSettings(step_size=0.003)),
+                       world.reset_world):
+            world.restore(state)
+            change()
+            world.run(613)
+            world.restore(state)
+            assert digest(world) == first
+
+
+def test_encoders_go_on_from_where_they_were():
+    text = expand_xacro(str(XACRO), {}, PackageSearch()).replace(
+        '<legacyMode>', '<odometrySource>encoder</odometrySource><legacyMode>')
+    with World.empty() as world:
+        drive = world.spawn(text, z=0.5).plugin('diff_drive')
+        drive.odometry.keep()
+        drive.command(0.5, 0.3)
+        world.run(seconds=1.0)
+        assert drive.every_step
+        state, first = world.save_state(), None
+        for _ in range(3):
+            found = digest(world, 700)
+            assert found == (first or found)
+            first = found
+            world.restore(state)
+
+
+def test_time_forces_commands_and_readings_are_those_of_then():
+    with World.empty() as world:
+        robot, crate = driving_robot(world), world.spawn(CRATE, x=3.0, z=0.5)
+        drive = robot.plugin('diff_drive')
+        world.apply_wrench(crate.link('box'), (30.0, 0.0, 0.0), seconds=0.2)
+        world.run(seconds=0.1)
+        state = world.save_state()
+        then, reading = (world.time, crate.state(), robot.state()), drive.odometry.newest
+        world.run(seconds=0.1)
+        moved = crate.pose
+        world.clear_forces(crate.link('box'))
+        drive.command(0.0, 0.0)
+        world.lights.clear()
+        world.run(seconds=1.0)
+        world.restore(state)
+        assert (world.time, crate.state(), robot.state()) == then
+        assert drive.odometry.newest == reading
+        assert (drive.target, list(world.lights)) == ((0.6, 0.0, 0.4), ['sun'])
+        world.run(seconds=0.1)
+        assert crate.pose == moved
+
+
+def test_who_reads_stays_who_it_is_now():
+    with World.empty() as world:
+        drive = world.spawn(WATCHER, z=0.1).plugin('planar_move')
+        drive.command(0.3, 0.1)
+        unread, old, new = world.save_state(), [], []
+        drive.odometry.connect(old.append)
+        world.run(seconds=0.5)
+        read = world.save_state()
+        world.restore(unread)
+        world.run(seconds=0.5)
+        assert len(old) == 2 * 14  # periods of 34 ms in 0.5 s
+        drive.odometry.disconnect(old.append)
+        drive.odometry.connect(new.append)
+        world.restore(read)
+        world.run(seconds=0.5)
+        assert (len(old), len(new)) == (28, 15)
+        assert new[-1].twist.linear[0] == pytest.approx(0.3, rel=0.05)
+
+
+def test_several_states_are_restored_in_any_order():
+    with World.empty() as world:
+        robot, states, poses = driving_robot(world), [], []
+        for _ in range(3):
+            states.append(world.save_state())
+            poses.append(robot.state())
+            world.run(200)
+        for i in (1, 0, 2, 2, 1):
+            world.restore(states[i])
+            assert robot.state() == poses[i]
+            world.run(50)
+
+
+def test_a_state_of_another_world_or_of_other_models_is_refused():
+    with World.empty() as world, World.empty() as other:
+        state = world.save_state()
+        with pytest.raises(SimError, match='another world'):
+            other.restore(state)
+        world.spawn(CRATE, z=0.5)
+        with pytest.raises(SimError, match='ground_plane, and now there are ground_plane, crate'):
+            world.restore(state)
+        world.delete('crate')
+        world.restore(state)
+
+
+def test_a_state_that_outlives_its_world_does_no_harm_to_the_next():
+    with World.empty() as world:
+        old = world.save_state()
+    with World.empty() as world:
+        robot = driving_robot(world)
+        state = world.save_state()
+        del old
+        pose = robot.pose
+        world.run(100)
+        world.restore(state)
+        assert robot.pose == pose
+
+
+def test_a_state_from_before_a_reset_is_refused():
+    with World.empty() as world:
+        state = world.save_state()
+        world.reset_simulation()
+        with pytest.raises(SimError, match='take a new one'):
+            world.restore(state)
+
+
+def test_a_robot_that_diverged_is_where_it_was():
+    with World.empty() as world:
+        robot = driving_robot(world)
+        state, first = world.save_state(), None
+        first = digest(world, 300)
+        world.apply_wrench(robot.link('base_footprint'), (1e14, 0.0, 0.0), seconds=0.01)
+        world.run(20)
+        world.restore(state)
+        assert digest(world, 300) == first
+
+
+def test_a_restore_takes_milliseconds():
+    with World.from_file('room') as world:
+        driving_robot(world)
+        state, best = world.save_state(), math.inf
+        for _ in range(10):
+            world.run(100)
+            begin = time.perf_counter()
+            world.restore(state)
+            best = min(best, time.perf_counter() - begin)
+        assert best < FAST_RESET
