@@ -22,7 +22,7 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from ...sim.plugins.drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
+from ...sim.plugins import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from ...sim.runtime import FrameTransform
 from ..server import STATIC_TOPIC
 from ..transport import reader_names, set_level, subscribers

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from ...sim.plugins.force import WheelSlip
+from ...sim.plugins import WheelSlip
 from .adapter import Adapter
 from .declarations import Offers
 from .registry import connects

@@ -21,7 +21,7 @@ import rospy
 
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
-from ...sim.physics.bullet import CrashSandbox
+from ...sim.physics import CrashSandbox
 from ...sim.runtime import World
 from .. import adapters, services  # noqa: F401  both register what they hold
 from ..adapters import Adapters

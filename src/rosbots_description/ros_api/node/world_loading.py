@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...sim.core import NotFoundError
 from ...sim.description import WorldSpec
-from ...sim.formats.sdf import open_world
+from ...sim.formats import open_world
 from ...sim.resources import find_world, path_directories
 from ...sim.runtime import World, populate
 from .packages import exported_directories, find_model, find_package

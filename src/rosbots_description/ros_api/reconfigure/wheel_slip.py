@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dynamic_reconfigure.encoding import Config
 from dynamic_reconfigure.server import Server as ReconfigureServer
 
-from ...sim.plugins.force import WheelSlip
+from ...sim.plugins import WheelSlip
 from ..transport import NO_MASTER
 from .physics import Parameter, description
 

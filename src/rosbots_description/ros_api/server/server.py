@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from ...sim.physics.bullet import CrashSandbox
+from ...sim.physics import CrashSandbox
 from ...sim.resources import FindModel, FindPackage
 from ...sim.runtime import World
 from ..transport import Registrar

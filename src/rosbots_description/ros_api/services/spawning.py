@@ -13,8 +13,7 @@ from rosbots_msgs.srv import (
 
 from ...sim.core import ModelError, NotFoundError, Pose, compose
 from ...sim.description import LightSpec, ModelSpec
-from ...sim.formats.sdf import load_sdf, load_sdf_light
-from ...sim.formats.urdf import load_urdf
+from ...sim.formats import load_sdf, load_sdf_light, load_urdf
 from ...sim.physics import CompiledModel
 from ...sim.resources import UnknownPackage, root_tag
 from ...sim.runtime import Model, World

@@ -1,1 +1,6 @@
 """From text to description: one folder for each language, each fault with file and line."""
+
+from .sdf import load_sdf, load_sdf_light, open_world
+from .urdf import expand_xacro, load_urdf
+
+__all__ = ['expand_xacro', 'load_sdf', 'load_sdf_light', 'load_urdf', 'open_world']

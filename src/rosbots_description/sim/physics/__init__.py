@@ -1,6 +1,6 @@
 """Physics engines, one folder each, and the protocol by which the simulator knows them."""
 
-from .bullet import make_engine
+from .bullet import CrashSandbox, make_engine
 from .compiled_model import CompiledModel
 from .engine import (
     CollisionName,
@@ -16,6 +16,6 @@ from .engine import (
 )
 
 __all__ = [
-    'CollisionName', 'CompiledModel', 'Contact', 'EngineBody', 'EngineFactory', 'JointState',
-    'Motion', 'PhysicsEngine', 'RayHits', 'Snapshot', 'Wrench', 'make_engine',
+    'CollisionName', 'CompiledModel', 'Contact', 'CrashSandbox', 'EngineBody', 'EngineFactory',
+    'JointState', 'Motion', 'PhysicsEngine', 'RayHits', 'Snapshot', 'Wrench', 'make_engine',
 ]

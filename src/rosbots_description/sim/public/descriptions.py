@@ -6,8 +6,7 @@ from xml.sax.saxutils import escape
 
 from ..core import ModelError, Pose
 from ..description import ModelSpec
-from ..formats.sdf import load_sdf
-from ..formats.urdf import expand_xacro, load_urdf
+from ..formats import expand_xacro, load_sdf, load_urdf
 from ..resources import (
     MAX_XML_BYTES,
     FindModel,

@@ -18,7 +18,7 @@ from ..core import (
     from_rpy,
 )
 from ..description import ModelSpec, PhysicsSettings, WorldSpec
-from ..formats.sdf import open_world
+from ..formats import open_world
 from ..physics import CompiledModel
 from ..resources import find_world, path_directories
 from ..runtime import Joint, Link, Model, add_empty_world, populate
