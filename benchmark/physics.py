@@ -24,9 +24,9 @@ from rosbots_description.sim.runtime.world import World
 USUAL = Tuning()
 SETTINGS = {
     'as is': USUAL,
-    '50 passes': Tuning(passes=1.0),
-    '20 passes': Tuning(passes=0.4),
-    '8 passes': Tuning(passes=0.16),
+    '50 iterations': Tuning(iterations=1.0),
+    '20 iterations': Tuning(iterations=0.4),
+    '8 iterations': Tuning(iterations=0.16),
     'cone': Tuning(friction_cone=True),
     'prisms': Tuning(exact_cylinders=False),
     'push 200/s': Tuning(push_out=200.0),

@@ -18,7 +18,7 @@ TIMES = 10
 END_LIMIT = 2.0  # [s] promised
 DELAY_LIMIT = 1.0  # [s] promised
 SPARE = 5  # files and threads for what nodes and master ask one another
-SENTENCE = ("SpawnModel: Failure - model 'bad' is not brought in: tried in a process of its own, "
+SENTENCE = ("SpawnModel: Failure - model 'bad' is rejected: tested in a process of its own, "
             'it crashed the physics engine (SIGSEGV)')
 # More surfaces on one body than PyBullet can tell about; what it loads it cannot be asked for.
 ROUGH = BOX.replace('</robot>', ''.join(

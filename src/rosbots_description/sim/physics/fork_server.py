@@ -26,7 +26,7 @@ Work = Callable[[bytes], str]
 LOOK = 0.5  # [s, wall] between two looks at a child and its caller
 # Looks in a row at which a child may sleep without having computed anything since the one before.
 # What waits for a processor or a disk does not sleep, however busy the machine is.
-MOST_ASLEEP = 20
+MAX_ASLEEP = 20
 LOOKS_UNASKED = 10  # after which the caller is asked whether it still waits
 
 ROOM = 4096  # [bytes] for a report, set aside before, so that a full machine cannot silence a child
@@ -159,7 +159,7 @@ class _Child:
         asleep = state == _SLEEPING and used == self._used
         self._looks_asleep = self._looks_asleep + 1 if asleep else 0
         self._used = used
-        if self._looks_asleep > MOST_ASLEEP:
+        if self._looks_asleep > MAX_ASLEEP:
             self.kill(signal.SIGALRM)
 
 

@@ -204,7 +204,7 @@ class Model:
         self.set_twist(Twist(linear, twist.angular))
 
     def enter(self) -> None:
-        """Be brought into the engine, which is new or was emptied, at the pose of the spawn."""
+        """Be brought into the engine, which is new or was reset, at the pose of the spawn."""
         if not self._compiled.has_files:
             self._compiled = self.engine.compile(self.spec)
         self.body: EngineBody = self.engine.add(self._compiled, self.initial_pose)

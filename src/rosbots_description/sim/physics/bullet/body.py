@@ -11,7 +11,7 @@ from ...description import Collision
 class Part:
     """Where a link lives in PyBullet, and the way from its centre of mass to its frame.
 
-    An index of -1 is the base of the body. What stands may be several bodies in one place.
+    An index of -1 is the base of the body. A static tree may be several bodies in one place.
     """
 
     body: int

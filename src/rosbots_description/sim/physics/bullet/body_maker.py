@@ -9,11 +9,11 @@ from ...description import FIXED, PRISMATIC, ModelSpec, Surface
 from ...description.inertia import is_balanced
 from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
-from .collision_filter import Untouching
+from .collision_filter import CollisionFilter
 from .compiler import CompiledFace, CompiledTree
 from .friction_axes import EVENLY
 from .friction_filter import FrictionFilter, Side
-from .generated_urdf import RIDER_MASS, Tree, untouching_links
+from .generated_urdf import AUXILIARY_MASS, Tree, filtered_links
 from .springs import compliance
 from .surfaces import contact_spring, is_rigid, parting_rate
 from .tuning import Tuning
@@ -22,7 +22,7 @@ ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
 
 
 def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
-    """Return what of a tree weighs, and which of its joints move masses as they turn."""
+    """Return the masses of a tree, and which of its joints move masses as they turn."""
     parts = tuple(
         Mass(body.parts[link.name].index, link.inertial.mass, of_link, link.gravity)
         for link, of_link in zip(tree.links, moments, strict=True)
@@ -49,7 +49,7 @@ class BodyMaker:
         """Work in the world of that PyBullet client."""
         self._client = client
         self._tuning = tuning
-        self._untouching = Untouching(client)
+        self._collision_filter = CollisionFilter(client)
         self._friction_filter = FrictionFilter()
         self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
         # What gives way, how, and the rate at which its overlaps are taken away [1/s].
@@ -99,9 +99,9 @@ class BodyMaker:
                 localInertiaDiagonal=compiled.moments[i],
                 physicsClientId=self._client,
             )
-            places = [part.index, *(index_of[f'l{i}r{k}']
+            places = [part.index, *(index_of[f'l{i}a{k}']
                                     for k in range(1, len(compiled.bodies[0].faces[i])))]
-            self._set_riders(number, places[1:])
+            self._set_auxiliary_inertias(number, places[1:])
             body.surfaces[link.name] = []
             for index, face in zip(places, compiled.bodies[0].faces[i], strict=True):
                 self._set_face(body, link.name, Place(number, index), face)
@@ -112,7 +112,7 @@ class BodyMaker:
             if not link.gravity and not (tree.fixed_base and i == 0):
                 mass = link.inertial.mass if link.inertial else 0.0
                 body.weightless.append((number, part.index, mass))
-        if not tree.stands:
+        if not tree.is_static:
             body.masses[number] = _masses(tree, body, compiled.moments)
         for other, one in zip(also, compiled.bodies[1:], strict=True):
             self._set_face(body, tree.links[0].name, Place(other, -1), one.faces[0][0])
@@ -122,21 +122,21 @@ class BodyMaker:
         if len(body.bodies) == 1 and not any(link.self_collide for link in spec.links):
             return  # one body without the self-collision flag never touches itself
         if spec.static:
-            return  # what stands does not touch what stands
+            return  # static bodies do not touch each other
         places = body.surfaces
         for own in places.values():
             for one, other in combinations(own, 2):
-                self._untouching.add(one, other)
-        for a, b in untouching_links(spec):
+                self._collision_filter.add(one, other)
+        for a, b in filtered_links(spec):
             for one, other in product(places[a], places[b]):
-                self._untouching.add(one, other)
+                self._collision_filter.add(one, other)
 
     def remove(self, body: Body) -> None:
         """Take a body out of the world."""
         for number in body.bodies:
             pybullet.removeBody(number, self._client)
         for number in body.bodies:
-            self._untouching.forget(number)
+            self._collision_filter.forget(number)
         for place in [place for place in self._sides if place.body in body.bodies]:
             del self._sides[place]
             self._soft.pop(place, None)
@@ -144,7 +144,7 @@ class BodyMaker:
     def reset(self) -> None:
         """Remove everything."""
         pybullet.resetSimulation(physicsClientId=self._client)
-        self._untouching.clear()
+        self._collision_filter.clear()
         self._friction_filter.clear()
         self._sides.clear()
         self._soft.clear()
@@ -164,7 +164,7 @@ class BodyMaker:
                 f'/proc/self/fd/{descriptor}',
                 *pose,
                 useFixedBase=tree.fixed_base,
-                useMaximalCoordinates=tree.stands,
+                useMaximalCoordinates=tree.is_static,
                 flags=flags,
                 physicsClientId=self._client,
             )
@@ -178,12 +178,12 @@ class BodyMaker:
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
         return indices
 
-    def _set_riders(self, number: int, indices: Sequence[int]) -> None:
+    def _set_auxiliary_inertias(self, number: int, indices: Sequence[int]) -> None:
         for index in indices:
             pybullet.changeDynamics(
                 number,
                 index,
-                localInertiaDiagonal=(RIDER_MASS,) * 3,
+                localInertiaDiagonal=(AUXILIARY_MASS,) * 3,
                 physicsClientId=self._client,
             )
 

@@ -4,7 +4,7 @@ from .body import Place
 from .client import pybullet
 
 
-class Untouching:
+class CollisionFilter:
     """Pairs of parts that pass through each other.
 
     PyBullet notes such a pair by numbers, and goes on heeding it when a body has gone and its

@@ -26,8 +26,8 @@ from .surfaces import (
     jointed_mass,
     rolling_arm,
     surface_groups,
-    with_edges,
-    with_inner_first,
+    with_occluded_first,
+    with_split_edges,
 )
 
 _MASSLESS = Inertial(0.0)
@@ -50,7 +50,7 @@ class CompiledFace:
 class CompiledBody:
     """One of PyBullet's bodies: the URDF it is read from, and the faces of each link.
 
-    The first face is the link's own, the others are its riders'; None where nothing touches.
+    The first face is the link's own, the others are its auxiliary links'; None: nothing touches.
     """
 
     text: str
@@ -107,7 +107,7 @@ def compile_model(spec: ModelSpec, meshes: MeshStore) -> BulletModel:
     size = 0
     compiled = []
     for tree, of_tree in zip(trees, groups, strict=True):
-        file_of = partial(mesh_file, tree.stands)
+        file_of = partial(mesh_file, tree.is_static)
         compiled.append(_compiled_tree(tree, of_tree, file_of))
         size += sum(len(body.text) for body in compiled[-1].bodies)
         shapes = [collision.geometry for link in tree.links for collision in link.collisions]
@@ -130,13 +130,13 @@ def grouped(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> tuple[list
 
     And whether there is something inside. What takes time about it is remembered.
     """
-    inner_first = None
+    occluded_first = None
     if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
-        inner_first = with_inner_first(tree, groups[0], mesh_file)
-    if inner_first:
-        inner, *outer = inner_first
-        return [[inner, *with_edges(tree, outer)], *groups[1:]], True
-    return [with_edges(tree, groups[0]), *groups[1:]], False
+        occluded_first = with_occluded_first(tree, groups[0], mesh_file)
+    if occluded_first:
+        inner, *outer = occluded_first
+        return [[inner, *with_split_edges(tree, outer)], *groups[1:]], True
+    return [with_split_edges(tree, groups[0]), *groups[1:]], False
 
 
 def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> CompiledTree:
@@ -145,8 +145,8 @@ def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> Com
     coms = tuple(Pose(inertial.pose.position, orientation)
                  for inertial, orientation in zip(inertials, axes, strict=True))
     found = faces(tree, *grouped(tree, groups, mesh_file), MAX_JOINTS + 1)
-    # What stands is a rigid body for each of its faces.
-    bodies = [[[face]] for face in (*found[0], *slab(tree))] if tree.stands else [found]
+    # A static tree is a rigid body for each of its faces.
+    bodies = [[[face]] for face in (*found[0], *slab(tree))] if tree.is_static else [found]
     return CompiledTree(tree, moments, coms, tuple(
         CompiledBody(
             describe_tree(tree, coms, [[face.shapes for face in of_link] for of_link in body],
@@ -163,10 +163,10 @@ def _compiled_faces(
     mass = jointed_mass(tree)
     compiled = []
     for link, joint, com, of_link in zip(tree.links, tree.joints, coms, body, strict=True):
-        # A rider stands in the frame of the joint above its link.
-        rider = joint.pose.orientation if joint else NO_ROTATION
+        # An auxiliary link has the frame of the joint above its link.
+        auxiliary = joint.pose.orientation if joint else NO_ROTATION
         compiled.append(tuple(
-            _compiled_face(face, link, joint, mass, rider if k else com.orientation)
+            _compiled_face(face, link, joint, mass, auxiliary if k else com.orientation)
             for k, face in enumerate(of_link)
         ))
     return tuple(compiled)

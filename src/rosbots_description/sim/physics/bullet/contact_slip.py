@@ -14,7 +14,7 @@ Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances 
 
 
 class Slipping:
-    """What slips in one PyBullet world: `links` do by their surfaces, others when they are told."""
+    """What slips in one PyBullet world: `links` do by their surfaces, others by `set`."""
 
     def __init__(
         self,

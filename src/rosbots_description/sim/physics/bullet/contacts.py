@@ -14,11 +14,11 @@ from .body import Body, Place
 from .client import pybullet
 from .generated_urdf import MeshFile
 
-_MOST_RAYS = 8192  # in one call; PyBullet takes twice as many, and forgets the last one
+_MAX_RAYS = 8192  # in one call; PyBullet takes twice as many, and forgets the last one
 
 
 class Surroundings:
-    """Tells what touches in a PyBullet world, and what rays meet there."""
+    """Reports what touches in a PyBullet world, and what rays meet there."""
 
     def __init__(
         self, client: int, link_pose: Callable[[Body, str], Pose], mesh_file: MeshFile
@@ -26,7 +26,7 @@ class Surroundings:
         """Look at the world of that PyBullet client.
 
         Args:
-            link_pose: tells where a link's frame stands.
+            link_pose: gives the pose of a link's frame.
             mesh_file: gives an .stl file of a mesh.
         """
         self._client, self._link_pose, self._mesh_file = client, link_pose, mesh_file
@@ -83,8 +83,8 @@ class Surroundings:
         if not (np.isfinite(starts).all() and np.isfinite(ends).all()):
             raise SimError('rays take finite starts and ends')
         hits: list[tuple] = []
-        for first in range(0, len(starts), _MOST_RAYS):
-            batch = slice(first, first + _MOST_RAYS)
+        for first in range(0, len(starts), _MAX_RAYS):
+            batch = slice(first, first + _MAX_RAYS)
             hits += pybullet.rayTestBatch(starts[batch].tolist(), ends[batch].tolist(),
                                           physicsClientId=self._client)
         numbers = np.array([hit[0] for hit in hits], dtype=int)

@@ -1,9 +1,9 @@
-"""A last resort: what would bring the physics engine down does so in a process of its own first.
+"""A last resort: what would crash the physics engine does so in a process of its own first.
 
 Descriptions are checked as they are read and compiled, so nothing that is known to kill PyBullet
-gets this far. For what nobody knows of yet, a model that is new to the simulator is tried in a
+gets this far. For what nobody knows of yet, a model that is new to the simulator is tested in a
 child process, in an empty world. That costs 0.03 s of processor time, once for each content. A
-heavy model costs 0.15 s, or what it takes to bring it in and make one step. Only processor time
+heavy model costs 0.15 s, or what it takes to add it and make one step. Only processor time
 counts: a machine that is busy with other things must not make a model look bad.
 """
 
@@ -20,7 +20,7 @@ from functools import partial
 
 from ...core import IDENTITY, ModelError, Pose, compose
 from ...description import GROUND_PLANE, ModelSpec, PhysicsSettings
-from ..fork_server import LOOK, MOST_ASLEEP, ForkServer, Killed, Unwanted, Work
+from ..fork_server import LOOK, MAX_ASLEEP, ForkServer, Killed, Unwanted, Work
 from .compiler import BulletModel
 from .engine import Engine
 
@@ -32,8 +32,8 @@ BUDGET = 0.15  # [s, processor] from which on a heavy model makes no further ste
 # [s, processor] after which an engine hangs: some ten times what heavy models of its size take.
 # PyBullet makes room for contacts one by one, so its first step with n boxes in one place takes
 # 5e-7 s * n^4: 3 s for 50.
-LEAST, FOR_A_PART, FOR_A_BYTE = 2.0, 0.2, 1e-6
-MOST = 60.0  # what is not in by then would stop the world for as long
+MIN_ALLOWANCE, PER_PART, PER_BYTE = 2.0, 0.2, 1e-6
+MAX_ALLOWANCE = 60.0  # to add such a model would stop the world for as long
 
 REMEMBERED = 1000  # contents that passed; the one that passed first is forgotten first
 
@@ -45,10 +45,10 @@ _KILLED = 'it killed the process (SIGKILL), as it does where memory runs out'
 
 
 class CrashSandbox:
-    """Tries models and remembers, by their content, those that passed. Any thread may ask."""
+    """Tests models and remembers, by their content, those that passed. Any thread may ask."""
 
     def __init__(self, engine: Engine) -> None:
-        """Start the process that tries models; do so before there are threads.
+        """Start the process that tests models; do so before there are threads.
 
         Args:
             engine: that of an empty world. It is copied, which costs less than opening another.
@@ -65,7 +65,7 @@ class CrashSandbox:
         self.close()
 
     def close(self) -> None:
-        """End the process; no model can be tried any more."""
+        """End the process; no model can be tested any more."""
         self._children.close()
 
     def require(
@@ -74,15 +74,15 @@ class CrashSandbox:
         physics: PhysicsSettings,
         is_wanted: Callable[[], bool] = lambda: True,
     ) -> None:
-        """Return if the engine stands the model; takes long only if the content is new.
+        """Return if the engine survives the model; takes long only if the content is new.
 
-        Where no process can be made the model passes, with a warning.
+        Where no process can be started the model passes, with a warning.
 
         Args:
-            physics: the settings to try it with.
+            physics: the settings to test it with.
             is_wanted: asked now and then, from 5 s on, whether to go on.
         Raises:
-            ModelError: the engine crashed, hung or failed, or the model was lost at once; the
+            ModelError: the engine crashed, hung or failed, or the model diverged at once; the
                 operating system failed, which tells nothing about the model; or it is not wanted.
         """
         bare = model.bare()
@@ -108,47 +108,47 @@ class CrashSandbox:
         self, name: str, model: BulletModel, physics: PhysicsSettings,
         is_wanted: Callable[[], bool],
     ) -> bool:
-        """Return whether the engine stood a model; False if nobody knows."""
+        """Return whether the engine survived a model; False if that is unknown."""
         allowance = _allowance(model)
         try:
             report = self._children.run(pickle.dumps((model, physics)), allowance, is_wanted)
         except OSError as error:
-            logger.warning("model '%s' comes in without being tested, since the operating system "
+            logger.warning("model '%s' was not tested in the sandbox, since the operating system "
                            'failed (%s)', name, error.strerror)
             return False
         except Unwanted:
             raise ModelError(
-                f"model '{name}' is not brought in: who asked for it has gone") from None
+                f"model '{name}' is rejected: the client that asked for it has gone") from None
         except Killed as killed:
-            report = _told(killed.exit_code, allowance)
+            report = _exit_reason(killed.exit_code, allowance)
         if report.startswith(_SYSTEM):
             raise ModelError(
-                f"model '{name}' is not brought in: it could not be tested before, since the "
+                f"model '{name}' is rejected: it could not be tested before, since the "
                 f'operating system failed ({report.removeprefix(_SYSTEM)}); mend that and spawn '
                 'the model again'
             )
         if report != _PASSED:
             raise ModelError(
-                f"model '{name}' is not brought in: tried in a process of its own, {report}"
+                f"model '{name}' is rejected: tested in a process of its own, {report}"
                 '; leave out parts of it to find the one that does it, meshes first'
             )
         return True
 
 
 def _allowance(model: BulletModel) -> float:
-    """Return the processor time [s] that the trial of a model may take."""
+    """Return the processor time [s] that the test of a model may take."""
     parts = sum(1 + len(link.collisions) for link in model.spec.links)
-    return min(MOST, LEAST + FOR_A_PART * parts + FOR_A_BYTE * model.size)
+    return min(MAX_ALLOWANCE, MIN_ALLOWANCE + PER_PART * parts + PER_BYTE * model.size)
 
 
-def _told(exit_code: int, allowance: float) -> str:
+def _exit_reason(exit_code: int, allowance: float) -> str:
     """Return what the end of a process says, as a clause."""
     match -exit_code:
         case signal.SIGPROF:
             return ('the physics engine was not done with it after '
                     f'{allowance:.1f} s of processor time')
         case signal.SIGALRM:
-            return f'the physics engine slept over it for {LOOK * MOST_ASLEEP:g} s'
+            return f'the physics engine slept over it for {LOOK * MAX_ASLEEP:g} s'
         case signal.SIGKILL:
             return f'{_SYSTEM}{_KILLED}'
         case number if number > 0:
@@ -157,7 +157,7 @@ def _told(exit_code: int, allowance: float) -> str:
 
 
 def _prepared(engine: Engine) -> Work:
-    """Return what reports of a model that comes into the engine; runs in the process of its own."""
+    """Return what adds a model and reports of it; runs in the process of its own."""
     engine.add(engine.compile(GROUND_PLANE), IDENTITY)
     return partial(_report, engine)
 
@@ -179,7 +179,7 @@ def _report(engine: Engine, payload: bytes) -> str:
 
 
 def _live(engine: Engine, model: BulletModel) -> None:
-    """Do with the model what a world does: bring it in, step, ask, take it away."""
+    """Do with the model what a world does: add it, step, read, remove it."""
     body = engine.add(model, _touching(model.spec))
     for _ in range(STEPS):
         engine.step(1)
@@ -205,13 +205,13 @@ def _touching(spec: ModelSpec) -> Pose:
 
 
 def _shortage(error: BaseException) -> str | None:
-    """Return what the operating system could not give, if that is why a trial failed."""
+    """Return what the operating system could not give, if that is why a test failed."""
     if isinstance(error, MemoryError):
         return os.strerror(errno.ENOMEM)
     try:
         if isinstance(error, OSError):
             raise error
-        for _ in range(_HANDLES):  # PyBullet does not tell why it could not open a file
+        for _ in range(_HANDLES):  # PyBullet does not say why it could not open a file
             os.open(os.devnull, os.O_RDONLY)
     except OSError as fault:
         return fault.strerror or str(fault)
@@ -219,7 +219,7 @@ def _shortage(error: BaseException) -> str | None:
 
 
 def _read_fault(path: str) -> str | None:
-    """Return why a file cannot be read, if it cannot; PyBullet would not tell."""
+    """Return why a file cannot be read, if it cannot; PyBullet would not say."""
     try:
         with open(path, 'rb'):
             return None

@@ -39,7 +39,7 @@ _TOGETHER = 20  # steps in one call, which costs less than a call each
 _CONVERGED = 1e-8
 # What bodies that are gone were read from [bytes], some 45 of the article's robots. PyBullet keeps
 # two or three times that. To build the engine anew takes 5 ms for each robot that stays.
-MOST_LEAKED = 1_500_000
+MAX_LEAKED = 1_500_000
 
 
 class Engine:
@@ -101,7 +101,7 @@ class Engine:
             jointFeedbackMode=pybullet.JOINT_FEEDBACK_IN_JOINT_FRAME,
             physicsClientId=self._client,
         )
-        self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.passes)))
+        self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.iterations)))
         self._physics = physics
         self._together = _divisible(physics.step_size, _TOGETHER)
 
@@ -112,7 +112,7 @@ class Engine:
     @property
     def needs_rebuild(self) -> bool:
         """Whether removed bodies have left much behind."""
-        return self._leaked > MOST_LEAKED
+        return self._leaked > MAX_LEAKED
 
     def reset(self) -> None:
         """Remove everything; the same bodies added again then move bit for bit as before."""
@@ -252,7 +252,7 @@ class Engine:
 
     def has_diverged(self, body: Body) -> bool:
         """Tell whether any link of a model moves by numbers that are not finite, or of no world."""
-        # Also one that stands: what hits it with endless speed leaves it with a velocity of NaN.
+        # Also a static one: what hits it with endless speed leaves it with a velocity of NaN.
         return not all(
             math.isfinite(number) and abs(number) < LARGEST for number in self._coordinates(body))
 
@@ -269,7 +269,7 @@ class Engine:
                     yield from state[:2]
 
     def link_pose(self, body: Body, link: str) -> Pose:
-        """Return where the link's frame stands in the world."""
+        """Return the pose of the link's frame in the world."""
         part = body.parts[link]
         if part.index < 0:
             com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
@@ -331,7 +331,7 @@ class Engine:
     def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
         """Let a root link move with this velocity of its origin, in world axes; joints go on.
 
-        A root that the world holds stays at rest.
+        A root that is fixed to the world stays at rest.
         """
         if link in body.fixed_roots:
             return

@@ -23,24 +23,24 @@ class Face(NamedTuple):
 
 
 def faces(
-    tree: Tree, groups: Sequence[Groups], inner_first: bool, most: int
+    tree: Tree, groups: Sequence[Groups], occluded_first: bool, max_parts: int
 ) -> list[list[Face]]:
     """Return what each link of a tree touches with; the first face is the link's own.
 
     Args:
         groups: of each link, from surfaces.py.
-        inner_first: whether the first group of the root lies between the others.
-        most: parts that the tree may have. If it would have more, every surface is there once, and
+        occluded_first: whether the first group of the root lies between the others.
+        max_parts: that the tree may have. If it would have more, every surface is there once, and
             two of them, both smoother than 1, hold with the product of their mu.
     """
     kind = _kind(tree)
     found = []
     for i, of_link in enumerate(groups):
-        kinds = [Kind.INNER if inner_first and not i and not k else kind
+        kinds = [Kind.OCCLUDED if occluded_first and not i and not k else kind
                  for k in range(len(of_link))]
         found.append([face for group, one in zip(of_link, kinds, strict=True)
-                      for face in _in_roles(group, one, tree.stands)])
-    if sum(map(len, found)) <= most:
+                      for face in _in_roles(group, one, tree.is_static)])
+    if sum(map(len, found)) <= max_parts:
         return found
     return [[*{face.shapes: _in_both(face) for face in of_link}.values()] for of_link in found]
 
@@ -58,23 +58,23 @@ def slab(tree: Tree) -> list[Face]:
         replace(plane, geometry=_SLAB, pose=compose(compose(plane.pose, _tilt(plane)), below))
         for plane in tree.links[0].collisions
     )
-    return _in_roles(shapes, Kind.SLAB, stands=True)
+    return _in_roles(shapes, Kind.SLAB, is_static=True)
 
 
 def _kind(tree: Tree) -> Kind:
     if is_floor(tree):
         return Kind.PLANE
-    if tree.stands:
-        return Kind.STANDING
+    if tree.is_static:
+        return Kind.STATIC
     shapes = [collision.geometry for link in tree.links for collision in link.collisions]
     only_boxes = len(tree.links) == 1 and all(isinstance(shape, Box) for shape in shapes)
     return Kind.BOXES if only_boxes else Kind.MOVING
 
 
-def _in_roles(group: tuple[Collision, ...], kind: Kind, stands: bool) -> list[Face]:
+def _in_roles(group: tuple[Collision, ...], kind: Kind, is_static: bool) -> list[Face]:
     mu = coefficient(group[0].surface.greatest_mu) if group else 1.0
     return [Face(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
-            for role in roles(mu, stands)]
+            for role in roles(mu, is_static)]
 
 
 def _in_both(face: Face) -> Face:

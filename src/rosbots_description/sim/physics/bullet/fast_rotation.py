@@ -70,7 +70,7 @@ class FastBodies:
 
     def note(self) -> tuple:
         """Return what `recall` takes to go back to the present state."""
-        return self.rest, {number: (one.calm, one.ceiling, one.flies, one.most, one.total)
+        return self.rest, {number: (one.calm, one.ceiling, one.flies, one.peak, one.total)
                            for number, one in self._swinging.items()}
 
     def recall(self, note: tuple) -> None:
@@ -79,7 +79,7 @@ class FastBodies:
         self._swinging.clear()
         for number, state in swinging.items():
             one = _Swinging(self._client, number, self._bodies[number])
-            one.calm, one.ceiling, one.flies, one.most, one.total = state
+            one.calm, one.ceiling, one.flies, one.peak, one.total = state
             self._swinging[number] = one
 
     def __bool__(self) -> bool:
@@ -120,7 +120,7 @@ class FastBodies:
 
     def after_step(self) -> None:
         """Take from bodies what PyBullet has given to them."""
-        with np.errstate(all='ignore'):  # a model may be lost
+        with np.errstate(all='ignore'):  # a model may have diverged
             for swinging in self._swinging.values():
                 swinging.hold(self._step_size, self._gravity, self._bodies)
 
@@ -128,7 +128,7 @@ class FastBodies:
 class _Swinging:
     """A body that turns fast. Its energy grows by the work that is done on it, or not at all.
 
-    Work is that of its motors and dampers; what stands does none. What pushes do, and other bodies
+    Work is that of its motors and dampers; static bodies do none. What pushes do, and other bodies
     that move, is not known: the energy after that is taken as it is. While a body flies, only the
     energy about its centre of mass is looked at, which gravity does not change. Springs keep what
     they take.
@@ -144,7 +144,7 @@ class _Swinging:
         self._mass = np.array([part.mass for part in parts])
         self._weight = np.array([part.mass * part.has_weight for part in parts])
         self._moments = np.array([part.moments for part in parts])
-        self.most = 0.0  # the most kinetic energy seen [J]
+        self.peak = 0.0  # the most kinetic energy seen [J]
         self.ceiling: float | None = None  # of the energy [J]; None: as it is after the next step
         self.flies, self.total = False, 0.0  # after the last step
         self.calm = 0
@@ -153,8 +153,8 @@ class _Swinging:
         """See that the last step did not add to the energy."""
         touched = self.touched()
         total, own, kinetic, drift = self._energy(step_size, gravity)
-        self.most = max(self.most, kinetic)
-        slack = _GROWS * self.most
+        self.peak = max(self.peak, kinetic)
+        slack = _GROWS * self.peak
         flew, self.flies = self.flies, not (touched or self._all.is_fixed)
         flies_on = flew and self.flies
         if self.ceiling is None or not touched.isdisjoint(moving):

@@ -5,7 +5,7 @@ import math
 from ...core import ALONG, Quaternion, Vector, conjugate, rotate
 from ...description import Collision, LinkSpec, Surface
 from .body import Body, FrictionAxes
-from .friction_filter import MOST
+from .friction_filter import MAX_FRICTION
 
 EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part
 _PARTS_FREELY = 1.0  # [m/s] a max_vel from which on things may bounce
@@ -15,7 +15,7 @@ _FASTEST_IMPACT = 100.0  # [m/s] a threshold beyond which nothing bounces
 def directions(collision: Collision) -> tuple:
     """Return what tells apart the directions of friction; nothing if it has none."""
     surface = collision.surface
-    if _is_even(surface, MOST):
+    if _is_even(surface, MAX_FRICTION):
         return ()
     first = surface.fdir1
     return surface.mu, surface.mu2, any(first) and rotate(collision.pose.orientation, first)

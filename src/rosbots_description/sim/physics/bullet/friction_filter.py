@@ -11,7 +11,7 @@ from enum import Enum, IntEnum
 from typing import NamedTuple
 
 # PyBullet limits the friction of a pair to this; it holds on slopes of up to 84 degrees.
-MOST = 10.0
+MAX_FRICTION = 10.0
 # PyBullet's rays are of this group. They are to see each surface once.
 _RAYS = 1
 _FIRST = 1  # bit that is free for the kinds
@@ -23,18 +23,18 @@ class Kind(IntEnum):
     """What a surface belongs to."""
 
     MOVING = 0
-    INNER = 1  # it lies between others, no plane can touch it
+    OCCLUDED = 1  # it lies between others, no plane can touch it
     BOXES = 2  # a moving body that consists of boxes
-    STANDING = 3
+    STATIC = 3
     PLANE = 4
     SLAB = 5  # what boxes meet instead of a plane
 
 
 _MEETS = {
-    Kind.MOVING: (Kind.MOVING, Kind.INNER, Kind.BOXES, Kind.STANDING, Kind.PLANE),
-    Kind.INNER: (Kind.MOVING, Kind.INNER, Kind.BOXES, Kind.STANDING),
-    Kind.BOXES: (Kind.MOVING, Kind.INNER, Kind.BOXES, Kind.STANDING, Kind.SLAB),
-    Kind.STANDING: (Kind.MOVING, Kind.INNER, Kind.BOXES),
+    Kind.MOVING: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES, Kind.STATIC, Kind.PLANE),
+    Kind.OCCLUDED: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES, Kind.STATIC),
+    Kind.BOXES: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES, Kind.STATIC, Kind.SLAB),
+    Kind.STATIC: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES),
     Kind.PLANE: (Kind.MOVING,),
     Kind.SLAB: (Kind.BOXES,),
 }
@@ -58,14 +58,14 @@ class Side(NamedTuple):
 
 def coefficient(mu: float) -> float:
     """Return the friction coefficient that PyBullet can give to a pair of equal surfaces."""
-    return min(max(mu, 0.0), MOST)
+    return min(max(mu, 0.0), MAX_FRICTION)
 
 
-def roles(mu: float, stands: bool) -> tuple[Role, ...]:
+def roles(mu: float, is_static: bool) -> tuple[Role, ...]:
     """Return the roles in which a surface is needed; nothing is rougher than the roughest."""
     if mu == 1.0:
         return (Role.BOTH,)
-    if stands and mu == MOST:
+    if is_static and mu == MAX_FRICTION:
         return (Role.ONE,)
     return (Role.OWN, Role.ONE)
 

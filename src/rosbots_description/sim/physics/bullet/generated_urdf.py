@@ -28,9 +28,9 @@ from ...description import (
     Sphere,
 )
 
-# A part of a link that touches differently rides on the link as a body of its own; its mass must
-# not be zero for PyBullet and must not matter beside any real link [kg].
-RIDER_MASS = 1e-9
+# Each further surface of a link is an auxiliary link, fixed to it. Its mass must not be zero for
+# PyBullet, and must not matter beside that of any real link [kg].
+AUXILIARY_MASS = 1e-9
 
 # Of a link without visual PyBullet makes pictures of the collisions, which nobody sees: of a plane
 # a chequered one of 9 MB, of a mesh one that takes as long and twice as much memory as the mesh.
@@ -40,7 +40,7 @@ _UNSEEN = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</vi
 # it would meet all that can be seen, and the solver would take contacts in another order for good.
 _LOADED = 2
 
-WORLD_LINK = LinkSpec('world')  # what models are bolted to
+WORLD_LINK = LinkSpec('world')  # what models are fixed to
 
 MeshFile = Callable[[Mesh], str]  # a mesh -> the path of a clean file at the mesh's scale
 
@@ -53,7 +53,7 @@ class Tree(NamedTuple):
     fixed_base: bool  # the root never moves
 
     @property
-    def stands(self) -> bool:
+    def is_static(self) -> bool:
         """Whether nothing in it moves; its meshes are then exact surfaces, else convex hulls."""
         return self.fixed_base and len(self.links) == 1
 
@@ -64,12 +64,12 @@ def describe_tree(
     groups: Sequence[Sequence[Sequence[Collision]]],
     mesh_file: MeshFile,
 ) -> str:
-    """Return the URDF of a tree; link i is called `l<i>`, its riders `l<i>r1` and so on.
+    """Return the URDF of a tree; link i is called `l<i>`, its auxiliary links `l<i>a1` and so on.
 
     Args:
         tree: what to describe.
         inertial_poses: centre of mass and principal axes of each link, in the link's frame.
-        groups: what each link touches with itself, then what each of its riders does.
+        groups: what each link touches with itself, then what each of its auxiliary links does.
         mesh_file: gives the file of a mesh.
     """
     number = {link.name: i for i, link in enumerate(tree.links)}
@@ -85,8 +85,8 @@ def describe_tree(
         inertial = compose(back, inertial_poses[i])
         lines += _link(f'l{i}', mass, inertial, back, groups[i][0], mesh_file)
         for k, group in enumerate(groups[i][1:], start=1):
-            lines += _link(f'l{i}r{k}', RIDER_MASS, Pose(), back, group, mesh_file)
-            lines += _joint(f'j{i}r{k}', 'fixed', f'l{i}', f'l{i}r{k}', Pose(), ())
+            lines += _link(f'l{i}a{k}', AUXILIARY_MASS, Pose(), back, group, mesh_file)
+            lines += _joint(f'j{i}a{k}', 'fixed', f'l{i}', f'l{i}a{k}', Pose(), ())
         if joint:
             parent = number[joint.parent]
             pose = relative(frames[i], frames[parent])
@@ -181,7 +181,7 @@ def kinematic_trees(spec: ModelSpec) -> list[Tree]:
     """Return the trees that a model consists of.
 
     In a static model nothing moves, so there every link is a tree of its own. A root that a
-    movable joint connects to the world hangs on an empty link that stands still.
+    movable joint connects to the world hangs on an empty link that does not move.
     """
     if spec.static:
         return [Tree([link], [None], True) for link in spec.links]
@@ -209,7 +209,7 @@ def kinematic_trees(spec: ModelSpec) -> list[Tree]:
     return trees
 
 
-def untouching_links(spec: ModelSpec) -> Iterator[tuple[str, str]]:
+def filtered_links(spec: ModelSpec) -> Iterator[tuple[str, str]]:
     """Yield each pair of links that pass through each other.
 
     Two links of a model touch only if both ask for it and no joint connects them.

@@ -18,7 +18,7 @@ from ...meshes import read_stl, support_points
 from .generated_urdf import MeshFile
 
 _ONTO = 1e-6  # share of its size by which a body is taken for larger than it is
-_MOST = 40  # points of a hull, whose sides take time with the cube of it
+_MAX_CORNERS = 40  # points of a hull, whose sides take time with the cube of it
 _AT_ONCE = 1000  # planes, for which memory need not be fetched anew each time
 _CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 _POLES = np.concatenate([np.eye(3), -np.eye(3)])
@@ -27,7 +27,7 @@ _RIMS = np.array([(x, y, z) for x, y in _RIM for z in (-1.0, 1.0)])
 _WAYS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
 
 
-def inner_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tuple[bool, ...]:
+def occluded_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tuple[bool, ...]:
     """Tell of each shape of a rigid body whether it surely lies within the hull of the others.
 
     Args:
@@ -53,7 +53,7 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     corners = support_points(points, _WAYS)
     sides, _ = _hull(points[corners])
     corners += sorted({*support_points(points, sides)} - {*corners})
-    corners = corners[:_MOST]
+    corners = corners[:_MAX_CORNERS]
     sides, reaches = _hull(points[corners])
     if not len(sides):
         return (False,) * len(shapes)

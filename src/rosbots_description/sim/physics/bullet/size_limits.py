@@ -9,7 +9,8 @@ from .surfaces import Groups
 # PyBullet handles a tree of more joints only up to the first question about it.
 MAX_JOINTS = 127
 
-# Links after lumping, in all trees. Which of them may touch is told to PyBullet pair by pair.
+# Links after the reduction of fixed joints, in all trees. PyBullet takes which of them may touch
+# pair by pair.
 MAX_LINKS = 500
 
 # Collisions and visuals. Each collision that touches costs time in every step, and each visual is
@@ -45,11 +46,11 @@ def excess_of_joints(tree: Tree, groups: Sequence[Groups]) -> str | None:
             f'the links that hang together need more than {MAX_JOINTS} joints in the '
             'physics engine, which holds no more: split the model'
         )
-    # Every surface of its own rides on its link by a joint of the engine's.
-    riders = sum(len(of_link) - 1 for of_link in groups)
-    if joints + riders > MAX_JOINTS:
+    # Every further surface of a link is an auxiliary link on a fixed joint.
+    auxiliary = sum(len(of_link) - 1 for of_link in groups)
+    if joints + auxiliary > MAX_JOINTS:
         return (
-            f'links that hang together have {riders} collisions with a surface of their own and '
+            f'links that hang together have {auxiliary} collisions with a surface of their own and '
             f'{joints} joints; the physics engine holds {MAX_JOINTS} of both: give collisions of '
             'one link the same mu, kp and kd'
         )

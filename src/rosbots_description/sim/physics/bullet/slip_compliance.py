@@ -14,7 +14,7 @@ from ...core import Vector, add, cross, dot, subtract
 
 GRAVITY = 9.8  # [m/s^2] that makes a weight of the mass which a contact carries
 NONE_SLIPS = (1.0, 1.0)  # shares of the friction that a tyre without slip holds
-LEAST = 1e-3  # share of the friction that is left to a contact at least
+MIN_SHARE = 1e-3  # share of the friction that is left to a contact at least
 
 
 class Touch(NamedTuple):
@@ -50,7 +50,7 @@ def shares(
         force = sum(dot(touch.force, direction) for touch in touches)
         speed = sum(dot(touch.velocity, direction) * touch.load for touch in touches) / load
         held = abs(force * gain - speed) / (slip + gain)
-        found.append(min(1.0, max(LEAST, held / (limit * reach(direction)))))
+        found.append(min(1.0, max(MIN_SHARE, held / (limit * reach(direction)))))
     return tuple(found)
 
 

@@ -87,7 +87,7 @@ class Snapshots:
     def _put_back(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> None:
         client, put = self._client, pybullet.resetBasePositionAndOrientation
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
-        # A motor without effort goes on telling what it gave before it lost it.
+        # A motor without effort goes on reporting what it gave before it had none.
         self._give_effort(snapshot.idle, _NEXT_TO_NONE)
         for look in range(_LOOKS):
             for i, number in enumerate(moving if look < 2 else moving[:1]):

@@ -17,7 +17,7 @@ STILL = 0.0025  # [rad/s or m/s] what a target of 0 counts as: who is parked is 
 SATURATED = 0.99  # share of its effort from which on a motor does what it can
 SMOOTHING = 0.2  # weight of a look in the mean
 FACTOR = 4  # between two levels
-PATIENCE, MOST_PATIENCE = 4, 256  # looks before fewer iterations are tried, at first and at most
+PATIENCE, MAX_PATIENCE = 4, 256  # looks before fewer iterations are tried, at first and at most
 
 Motor = tuple[float, float, float, float]  # velocity, its target, effort, its limit
 
@@ -55,7 +55,7 @@ class SolverEffort:
         if self._level < len(MISSED) and self._missed > MISSED[self._level]:
             self._shift(1)
             self._wait = self._patience
-            self._patience = min(2 * self._patience, MOST_PATIENCE)
+            self._patience = min(2 * self._patience, MAX_PATIENCE)
         elif self._level and self._missed < REACHED and self._wait < 0:
             self._shift(-1)
 

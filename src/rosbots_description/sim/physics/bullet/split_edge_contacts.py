@@ -3,7 +3,7 @@
 Of a box or a hull above a plane PyBullet finds one corner in a step, and of two that are equally
 deep always the same. So a robot that falls on the front edge of its body, as one does that backs
 at once, would take the blow with that corner, and turn. Two of the same shape in one place, each
-leaning to a side by a hair, touch with a corner each.
+tilted to one side by a hair, touch with a corner each.
 """
 
 import math
@@ -13,11 +13,11 @@ from dataclasses import replace
 from ...core import Pose, Vector, compose, cross
 from ...description import Box, Collision, Mesh
 
-_LEAN = 2e-4  # [rad]; half and five times as much do as well
+_TILT = 2e-4  # [rad]; half and five times as much do as well
 
 
-def leaning(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[Collision, ...]:
-    """Return what stands for the shapes of a robot's body: of each with edges two that lean.
+def split_edges(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[Collision, ...]:
+    """Return what represents the shapes of a robot's body: of each with edges two, tilted apart.
 
     Args:
         shapes: in the frame of the body, whose origin is not far from the middle of the axle.
@@ -29,7 +29,7 @@ def leaning(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[Coll
         if not isinstance(shape.geometry, Box | Mesh):
             found.append(shape)
             continue
-        for half in (_LEAN / 2.0, -_LEAN / 2.0):
+        for half in (_TILT / 2.0, -_TILT / 2.0):
             turn = (*(math.sin(half) * x for x in ahead), math.cos(half))
             found.append(replace(shape, pose=compose(Pose(orientation=turn), shape.pose)))
     return tuple(found)

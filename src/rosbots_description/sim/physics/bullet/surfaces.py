@@ -13,10 +13,10 @@ from ...core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
 from ...description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
 from .friction_axes import directions, restitution
 from .generated_urdf import MeshFile, Tree
-from .occluded_shapes import inner_shapes
-from .split_edge_contacts import leaning
+from .occluded_shapes import occluded_shapes
+from .split_edge_contacts import split_edges
 
-Groups = list[tuple[Collision, ...]]  # of a link: what it touches with itself, then its riders
+Groups = list[tuple[Collision, ...]]  # of a link: its own, then those of its auxiliary links
 
 _GRAVITY = 9.8  # [m/s^2]
 _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
@@ -26,7 +26,7 @@ _STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody descri
 _ROLLING_RESISTANCE = 0.005
 
 # Deflection of one contact under all of a robot's weight [m]. Which of more than three rigid points
-# carry is undetermined; with this the load spreads as the shapes tell.
+# carry is undetermined; with this the load spreads as the shapes say.
 _DEFLECTION = 1e-3
 _PARTING_SPEED = 1.0  # [m/s] at which bodies part that overlap by all of their size
 
@@ -38,52 +38,52 @@ _CREST = 0.002
 # the floor than 0.02 of that is a contact, which costs.
 _CROWN = 0.022
 
-# Looking at a shape above a plane takes 1.7 % of a step of the article's robot, a rider 5 %.
-_WORTH_A_RIDER = 6
+# A shape above a plane costs 1.7 % of a step of the article's robot, an auxiliary link 5 %.
+_WORTH_A_LINK = 6
 _LEVEL = 5e-6  # [m] one side of a wheel may be so much lower, and both still touch a floor
 
 
 def surface_groups(tree: Tree, i: int) -> Groups:
-    """Return the collisions of link `i` by equal surface: the link's own, then the riders'."""
+    """Return the collisions of link `i` by equal surface: first those of the link itself."""
     link, joint = tree.links[i], tree.joints[i]
     shapes = [shape for one in link.collisions for shape in crowned(one, link, joint)]
     return _by_surface(shapes) or [()]
 
 
-def with_inner_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups | None:
-    """Return the groups of a robot's root anew: first what no plane can touch, which needs no look.
+def with_occluded_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups | None:
+    """Return the groups of a robot's root anew, first what no plane can touch: it is not checked.
 
-    The rest rides. None if it is not worth it.
+    The rest is on auxiliary links. None if it is not worth it.
     """
     if not _drives(tree):
         return None
     first, *others = groups
-    inner = inner_shapes(first, mesh_file) if first else ()
-    if sum(inner) < _WORTH_A_RIDER:
+    occluded = occluded_shapes(first, mesh_file) if first else ()
+    if sum(occluded) < _WORTH_A_LINK:
         return None
-    halves = [tuple(compress(first, half)) for half in (inner, map(not_, inner))]
+    halves = [tuple(compress(first, half)) for half in (occluded, map(not_, occluded))]
     return [*halves, *others]
 
 
-def with_edges(tree: Tree, groups: Groups) -> Groups:
+def with_split_edges(tree: Tree, groups: Groups) -> Groups:
     """Return the groups of a root anew: if it carries wheels, both ends of its edges can touch."""
     axle = _axle(tree) if _drives(tree) else None
     if axle is None:
         return groups
     up = rotate(conjugate(tree.links[0].pose.orientation), UP)
-    return [leaning(group, axle, up) for group in groups]
+    return [split_edges(group, axle, up) for group in groups]
 
 
 def is_floor(tree: Tree) -> bool:
-    """Tell whether a tree stands and is planes and nothing else."""
+    """Tell whether a tree is static and is planes and nothing else."""
     shapes = [collision.geometry for collision in tree.links[0].collisions]
-    return tree.stands and bool(shapes) and all(isinstance(shape, Plane) for shape in shapes)
+    return tree.is_static and bool(shapes) and all(isinstance(shape, Plane) for shape in shapes)
 
 
 def crowned(
     collision: Collision, link: LinkSpec, joint: JointSpec | None
 ) -> tuple[Collision, ...]:
-    """Return what stands for a collision: of a level wheel three narrow crests and lower shoulders.
+    """Return what represents a collision: of a level wheel three narrow crests and lower shoulders.
 
     A cylinder touches a floor along a line, and PyBullet finds one end of it. The crests, at both
     ends and in the middle, share the load.
@@ -189,7 +189,7 @@ def parting_rate(reach: float, push_out: float) -> float:
 
 
 def jointed_mass(tree: Tree) -> float:
-    """Return the mass [kg] of links that move on joints; 0 of single bodies and what is bolted."""
+    """Return the mass [kg] of links that move on joints; 0 if the root is fixed."""
     if tree.fixed_base or all(joint is None or joint.type == FIXED for joint in tree.joints):
         return 0.0
     return sum(link.inertial.mass for link in tree.links if link.inertial)

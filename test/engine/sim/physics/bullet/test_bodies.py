@@ -100,7 +100,7 @@ def test_joint_limits_hold():
         assert model.joint('hinge').position == pytest.approx(0.5, abs=0.01)
 
 
-def test_a_model_whose_root_is_the_world_is_bolted():
+def test_a_model_whose_root_is_the_world_is_fixed_to_it():
     spec = urdf_spec(ARM.format(type='continuous', motion=''))
     with empty_world() as world:
         model = world.spawn(spec, 'arm', Pose())

@@ -94,9 +94,9 @@ def burn(seconds):
 
 def allow(monkeypatch, processor):
     """Let a trial take so much processor time [s], whatever it is of."""
-    monkeypatch.setattr(crash_sandbox, 'LEAST', processor)
-    monkeypatch.setattr(crash_sandbox, 'FOR_A_PART', 0.0)
-    monkeypatch.setattr(crash_sandbox, 'FOR_A_BYTE', 0.0)
+    monkeypatch.setattr(crash_sandbox, 'MIN_ALLOWANCE', processor)
+    monkeypatch.setattr(crash_sandbox, 'PER_PART', 0.0)
+    monkeypatch.setattr(crash_sandbox, 'PER_BYTE', 0.0)
 
 
 def steps_of_a_trial(does=lambda: None, at_step=lambda: None):
@@ -190,7 +190,7 @@ def test_a_heap_of_boxes_in_one_place_passes():
 @pytest.mark.parametrize('number', [signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT, signal.SIGFPE])
 def test_a_model_that_crashes_the_engine_is_refused(number):
     assert fault_of(lambda: os.kill(os.getpid(), number)) == (
-        "model 'crate' is not brought in: tried in a process of its own, it crashed the physics "
+        "model 'crate' is rejected: tested in a process of its own, it crashed the physics "
         f'engine ({number.name}); leave out parts of it to find the one that does it, meshes first')
 
 
@@ -205,7 +205,7 @@ def test_a_model_that_sleeps_for_ever_is_refused(monkeypatch):
     assert 'the physics engine slept over it for 10 s;' in fault_of(signal.pause)
 
 
-@pytest.mark.parametrize('share', ['FOR_A_PART', 'FOR_A_BYTE'])
+@pytest.mark.parametrize('share', ['PER_PART', 'PER_BYTE'])
 def test_a_model_may_take_the_longer_the_more_it_holds(share, monkeypatch, tmp_path):
     source = tmp_path / 'part.stl'
     source.write_text(tetrahedron(1.0))
@@ -275,10 +275,10 @@ def test_who_asks_for_what_is_being_tried_waits_for_that():
 
 def test_a_trial_that_nobody_waits_for_is_given_up(monkeypatch):
     monkeypatch.setattr(fork_server, 'LOOK', 0.02)
-    monkeypatch.setattr(fork_server, 'MOST_ASLEEP', 10**6)
+    monkeypatch.setattr(fork_server, 'MAX_ASLEEP', 10**6)
     with Sandbox(does=signal.pause) as sandbox:
         for _ in range(2):
-            with pytest.raises(ModelError, match="'crate' is not brought in: who asked for it has"):
+            with pytest.raises(ModelError, match="'crate' is rejected: the client that asked"):
                 sandbox.require(is_wanted=lambda: False)
 
 
@@ -317,7 +317,7 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(caplog):
     with Sandbox() as sandbox:
         os.kill(sandbox._sandbox._children._server, signal.SIGKILL)
         sandbox.require()
-    assert "model 'crate' comes in without being tested, since the operating system failed " \
+    assert "model 'crate' was not tested in the sandbox, since the operating system failed " \
         '(the process that makes others does not answer)' in caplog.text
 
 
@@ -331,7 +331,7 @@ def test_a_failure_of_the_system_is_blamed_on_nobody_else(fault):
 
     reason = getattr(fault, 'strerror', None) or 'Cannot allocate memory'
     assert fault_of(fail) == (
-        "model 'crate' is not brought in: it could not be tested before, since the operating "
+        "model 'crate' is rejected: it could not be tested before, since the operating "
         f'system failed ({reason}); mend that and spawn the model again')
 
 

@@ -162,7 +162,7 @@ def test_of_both_ways_to_keep_a_joint_preserving_wins(tags):
     assert j.type == 'fixed'
 
 
-def test_a_robot_below_world_is_bolted_and_lumped_further_up():
+def test_a_robot_below_world_is_fixed_and_reduced_further_up():
     spec = load(
         link('world', 0) + link('base') + link('arm')
         + joint('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>') + joint('j', 'base', 'arm')

@@ -18,7 +18,7 @@ from rosbots_description.sim.description.model_spec import (
     Sphere,
 )
 from rosbots_description.sim.meshes.store import MeshStore
-from rosbots_description.sim.physics.bullet.occluded_shapes import inner_shapes
+from rosbots_description.sim.physics.bullet.occluded_shapes import occluded_shapes
 
 PLATES = [
     Collision('lower', Box((0.4, 0.3, 0.01)), Pose((0.0, 0.0, 0.1))),
@@ -29,7 +29,7 @@ TURN = from_rpy(0.3, 0.2, 0.1)
 
 def inner(*collisions):
     """Return the names of those that are within."""
-    marks = inner_shapes(collisions, None)
+    marks = occluded_shapes(collisions, None)
     return {one.name for one, mark in zip(collisions, marks, strict=True) if mark}
 
 
@@ -77,7 +77,7 @@ def test_of_the_robot_of_the_article_plates_and_caster_touch():
     collisions, meshes = robot_spec().links[0].collisions, MeshStore()
     files = {one.geometry: meshes.engine_file(one.geometry, exact=False)
              for one in collisions if isinstance(one.geometry, Mesh)}
-    marks = inner_shapes(collisions, files.__getitem__)
+    marks = occluded_shapes(collisions, files.__getitem__)
     meshes.close()
     touching = {one.name for one, mark in zip(collisions, marks, strict=True) if not mark}
     names = ('base_link', 'base_second_link', 'caster_back_link', 'mcu_link_1')
@@ -116,7 +116,7 @@ def reach(collision, way):
 
 @given(st.lists(st.builds(Collision, st.just('one'), shapes, places), min_size=2, max_size=8))
 def test_nothing_that_is_within_reaches_beyond_all_that_touch(collisions):
-    marks = inner_shapes(collisions, None)
+    marks = occluded_shapes(collisions, None)
     touching = [one for one, mark in zip(collisions, marks, strict=True) if not mark]
     for one, mark in zip(collisions, marks, strict=True):
         for way in WAYS if mark else ():

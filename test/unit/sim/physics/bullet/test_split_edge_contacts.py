@@ -20,7 +20,7 @@ from rosbots_description.sim.description.model_spec import (
 )
 from rosbots_description.sim.physics.bullet.compiler import grouped
 from rosbots_description.sim.physics.bullet.generated_urdf import Tree
-from rosbots_description.sim.physics.bullet.split_edge_contacts import leaning
+from rosbots_description.sim.physics.bullet.split_edge_contacts import split_edges
 from rosbots_description.sim.physics.bullet.surfaces import surface_groups
 
 AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
@@ -50,7 +50,7 @@ def side_that_is_lowest(collision):
 ])
 def test_a_box_comes_twice_in_one_place_and_each_is_lowest_on_its_side(turn):
     box = Collision('box', Box((0.5, 0.3, 0.1)), Pose((0.2, 0.0, 0.1), from_rpy(*turn)))
-    both = leaning([box], AXLE, UP)
+    both = split_edges([box], AXLE, UP)
     for one in both:
         for corner, original in zip(corners(one), corners(box), strict=True):
             assert 0.0 < math.dist(corner, original) < 1e-4
@@ -58,17 +58,18 @@ def test_a_box_comes_twice_in_one_place_and_each_is_lowest_on_its_side(turn):
 
 
 def test_in_a_frame_that_is_upside_down_each_is_highest_on_its_side():
-    for lower, upper in zip(leaning([BOX], AXLE, DOWN), leaning([BOX], AXLE, UP), strict=True):
+    for lower, upper in zip(
+            split_edges([BOX], AXLE, DOWN), split_edges([BOX], AXLE, UP), strict=True):
         assert side_that_is_lowest(lower) == pytest.approx(-side_that_is_lowest(upper), abs=1e-4)
 
 
 def test_what_is_round_comes_once():
     shapes = [Collision('ball', Sphere(0.1)), Collision('can', Cylinder(0.1, 0.2))]
-    assert leaning(shapes, AXLE, UP) == tuple(shapes)
+    assert split_edges(shapes, AXLE, UP) == tuple(shapes)
 
 
 def test_a_mesh_has_edges_too():
-    assert len(leaning([Collision('hull', Mesh('hull.stl'))], AXLE, UP)) == 2
+    assert len(split_edges([Collision('hull', Mesh('hull.stl'))], AXLE, UP)) == 2
 
 
 def kinds(group):
@@ -85,8 +86,8 @@ def groups_of(tree):
 
 def test_the_body_that_carries_a_wheel_touches_with_both_ends_of_its_edges():
     tree = Tree([BODY, WHEEL], [None, JOINT], fixed_base=False)
-    (body, wheel), inner_first = grouped(tree, groups_of(tree), no_file)
-    assert not inner_first
+    (body, wheel), occluded_first = grouped(tree, groups_of(tree), no_file)
+    assert not occluded_first
     assert [kinds(group) for group in body] == [[Box, Box, Sphere]]
     assert [kinds(group) for group in wheel] == [[Cylinder] * 4]  # crests and shoulders
 
@@ -99,8 +100,8 @@ def test_what_lies_inside_comes_once():
                   for i in range(-3, 3))
     body = LinkSpec('body', IDENTITY, MASS, (*plates, *posts, smooth))
     tree = Tree([body, WHEEL], [None, JOINT], fixed_base=False)
-    (groups, _), inner_first = grouped(tree, groups_of(tree), no_file)
-    assert inner_first
+    (groups, _), occluded_first = grouped(tree, groups_of(tree), no_file)
+    assert occluded_first
     assert [kinds(group) for group in groups] == [[Box] * 6, [Box] * 4, [Sphere]]
 
 

@@ -9,7 +9,7 @@ from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_o
 from rosbots_description.ros_api.reconfigure import wheel_slip
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.description.model_spec import Element
-from rosbots_description.sim.physics.bullet.slip_compliance import LEAST, Touch, shares
+from rosbots_description.sim.physics.bullet.slip_compliance import MIN_SHARE, Touch, shares
 from rosbots_description.sim.plugins.force.wheel_slip import WheelSlip
 
 AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
@@ -115,7 +115,7 @@ def test_a_tyre_that_holds_without_slip_lets_go_and_one_that_slides_too_fast_is_
 
 def test_friction_is_never_more_than_there_is_nor_nothing():
     assert held(touch(velocity=(0.0, 100.0, 0.0)))[0] == 1.0
-    assert held(touch())[0] == LEAST
+    assert held(touch())[0] == MIN_SHARE
 
 
 def test_without_compliance_all_of_the_friction_is_held():
