@@ -29,7 +29,7 @@ def test_an_engine_has_what_the_protocol_says(engine, name):
 
 
 def test_an_engine_offers_nothing_that_the_protocol_does_not_name():
-    offered = {name for name in vars(Engine) if not name.startswith('_')}
+    offered = {name for name in dir(Engine) if not name.startswith('_')}
     assert offered <= set(METHODS)
 
 

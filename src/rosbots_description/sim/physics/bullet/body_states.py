@@ -1,0 +1,269 @@
+"""How bodies of a PyBullet world move: reads and sets that, drives their joints and pushes them.
+
+PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
+frame; its quaternions are (x, y, z, w) like ours.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from ...core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from ..engine import JointState, Motion, Wrench
+from .body import Body, Part
+from .body_maker import ANY_SPEED
+from .client import pybullet
+from .fast_rotation import FastBodies
+from .solver_iterations import Motor
+
+# Greater forces are clamped to this. Squares of greater numbers overflow, and then
+# whatever a body touches is no number any more either, the ground first.
+_ANY_FORCE = 1e15  # [N or N m]
+
+Push = tuple[Callable[..., None], tuple[Any, ...]]  # what to call, with what
+
+
+class BodyStates:
+    """Reads and sets how the bodies of one PyBullet world move; see `PhysicsEngine`."""
+
+    def __init__(self, client: int) -> None:
+        """Work in the world of that PyBullet client."""
+        self._client = client
+        self._fast = FastBodies(client)
+        self._driven: dict[Body, None] = {}  # those with motors, in the order they came
+        self._pushes: list[Push] = []  # since the last step
+        # What has been read since the last step, by PyBullet's body, in the order of Body.indices:
+        # reading one joint costs as much as reading all of a body's.
+        self._joint_readings: dict[int, Sequence[tuple[Any, ...]]] = {}
+
+    def motion(self, body: Body) -> Motion:
+        """Return where a model is and how it moves, all of it."""
+        return Motion(
+            {link: self.link_state(body, link) for link in body.roots},
+            {name: state[:2] for name, state in self.joint_states(body).items()},
+            dict(body.motors),
+        )
+
+    def set_motion(self, body: Body, motion: Motion) -> None:
+        """Let a model be where another one of the same links and joints was, moving as it did."""
+        self._joint_readings.clear()
+        self.set_root_poses(body, {link: pose for link, (pose, _) in motion.roots.items()})
+        for link, (_, twist) in motion.roots.items():
+            self.set_root_twist(body, link, twist)
+        for name, state in motion.joints.items():
+            pybullet.resetJointState(*body.joints[name], *state, self._client)
+            self.set_joint_motor(body, name, *motion.motors[name])
+
+    def has_diverged(self, body: Body) -> bool:
+        """Tell whether any link of a model moves by numbers that are not finite, or of no world."""
+        # Also a static one: what hits it with endless speed leaves it with a velocity of NaN.
+        return not all(
+            math.isfinite(number) and abs(number) < LARGEST for number in self._coordinates(body))
+
+    def _coordinates(self, body: Body) -> Iterator[float]:
+        """Yield all coordinates and velocities of a model: of its roots, and of its joints."""
+        for number in body.bodies:
+            for numbers in pybullet.getBasePositionAndOrientation(number, self._client):
+                yield from numbers
+            for numbers in pybullet.getBaseVelocity(number, self._client):
+                yield from numbers
+            indices = body.indices.get(number)
+            if indices:
+                for state in pybullet.getJointStates(number, indices, self._client):
+                    yield from state[:2]
+
+    def link_pose(self, body: Body, link: str) -> Pose:
+        """Return the pose of the link's frame in the world."""
+        part = body.parts[link]
+        if part.index < 0:
+            com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
+        else:
+            com = Pose(*self._link_state(part, velocity=False)[:2])
+        return compose(com, part.origin_in_com)
+
+    def link_state(self, body: Body, link: str) -> tuple[Pose, Twist]:
+        """Return the pose of the link's frame and the velocity of its origin, in world axes."""
+        part = body.parts[link]
+        if part.index < 0:
+            com = Pose(*pybullet.getBasePositionAndOrientation(part.body, self._client))
+            linear, angular = pybullet.getBaseVelocity(part.body, self._client)
+        else:
+            state = self._link_state(part, velocity=True)
+            com, linear, angular = Pose(*state[:2]), state[6], state[7]
+        return _state_of_frame(part, com, linear, angular)
+
+    def link_states(self, body: Body) -> dict[str, tuple[Pose, Twist]]:
+        """Return pose and twist of all links."""
+        states = {}
+        for number in {part.body: None for part in body.parts.values()}:
+            mine = [(name, part) for name, part in body.parts.items() if part.body == number]
+            indices = [part.index for _, part in mine if part.index >= 0]
+            rows = iter(pybullet.getLinkStates(number, indices, 1, 1, self._client)
+                        if indices else ())
+            for name, part in mine:
+                if part.index < 0:
+                    states[name] = self.link_state(body, name)
+                    continue
+                row = next(rows)
+                states[name] = _state_of_frame(part, Pose(*row[:2]), row[6], row[7])
+        return states
+
+    def _link_state(self, part: Part, velocity: bool) -> tuple[Any, ...]:
+        state: tuple[Any, ...] = pybullet.getLinkState(
+            part.body,
+            part.index,
+            computeLinkVelocity=velocity,
+            computeForwardKinematics=1,
+            physicsClientId=self._client,
+        )
+        return state
+
+    def set_root_poses(self, body: Body, poses: Mapping[str, Pose]) -> None:
+        """Put the frames of root links at these poses; the links they carry come along.
+
+        Velocities stay; PyBullet would zero them.
+        """
+        for link, pose in poses.items():
+            part = body.parts[link]
+            near = Pose(_at_most(pose.position, LARGEST), pose.orientation)
+            com = compose(near, part.com_in_origin)
+            velocity = pybullet.getBaseVelocity(part.body, self._client)
+            for number in (part.body, *part.also):
+                pybullet.resetBasePositionAndOrientation(number, *com, self._client)
+                pybullet.resetBaseVelocity(number, *velocity, physicsClientId=self._client)
+            self._fast.disturb(part.body)
+
+    def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
+        """Let a root link move with this velocity of its origin, in world axes; joints go on.
+
+        A root that is fixed to the world stays at rest.
+        """
+        if link in body.fixed_roots:
+            return
+        part = body.parts[link]
+        com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
+        angular = _at_most(twist.angular, ANY_SPEED)
+        linear = add(_at_most(twist.linear, ANY_SPEED), cross(angular, com))
+        pybullet.resetBaseVelocity(part.body, linear, angular, physicsClientId=self._client)
+        self._fast.set_in_motion(part.body)
+
+    def set_twist(self, body: Body, twist: Twist) -> None:
+        """Let all links move with this velocity of their root's origin, in world axes."""
+        self._joint_readings.clear()
+        for link in body.roots:
+            self.set_root_twist(body, link, twist)
+        for number, index in body.joints.values():
+            position = pybullet.getJointState(number, index, self._client)[0]
+            pybullet.resetJointState(number, index, position, 0.0, self._client)
+
+    def joint_state(self, body: Body, joint: str) -> JointState:
+        """Return the state of a joint."""
+        position, velocity, _, effort = self._joint_reading(body, joint)
+        # Of a motor without effort PyBullet reports what it gave when it had some.
+        return JointState(position, velocity, effort if body.motors[joint][1] else 0.0)
+
+    def joint_states(self, body: Body) -> dict[str, JointState]:
+        """Return the states of all joints."""
+        return {name: self.joint_state(body, name) for name in body.joints}
+
+    def _joint_reading(self, body: Body, joint: str) -> tuple[Any, ...]:
+        """Return PyBullet's state of a joint; all joints of a body are read in one call."""
+        number, index = body.joints[joint]
+        readings, indices = self._joint_readings.get(number), body.indices[number]
+        if readings is None:
+            readings = pybullet.getJointStates(number, indices, self._client)
+            self._joint_readings[number] = readings
+        return readings[indices.index(index)]
+
+    def set_joint_position(self, body: Body, joint: str, position: float) -> None:
+        """Put a joint at `position` [rad or m], at rest."""
+        self._joint_readings.clear()
+        number, index = body.joints[joint]
+        pybullet.resetJointState(number, index, position, 0.0, self._client)
+        self._fast.disturb(number)
+
+    def motor(self, body: Body, joint: str) -> tuple[float, float]:
+        """Return the motor's target velocity and greatest effort."""
+        return body.motors[joint]
+
+    def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
+        """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
+        if body.motors.get(joint) == (velocity, effort):
+            return  # it does so already
+        velocity = max(-ANY_SPEED, min(ANY_SPEED, velocity))
+        body.motors[joint] = (velocity, effort)
+        self._driven[body] = None
+        pybullet.setJointMotorControl2(
+            *body.joints[joint],
+            pybullet.VELOCITY_CONTROL,
+            targetVelocity=velocity,
+            force=effort,
+            physicsClientId=self._client,
+        )
+
+    def _motors(self) -> Iterator[Motor]:
+        """Yield all motors: velocity and its target, effort and its limit."""
+        for body in self._driven:
+            for joint, (target, limit) in body.motors.items():
+                if limit > 0.0:
+                    _, velocity, _, effort = self._joint_reading(body, joint)
+                    yield velocity, target, effort, limit
+
+    def push(
+        self, body: Body, link: str, force: Vector, torque: Vector, place: Vector | None = None
+    ) -> None:
+        """Push a link during the next step: force [N] and torque [N m], beside other pushes.
+
+        Args:
+            place: where the force acts [m], None for the centre of mass; all in world axes.
+        """
+        part = body.parts[link]
+        if place is None:
+            place = compose(self.link_pose(body, link), part.com_in_origin).position
+        world, client = pybullet.WORLD_FRAME, self._client
+        force, torque = _at_most(force, _ANY_FORCE), _at_most(torque, _ANY_FORCE)
+        pybullet.applyExternalForce(part.body, part.index, force, place, world, client)
+        pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
+        self._pushes.append((self.push, (body, link, force, torque, place)))
+        self._fast.disturb(part.body)
+
+    def push_joint(self, body: Body, joint: str, effort: float) -> None:
+        """Push a joint during the next step by `effort` [N m or N], beside its motor."""
+        effort = max(min(effort, _ANY_FORCE), -_ANY_FORCE)
+        pybullet.setJointMotorControl2(
+            *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
+        )
+        self._pushes.append((self.push_joint, (body, joint, effort)))
+        self._fast.disturb(body.joints[joint][0])
+
+    def measure_reaction(self, body: Body, joint: str, wanted: bool = True) -> None:
+        """Begin or end to measure what a joint passes on."""
+        self._joint_readings.clear()
+        pybullet.enableJointForceTorqueSensor(*body.joints[joint], int(wanted), self._client)
+
+    def joint_reaction(self, body: Body, joint: str) -> Wrench:
+        """Return what the parent did to the child through a joint in the last step."""
+        # PyBullet reports it in the principal axes of the child, without what the motor does.
+        values = self._joint_reading(body, joint)[2]
+        turn = next(part.com_in_origin.orientation for part in body.parts.values()
+                    if (part.body, part.index) == body.joints[joint])
+        force, torque = rotate(turn, values[:3]), rotate(turn, values[3:])
+        if not any(values):
+            return Wrench(force, torque)
+        axis, turns = body.joint_axes[joint]
+        effort = self.joint_state(body, joint).effort
+        driven = (effort * axis[0], effort * axis[1], effort * axis[2])
+        return Wrench(force, add(torque, driven)) if turns else Wrench(add(force, driven), torque)
+
+
+def _state_of_frame(part: Part, com: Pose, linear: Vector, angular: Vector) -> tuple[Pose, Twist]:
+    """Return pose and twist of a link's frame, by those of its centre of mass."""
+    pose = compose(com, part.origin_in_com)
+    arm = subtract(pose.position, com.position)
+    return pose, Twist(add(linear, cross(angular, arm)), angular)
+
+
+def _at_most(vector: Vector, most: float) -> Vector:
+    """Return a vector with its components clamped to `most`, to either side."""
+    x, y, z = (max(min(component, most), -most) for component in vector)  # NaN stays
+    return (x, y, z)
