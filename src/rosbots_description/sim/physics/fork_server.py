@@ -120,7 +120,7 @@ class ForkServer:
         made, number = _END.unpack(answer)
         if not made:
             raise OSError(number, os.strerror(number))
-        return number
+        return int(number)
 
 
 def _no_answer() -> OSError:
@@ -197,7 +197,8 @@ def _serve(work: Work, channel: socket.socket) -> None:
                     request, files, _, _ = socket.recv_fds(channel, _REQUEST.size, 2)
                     if not request:
                         return
-                    child = _make_child(work, *_REQUEST.unpack(request), files)
+                    (allowance,) = _REQUEST.unpack(request)
+                    child = _make_child(work, allowance, files)
                     if child is not None:
                         children.add(child)
                         selector.register(child.caller, selectors.EVENT_READ, child)
@@ -239,7 +240,7 @@ def _make_child(work: Work, allowance: float, files: list[int]) -> _Child | None
     except OSError as error:
         if life is not None:
             os.close(life)
-        _answer(caller, False, error.errno)
+        _answer(caller, False, error.errno or errno.EIO)
         return None
     finally:
         os.close(report)
@@ -254,7 +255,7 @@ def _be_the_child(
     try:
         _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() != parent:
-            return  # it was gone before
+            os._exit(1)  # it was gone before
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, allowance)

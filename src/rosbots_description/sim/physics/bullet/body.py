@@ -25,13 +25,13 @@ class Place(NamedTuple):
     """A part of a body: the numbers that PyBullet gave to the body and to its link, -1 its base."""
 
     body: int
-    index: int
+    link: int
 
 
 class Mass(NamedTuple):
-    """A part of a body that weighs: PyBullet's index, mass [kg], principal moments [kg m^2]."""
+    """A part of a body that weighs: PyBullet's link, mass [kg], principal moments [kg m^2]."""
 
-    index: int
+    link: int
     mass: float
     moments: Vector
     has_weight: bool

@@ -33,12 +33,14 @@ def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
     parents = {joint.parent for joint in tree.joints if joint}
     joints = tuple(body.joints[joint.name][1] for joint, _ in movable)
     unbalanced = tuple(body.joints[joint.name][1] for joint, link in movable
-                       if link.name in parents or not is_balanced(link.inertial, joint))
+                       if link.name in parents or link.inertial is None
+                       or not is_balanced(link.inertial, joint))
     links = {link.name: link for link in tree.links[tree.fixed_base:] if link.inertial}
     given = [(joint.damping, joint.stiffness, joint.reference,
               compliance(joint, link, links.get(joint.parent))
               if joint.damping or joint.stiffness else 1.0) for joint, link in movable]
-    return Masses(parts, joints, *(zip(*given, strict=True) if given else ((),) * 4), unbalanced,
+    damping, stiffness, reference, compliances = zip(*given, strict=True) if given else ((),) * 4
+    return Masses(parts, joints, damping, stiffness, reference, compliances, unbalanced,
                   tree.fixed_base)
 
 
@@ -160,7 +162,7 @@ class BodyMaker:
         descriptor = os.memfd_create('model')
         try:
             os.write(descriptor, text.encode())
-            return pybullet.loadURDF(
+            number: int = pybullet.loadURDF(
                 f'/proc/self/fd/{descriptor}',
                 *pose,
                 useFixedBase=tree.fixed_base,
@@ -168,6 +170,7 @@ class BodyMaker:
                 flags=flags,
                 physicsClientId=self._client,
             )
+            return number
         finally:
             os.close(descriptor)
 

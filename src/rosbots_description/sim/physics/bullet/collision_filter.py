@@ -38,5 +38,5 @@ class CollisionFilter:
 
     def _set(self, one: Place, other: Place, touching: bool) -> None:
         pybullet.setCollisionFilterPair(
-            one.body, other.body, one.index, other.index, int(touching), self._client
+            one.body, other.body, one.link, other.link, int(touching), self._client
         )

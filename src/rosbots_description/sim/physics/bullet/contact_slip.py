@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 from ...core import Pose, Twist, Vector, rotate, subtract
 from ...description import ModelSpec
@@ -63,11 +64,11 @@ class Slipping:
         self.links.clear()
         self._held.clear()
 
-    def note(self) -> tuple:
+    def note(self) -> tuple[Any, ...]:
         """Return what `recall` takes to go back to the present state."""
         return tuple(self.links), dict(self._held)
 
-    def recall(self, note: tuple) -> None:
+    def recall(self, note: tuple[Any, ...]) -> None:
         """Go back to a state of the same bodies."""
         links, held = note
         whole = {place: axes.scales for body, _, _ in (*self.links, *links)
@@ -112,11 +113,11 @@ class Slipping:
             other, spot, normal, load = (point[2], point[4]), point[5], point[7], point[9]
             along, one, across, two = point[10:14]
             sign = -1.0 if spot in as_second else 1.0
-            force = (sign * (along * a + across * b) for a, b in zip(one, two, strict=True))
+            x, y, z = (sign * (along * a + across * b) for a, b in zip(one, two, strict=True))
             own = velocity_at(spot, origin, *twist)
             mu = (pybullet.getDynamicsInfo(*each, client)[1] for each in (place, other))
             yield Touch(
-                spot, normal, load, tuple(force), subtract(own, self._velocity(*other, spot)),
+                spot, normal, load, (x, y, z), subtract(own, self._velocity(*other, spot)),
                 load * math.prod(mu),
             )
 

@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...core import Pose, SimError, Vector, conjugate, rotate, subtract
 from ...description import Box, Collision, Cylinder, Mesh, Plane, Sphere
@@ -31,7 +32,7 @@ class Surroundings:
         """
         self._client, self._link_pose, self._mesh_file = client, link_pose, mesh_file
         self._owners: dict[Place, tuple[Body, str]] = {}
-        self._triangles: dict[Mesh, np.ndarray] = {}
+        self._triangles: dict[Mesh, NDArray[np.float64]] = {}
 
     def add(self, body: Body) -> None:
         """Know a body by its names from now on."""
@@ -82,7 +83,7 @@ class Surroundings:
                            f'{ends.shape}')
         if not (np.isfinite(starts).all() and np.isfinite(ends).all()):
             raise SimError('rays take finite starts and ends')
-        hits: list[tuple] = []
+        hits: list[tuple[Any, ...]] = []
         for first in range(0, len(starts), _MAX_RAYS):
             batch = slice(first, first + _MAX_RAYS)
             hits += pybullet.rayTestBatch(starts[batch].tolist(), ends[batch].tolist(),
@@ -133,7 +134,7 @@ def _outside(reaches: Iterable[float]) -> float:
     return math.hypot(*(max(reach, 0.0) for reach in reaches))
 
 
-def _to_triangles(triangles: np.ndarray, point: np.ndarray) -> float:
+def _to_triangles(triangles: NDArray[np.float64], point: NDArray[np.float64]) -> float:
     """Return the distance of a point to the nearest of triangles (n, 3, 3) [m]."""
     a, b, c = (triangles[:, k] - point for k in range(3))
     nearest = math.inf
@@ -149,4 +150,4 @@ def _to_triangles(triangles: np.ndarray, point: np.ndarray) -> float:
         flat = normal[above]
         height = (a[above] * flat).sum(axis=1) ** 2 / (flat * flat).sum(axis=1)
         nearest = min(nearest, float(height.min()))
-    return nearest ** 0.5
+    return math.sqrt(nearest)

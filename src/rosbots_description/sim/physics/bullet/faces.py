@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ...core import Pose, compose, normalise
-from ...description import Box, Collision
+from ...description import Box, Collision, Plane
 from .friction_filter import Kind, Role, Side, coefficient, roles
 from .generated_urdf import Tree
 from .surfaces import Groups, is_floor
@@ -55,8 +55,8 @@ def slab(tree: Tree) -> list[Face]:
         return []
     below = Pose((0.0, 0.0, -_SLAB.size[2] / 2.0))
     shapes = tuple(
-        replace(plane, geometry=_SLAB, pose=compose(compose(plane.pose, _tilt(plane)), below))
-        for plane in tree.links[0].collisions
+        replace(one, geometry=_SLAB, pose=compose(compose(one.pose, _tilt(one.geometry)), below))
+        for one in tree.links[0].collisions if isinstance(one.geometry, Plane)
     )
     return _in_roles(shapes, Kind.SLAB, is_static=True)
 
@@ -82,7 +82,7 @@ def _in_both(face: Face) -> Face:
     return Face(face.shapes, Side(kind, Role.BOTH, 1.0), min(1.0, mu))
 
 
-def _tilt(plane: Collision) -> Pose:
+def _tilt(plane: Plane) -> Pose:
     """Return the rotation that brings z to the normal of a plane."""
-    x, y, z = plane.geometry.normal
+    x, y, z = plane.normal
     return Pose(orientation=normalise((-y, x, 0.0, 1.0 + z)) if z > -1.0 else (1.0, 0.0, 0.0, 0.0))

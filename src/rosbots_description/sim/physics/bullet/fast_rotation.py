@@ -6,8 +6,10 @@ are put right in each step.
 """
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core import Vector, conjugate, rotate
 from .body import Masses
@@ -68,12 +70,12 @@ class FastBodies:
         self.disturb(number)
         self.rest = 0
 
-    def note(self) -> tuple:
+    def note(self) -> tuple[Any, ...]:
         """Return what `recall` takes to go back to the present state."""
         return self.rest, {number: (one.calm, one.ceiling, one.flies, one.peak, one.total)
                            for number, one in self._swinging.items()}
 
-    def recall(self, note: tuple) -> None:
+    def recall(self, note: tuple[Any, ...]) -> None:
         """Go on as at the time of a note; the bodies are the same."""
         self.rest, swinging = note
         self._swinging.clear()
@@ -136,11 +138,11 @@ class _Swinging:
 
     def __init__(self, client: int, number: int, masses: Masses) -> None:
         self._client, self._number, self._all = client, number, masses
-        base = [part for part in masses.parts if part.index < 0]
-        links = [part for part in masses.parts if part.index >= 0]
+        base = [part for part in masses.parts if part.link < 0]
+        links = [part for part in masses.parts if part.link >= 0]
         self._base = bool(base) and not masses.is_fixed
         parts = (base if self._base else []) + links
-        self._indices = [part.index for part in links]
+        self._indices = [part.link for part in links]
         self._mass = np.array([part.mass for part in parts])
         self._weight = np.array([part.mass * part.has_weight for part in parts])
         self._moments = np.array([part.moments for part in parts])
@@ -175,7 +177,7 @@ class _Swinging:
 
     def _energy(
         self, step_size: float, gravity: Vector
-    ) -> tuple[float, float, float, np.ndarray]:
+    ) -> tuple[float, float, float, NDArray[np.float64]]:
         """Return energies [J], and how the centre of mass drifts [m/s].
 
         All energy, that without place and drift of the centre of mass, and the kinetic part of
@@ -188,7 +190,7 @@ class _Swinging:
             pose = pybullet.getBasePositionAndOrientation(self._number, self._client)
             rows.insert(0, (*pose, *pybullet.getBaseVelocity(self._number, self._client)))
         places, turns, linear, angular = (np.array(column) for column in zip(*rows, strict=True))
-        own = _turned_back(turns, angular)
+        turning = _turned_back(turns, angular)
         middle = places - 0.5 * step_size * linear
         energy = -float((self._weight[:, None] * middle * gravity).sum())
         drift = np.zeros(3)
@@ -198,7 +200,7 @@ class _Swinging:
             energy += 0.5 * whole * float((drift * drift).sum())
         linear = linear - drift
         kinetic = 0.5 * float((self._mass[:, None] * linear * linear).sum()
-                              + (self._moments * own * own).sum())
+                              + (self._moments * turning * turning).sum())
         own = kinetic + self._strain(step_size)
         return energy + own, own, kinetic, drift
 
@@ -207,11 +209,11 @@ class _Swinging:
         if not any(self._all.stiffness):
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
-        return sum(
+        return float(sum(
             0.5 * stiffness * (state[0] - 0.5 * step_size * state[1] - reference) ** 2
             for state, stiffness, reference in zip(
                 states, followed_stiffness(self._all, step_size), self._all.reference, strict=True)
-        )
+        ))
 
     def _work(self, step_size: float) -> float:
         """Return what motors and dampers gave in the last step [J], less than 0 if they took it."""
@@ -219,15 +221,15 @@ class _Swinging:
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
         pairs = zip(states, followed_damping(self._all, step_size), strict=True)
-        return step_size * sum(speed * (effort - damping * speed)
-                               for (_, speed, _, effort), damping in pairs)
+        return step_size * float(sum(speed * (effort - damping * speed)
+                                     for (_, speed, _, effort), damping in pairs))
 
     def touched(self) -> set[int]:
         """Return what else the body touches."""
         points = pybullet.getContactPoints(self._number, physicsClientId=self._client)
         return {number for point in points for number in point[1:3]} - {self._number}
 
-    def _slow_down(self, share: float, drift: np.ndarray) -> None:
+    def _slow_down(self, share: float, drift: NDArray[np.float64]) -> None:
         """Let all parts move with a share of their velocity about the centre of mass."""
         if self._base:
             linear, angular = pybullet.getBaseVelocity(self._number, self._client)
@@ -264,7 +266,7 @@ def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
     return step_size * sum(t * t / i for t, i in zip(torque, moments, strict=True)) / energy
 
 
-def _turned_back(turns: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+def _turned_back(turns: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return vectors (n, 3) turned by the inverse of quaternions (n, 4)."""
     own, w = -turns[:, :3], turns[:, 3:]
     twice = 2.0 * np.cross(own, vectors)

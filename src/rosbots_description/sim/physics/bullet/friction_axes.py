@@ -1,6 +1,7 @@
 """In which directions a surface holds how much, and what it gives back, in PyBullet's terms."""
 
 import math
+from typing import Any
 
 from ...core import ALONG, Quaternion, Vector, conjugate, rotate
 from ...description import Collision, LinkSpec, Surface
@@ -12,7 +13,7 @@ _PARTS_FREELY = 1.0  # [m/s] a max_vel from which on things may bounce
 _FASTEST_IMPACT = 100.0  # [m/s] a threshold beyond which nothing bounces
 
 
-def directions(collision: Collision) -> tuple:
+def directions(collision: Collision) -> tuple[Any, ...]:
     """Return what tells apart the directions of friction; nothing if it has none."""
     surface = collision.surface
     if _is_even(surface, MAX_FRICTION):
@@ -31,7 +32,8 @@ def first_direction(collision: Collision, link: LinkSpec) -> Vector:
     length = math.hypot(*given)
     if not length:
         return rotate(conjugate(link.pose.orientation), (0.0, 1.0, 0.0))
-    return rotate(collision.pose.orientation, tuple(component / length for component in given))
+    x, y, z = given
+    return rotate(collision.pose.orientation, (x / length, y / length, z / length))
 
 
 def friction_scales(
@@ -54,8 +56,9 @@ def friction_scales(
     if not any(along):
         return EVENLY
     greatest = min(friction, surface.greatest_mu)
-    first, second = (min(1.0, mu / greatest) for mu in (surface.mu, surface.mu2))
-    return tuple(first if is_first else second for is_first in along)
+    share, other = (min(1.0, mu / greatest) for mu in (surface.mu, surface.mu2))
+    x, y, z = (share if is_first else other for is_first in along)
+    return (x, y, z)
 
 
 def _is_even(surface: Surface, most: float) -> bool:

@@ -80,7 +80,8 @@ def describe_tree(
     ]
     lines = ['<robot name="m">']
     for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
-        mass = 0.0 if tree.fixed_base and i == 0 else link.inertial.mass
+        is_fixed = tree.fixed_base and i == 0
+        mass = link.inertial.mass if link.inertial and not is_fixed else 0.0
         back = inverse(joint.pose) if joint else Pose()
         inertial = compose(back, inertial_poses[i])
         lines += _link(f'l{i}', mass, inertial, back, groups[i][0], mesh_file)

@@ -11,6 +11,7 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core import Pose, rotate
 from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
@@ -64,30 +65,38 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     )
 
 
-def _points(shape: Geometry | str) -> np.ndarray:
+def _points(shape: Geometry | str) -> NDArray[np.float64]:
     """Return points (n, 3) of a shape's surface, among them all that its box touches [m]."""
+    points: NDArray[np.float64]
     match shape:
         case Box(size):
-            return _CUBE * np.array(size) / 2.0
+            points = _CUBE * np.array(size) / 2.0
         case Sphere(radius):
-            return _POLES * radius
+            points = _POLES * radius
         case Cylinder(radius, length):
-            return _RIMS * (radius, radius, length / 2.0)
+            points = _RIMS * (radius, radius, length / 2.0)
         case str():
-            return read_stl(Path(shape).read_bytes()).reshape(-1, 3)
+            points = read_stl(Path(shape).read_bytes()).reshape(-1, 3)
+        case _:
+            raise TypeError(f'{shape} has no points')
+    return points
 
 
-def _box(points: np.ndarray) -> np.ndarray:
+def _box(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the corners of the box, along the axes, around points."""
     low, high = points.min(axis=0), points.max(axis=0)
-    return (low + high) / 2.0 + _CUBE * (high - low) / 2.0
+    corners: NDArray[np.float64] = (low + high) / 2.0 + _CUBE * (high - low) / 2.0
+    return corners
 
 
-def _placed(points: np.ndarray, pose: Pose) -> np.ndarray:
-    return np.stack(rotate(pose.orientation, tuple(points.T)), axis=1) + np.array(pose.position)
+def _placed(points: NDArray[np.float64], pose: Pose) -> NDArray[np.float64]:
+    x, y, z = points.T
+    turned = np.stack(rotate(pose.orientation, (x, y, z)), axis=1)
+    placed: NDArray[np.float64] = turned + np.array(pose.position)
+    return placed
 
 
-def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _hull(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the sides of the hull of a few points: normals (n, 3) and how far out each is [m].
 
     Each plane through three points is one that has all of the others behind it. What is flat has no
@@ -115,7 +124,7 @@ def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=16)
-def _triples(count: int) -> np.ndarray:
+def _triples(count: int) -> NDArray[np.int64]:
     """Return all triples of so many, (3, n)."""
     i = np.arange(count)
     return np.stack(np.nonzero((i[:, None, None] < i[:, None]) & (i[:, None] < i)))

@@ -51,7 +51,7 @@ def shares(
         speed = sum(dot(touch.velocity, direction) * touch.load for touch in touches) / load
         held = abs(force * gain - speed) / (slip + gain)
         found.append(min(1.0, max(MIN_SHARE, held / (limit * reach(direction)))))
-    return tuple(found)
+    return (found[0], found[1])
 
 
 def _directions(touches: list[Touch], axle: Vector) -> tuple[Vector, Vector]:
@@ -59,7 +59,7 @@ def _directions(touches: list[Touch], axle: Vector) -> tuple[Vector, Vector]:
     normal = touches[0].normal
     ahead = cross(axle, normal)
     length = math.hypot(*ahead) or 1.0
-    ahead = tuple(component / length for component in ahead)
+    ahead = (ahead[0] / length, ahead[1] / length, ahead[2] / length)
     return cross(normal, ahead), ahead
 
 

@@ -6,6 +6,7 @@ parked.
 """
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 CHECK = 40  # steps between two looks at the motors
 # Share of its target by which a motor may miss it on each level but the last. The least number of
@@ -59,11 +60,11 @@ class SolverEffort:
         elif self._level and self._missed < REACHED and self._wait < 0:
             self._shift(-1)
 
-    def note(self) -> tuple:
+    def note(self) -> tuple[Any, ...]:
         """Return what `recall` takes to go back to the present state."""
         return (self._least, self._level, self._missed, self._targets, self._patience, self._wait)
 
-    def recall(self, note: tuple) -> None:
+    def recall(self, note: tuple[Any, ...]) -> None:
         """Go on as at the time of a note."""
         (self._least, self._level, self._missed, self._targets, self._patience, self._wait) = note
         self._set_iterations(self._least * FACTOR**self._level)

@@ -23,13 +23,14 @@ def split_edges(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[
         shapes: in the frame of the body, whose origin is not far from the middle of the axle.
         axle, up: unit vectors in that frame.
     """
-    ahead = cross(axle, up)
+    x, y, z = cross(axle, up)
     found = []
     for shape in shapes:
         if not isinstance(shape.geometry, Box | Mesh):
             found.append(shape)
             continue
         for half in (_TILT / 2.0, -_TILT / 2.0):
-            turn = (*(math.sin(half) * x for x in ahead), math.cos(half))
+            sine = math.sin(half)
+            turn = (sine * x, sine * y, sine * z, math.cos(half))
             found.append(replace(shape, pose=compose(Pose(orientation=turn), shape.pose)))
     return tuple(found)

@@ -46,9 +46,9 @@ class Springs:
             stiffness = followed_stiffness(masses, self._step_size)
             sprung = [i for i, value in enumerate(stiffness) if value]
             if sprung:
-                self._springs[number] = tuple(
-                    [values[i] for i in sprung]
-                    for values in (masses.joints, stiffness, masses.reference)
+                self._springs[number] = (
+                    [masses.joints[i] for i in sprung], [stiffness[i] for i in sprung],
+                    [masses.reference[i] for i in sprung],
                 )
             for index, damping in zip(
                 masses.joints, followed_damping(masses, self._step_size), strict=True

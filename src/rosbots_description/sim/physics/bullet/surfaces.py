@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import compress
 from operator import not_
+from typing import Any
 
 from ...core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
 from ...description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
@@ -88,8 +89,8 @@ def crowned(
     A cylinder touches a floor along a line, and PyBullet finds one end of it. The crests, at both
     ends and in the middle, share the load.
     """
-    wheel = collision.geometry
-    if not _is_wheel(collision, joint):
+    wheel = _wheel(collision, joint)
+    if wheel is None:
         return (collision,)
     axis = rotate(collision.pose.orientation, UP)
     if touching_end(wheel, rotate(link.pose.orientation, axis)):
@@ -105,11 +106,13 @@ def crowned(
     )
 
 
-def _is_wheel(collision: Collision, joint: JointSpec | None) -> bool:
-    """Tell whether a collision is a cylinder that a joint turns about its own axis."""
-    if joint is None or joint.type != REVOLUTE or not isinstance(collision.geometry, Cylinder):
-        return False
-    return abs(dot(rotate(collision.pose.orientation, UP), joint.axis_in_child)) >= ALONG
+def _wheel(collision: Collision, joint: JointSpec | None) -> Cylinder | None:
+    """Return the cylinder that a collision is if a joint turns it about its own axis, else None."""
+    shape = collision.geometry
+    if joint is None or joint.type != REVOLUTE or not isinstance(shape, Cylinder):
+        return None
+    along = abs(dot(rotate(collision.pose.orientation, UP), joint.axis_in_child)) >= ALONG
+    return shape if along else None
 
 
 def touching_end(wheel: Cylinder, axis: Vector) -> float:
@@ -135,7 +138,7 @@ def _axle(tree: Tree) -> Vector | None:
     root = tree.links[0]
     for link, joint in zip(tree.links[1:], tree.joints[1:], strict=True):
         wheels = (len(crowned(one, link, joint)) > 1 for one in link.collisions)
-        if joint.parent == root.name and any(wheels):
+        if joint and joint.parent == root.name and any(wheels):
             axle = rotate(link.pose.orientation, joint.axis_in_child)
             return rotate(conjugate(root.pose.orientation), axle)
     return None
@@ -143,14 +146,12 @@ def _axle(tree: Tree) -> Vector | None:
 
 def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
     """Group by equal surface, since PyBullet knows one friction per body; first seen first."""
-    groups: dict = {}
+    groups: dict[tuple[Any, ...], list[Collision]] = {}
     for collision in collisions:
         surface = collision.surface
         key = (surface.kp, surface.kd, restitution(surface), directions(collision))
         groups.setdefault((surface.greatest_mu, *key), []).append(collision)
     return [tuple(group) for group in groups.values()]
-
-
 
 
 def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> float:
@@ -160,12 +161,10 @@ def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> flo
     them in a step; the other pushes from where it was, from behind, and a can at rest would roll
     away faster and faster. Wheels do not: they touch in one place (`crowned`, `touching_end`).
     """
-    shapes = [collision.geometry for collision in collisions]
-    if not all(isinstance(shape, Cylinder) for shape in shapes):
+    radii = [one.geometry.radius for one in collisions if isinstance(one.geometry, Cylinder)]
+    if len(radii) < len(collisions) or any(_wheel(one, joint) for one in collisions):
         return 0.0
-    if any(_is_wheel(collision, joint) for collision in collisions):
-        return 0.0
-    return _ROLLING_RESISTANCE * max((shape.radius for shape in shapes), default=0.0)
+    return _ROLLING_RESISTANCE * max(radii, default=0.0)
 
 
 def overlap_share(step_size: float, rate: float) -> float:

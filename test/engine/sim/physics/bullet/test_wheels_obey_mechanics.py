@@ -278,7 +278,7 @@ def touches(world, model):
         origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # when it touched
         for place in places:
             for point in pybullet.getContactPoints(
-                place.body, linkIndexA=place.index, physicsClientId=client
+                place.body, linkIndexA=place.link, physicsClientId=client
             ):
                 sides = place, (point[2], point[4])
                 mu = math.prod(pybullet.getDynamicsInfo(*side, client)[1] for side in sides)
