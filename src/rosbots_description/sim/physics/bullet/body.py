@@ -73,6 +73,7 @@ class Body:
         # Axis in the frame of the child link, and whether the joint turns about it.
         self.joint_axes: dict[str, tuple[Vector, bool]] = {}
         self.indices: dict[int, list[int]] = {}  # those of all joints, by body
+        self.rows: dict[str, tuple[int, int]] = {}  # of joints: body, and place in its indices
         self.roots: list[str] = []  # links that the engine moves as bases
         self.fixed_roots: set[str] = set()  # roots that are fixed to the world
         self.bodies: list[int] = []

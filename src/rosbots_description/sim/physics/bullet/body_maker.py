@@ -110,7 +110,9 @@ class BodyMaker:
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
                 body.joint_axes[joint.name] = joint.axis_in_child, joint.type != PRISMATIC
-                body.indices.setdefault(number, []).append(part.index)
+                indices = body.indices.setdefault(number, [])
+                body.rows[joint.name] = number, len(indices)
+                indices.append(part.index)
             if not link.gravity and not (tree.fixed_base and i == 0):
                 mass = link.inertial.mass if link.inertial else 0.0
                 body.weightless.append((number, part.index, mass))

@@ -168,12 +168,12 @@ class BodyStates:
 
     def _joint_reading(self, body: Body, joint: str) -> tuple[Any, ...]:
         """Return PyBullet's state of a joint; all joints of a body are read in one call."""
-        number, index = body.joints[joint]
-        readings, indices = self._joint_readings.get(number), body.indices[number]
+        number, row = body.rows[joint]
+        readings = self._joint_readings.get(number)
         if readings is None:
-            readings = pybullet.getJointStates(number, indices, self._client)
+            readings = pybullet.getJointStates(number, body.indices[number], self._client)
             self._joint_readings[number] = readings
-        return readings[indices.index(index)]
+        return readings[row]
 
     def set_joint_position(self, body: Body, joint: str, position: float) -> None:
         """Put a joint at `position` [rad or m], at rest."""
