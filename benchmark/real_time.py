@@ -25,7 +25,7 @@ from loops import Loop
 from server import Server, in_a_process_of_its_own
 
 from rosbots_description.sim.core.transforms import Pose as SpawnPose
-from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
+from rosbots_description.sim.physics.crash_sandbox import CrashSandbox
 from rosbots_description.sim.runtime.world import World
 
 WINDOW = 3.0  # [s, wall]

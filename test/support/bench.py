@@ -21,8 +21,8 @@ from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.description.world_spec import LightSpec
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
-from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
 from rosbots_description.sim.physics.bullet.engine import Engine
+from rosbots_description.sim.physics.crash_sandbox import CrashSandbox
 from rosbots_description.sim.runtime.world import World
 
 from . import SPAWN_POSE, box_urdf, empty_world, package_directory, robot_spec, urdf_spec

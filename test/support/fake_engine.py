@@ -39,7 +39,7 @@ class FakeEngine:
         self.step_size = physics.step_size
 
     def compile(self, spec):
-        return CompiledModel(spec, ())
+        return CompiledModel(spec, (), 0)
 
     def add(self, model, pose):
         spec, root = model.spec, model.spec.links[0].name

@@ -1,7 +1,8 @@
 """Physics engines, one folder each, and the protocol by which the simulator knows them."""
 
-from .bullet import CrashSandbox, make_engine
+from .bullet import make_engine
 from .compiled_model import CompiledModel
+from .crash_sandbox import CrashSandbox
 from .engine import (
     CollisionName,
     Contact,

@@ -2,8 +2,7 @@
 
 from .body import Body
 from .client import pybullet
-from .crash_sandbox import CrashSandbox
 from .engine import Engine, make_engine
 from .tuning import Tuning
 
-__all__ = ['Body', 'CrashSandbox', 'Engine', 'Tuning', 'make_engine', 'pybullet']
+__all__ = ['Body', 'Engine', 'Tuning', 'make_engine', 'pybullet']

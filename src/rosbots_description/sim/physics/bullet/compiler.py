@@ -6,14 +6,14 @@ any thread: meshes, surfaces, the text that PyBullet reads. World and crash sand
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from ...core import NO_ROTATION, ModelError, Pose, Quaternion, Vector
 from ...description import Collision, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from ...description.inertia import principal_axes
 from ...meshes import HeldFile, MeshStore
-from ..compiled_model import CompiledModel
+from ..compiled_model import CompiledModel, bare
 from .body import FrictionAxes
 from .faces import Face, faces, slab
 from .friction_axes import friction_scales, restitution
@@ -75,11 +75,6 @@ class BulletModel(CompiledModel):
     """A model ready for the engine on PyBullet."""
 
     trees: tuple[CompiledTree, ...]
-    size: int  # bytes that the engine reads
-
-    def bare(self) -> 'BulletModel':
-        """Return what the engine sees of it: no name, looks, sensors and plugins."""
-        return replace(self, spec=_bare(self.spec))
 
 
 def compile_model(spec: ModelSpec, meshes: MeshStore) -> BulletModel:
@@ -93,7 +88,7 @@ def compile_model(spec: ModelSpec, meshes: MeshStore) -> BulletModel:
     """
     _require(spec, excess_of_parts(spec))
     groups = []
-    trees = kinematic_trees(_bare(spec))
+    trees = kinematic_trees(bare(spec))
     for tree in trees:
         groups.append([surface_groups(tree, i) for i in range(len(tree.links))])
         _require(spec, excess_of_joints(tree, groups[-1]))
@@ -112,17 +107,12 @@ def compile_model(spec: ModelSpec, meshes: MeshStore) -> BulletModel:
         size += sum(len(body.text) for body in compiled[-1].bodies)
         shapes = [collision.geometry for link in tree.links for collision in link.collisions]
         size += sum(os.path.getsize(file_of(one)) for one in shapes if isinstance(one, Mesh))
-    return BulletModel(spec, tuple(files.values()), tuple(compiled), size)
+    return BulletModel(spec, tuple(files.values()), size, tuple(compiled))
 
 
 def _require(spec: ModelSpec, excess: str | None) -> None:
     if excess:
         raise ModelError(f"{spec.location or f'model {spec.name!r}'}: {excess}")
-
-
-def _bare(spec: ModelSpec) -> ModelSpec:
-    links = tuple(replace(link, visuals=(), sensors=()) for link in spec.links)
-    return ModelSpec('', links, spec.joints, static=spec.static)
 
 
 def grouped(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> tuple[list[Groups], bool]:

@@ -1,6 +1,6 @@
 """A last resort: what would crash the physics engine does so in a process of its own first.
 
-Descriptions are checked as they are read and compiled, so nothing that is known to kill PyBullet
+Descriptions are checked as they are read and compiled, so nothing that is known to kill an engine
 gets this far. For what nobody knows of yet, a model that is new to the simulator is tested in a
 child process, in an empty world. That costs 0.03 s of processor time, once for each content. A
 heavy model costs 0.15 s, or what it takes to add it and make one step. Only processor time
@@ -18,11 +18,11 @@ import time
 from collections.abc import Callable
 from functools import partial
 
-from ...core import IDENTITY, ModelError, Pose, compose
-from ...description import GROUND_PLANE, ModelSpec, PhysicsSettings
-from ..fork_server import LOOK, MAX_ASLEEP, ForkServer, Killed, Unwanted, Work
-from .compiler import BulletModel
-from .engine import Engine
+from ..core import IDENTITY, ModelError, Pose, compose
+from ..description import GROUND_PLANE, ModelSpec, PhysicsSettings
+from .compiled_model import CompiledModel
+from .engine import PhysicsEngine
+from .fork_server import LOOK, MAX_ASLEEP, ForkServer, Killed, Unwanted, Work
 
 logger = logging.getLogger(__name__)
 
@@ -47,7 +47,7 @@ _KILLED = 'it killed the process (SIGKILL), as it does where memory runs out'
 class CrashSandbox:
     """Tests models and remembers, by their content, those that passed. Any thread may ask."""
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: PhysicsEngine) -> None:
         """Start the process that tests models; do so before there are threads.
 
         Args:
@@ -70,7 +70,7 @@ class CrashSandbox:
 
     def require(
         self,
-        model: BulletModel,
+        model: CompiledModel,
         physics: PhysicsSettings,
         is_wanted: Callable[[], bool] = lambda: True,
     ) -> None:
@@ -105,7 +105,7 @@ class CrashSandbox:
                 self._changed.notify_all()
 
     def _try(
-        self, name: str, model: BulletModel, physics: PhysicsSettings,
+        self, name: str, model: CompiledModel, physics: PhysicsSettings,
         is_wanted: Callable[[], bool],
     ) -> bool:
         """Return whether the engine survived a model; False if that is unknown."""
@@ -135,7 +135,7 @@ class CrashSandbox:
         return True
 
 
-def _allowance(model: BulletModel) -> float:
+def _allowance(model: CompiledModel) -> float:
     """Return the processor time [s] that the test of a model may take."""
     parts = sum(1 + len(link.collisions) for link in model.spec.links)
     return min(MAX_ALLOWANCE, MIN_ALLOWANCE + PER_PART * parts + PER_BYTE * model.size)
@@ -156,13 +156,13 @@ def _exit_reason(exit_code: int, allowance: float) -> str:
     return f'it ended the process (exit code {exit_code})'
 
 
-def _prepared(engine: Engine) -> Work:
+def _prepared(engine: PhysicsEngine) -> Work:
     """Return what adds a model and reports of it; runs in the process of its own."""
     engine.add(engine.compile(GROUND_PLANE), IDENTITY)
     return partial(_report, engine)
 
 
-def _report(engine: Engine, payload: bytes) -> str:
+def _report(engine: PhysicsEngine, payload: bytes) -> str:
     try:
         model, physics = pickle.loads(payload)
         unreadable = next(filter(None, map(_read_fault, model.files)), None)
@@ -178,7 +178,7 @@ def _report(engine: Engine, payload: bytes) -> str:
     return _PASSED
 
 
-def _live(engine: Engine, model: BulletModel) -> None:
+def _live(engine: PhysicsEngine, model: CompiledModel) -> None:
     """Do with the model what a world does: add it, step, read, remove it."""
     body = engine.add(model, _touching(model.spec))
     for _ in range(STEPS):
@@ -211,7 +211,7 @@ def _shortage(error: BaseException) -> str | None:
     try:
         if isinstance(error, OSError):
             raise error
-        for _ in range(_HANDLES):  # PyBullet does not say why it could not open a file
+        for _ in range(_HANDLES):  # an engine may not say why it could not open a file
             os.open(os.devnull, os.O_RDONLY)
     except OSError as fault:
         return fault.strerror or str(fault)
@@ -219,7 +219,7 @@ def _shortage(error: BaseException) -> str | None:
 
 
 def _read_fault(path: str) -> str | None:
-    """Return why a file cannot be read, if it cannot; PyBullet would not say."""
+    """Return why a file cannot be read, if it cannot; an engine might not say."""
     try:
         with open(path, 'rb'):
             return None

@@ -25,10 +25,9 @@ from rosbots_description.sim.description.model_spec import (
     ModelSpec,
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
-from rosbots_description.sim.physics import fork_server
-from rosbots_description.sim.physics.bullet import crash_sandbox
-from rosbots_description.sim.physics.bullet.crash_sandbox import CrashSandbox
+from rosbots_description.sim.physics import crash_sandbox, fork_server
 from rosbots_description.sim.physics.bullet.engine import Engine
+from rosbots_description.sim.physics.crash_sandbox import CrashSandbox
 from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
 
