@@ -4,7 +4,8 @@ import math
 from dataclasses import replace
 
 import pytest
-from support import SPAWN_POSE, empty_world, robot_spec
+from support import SPAWN_POSE, empty_world, robot_spec, urdf_spec
+from support.scenes import link
 
 from rosbots_description.sim.core.transforms import IDENTITY, Pose, Twist, from_rpy
 from rosbots_description.sim.description.model_spec import Inertial, JointSpec, LinkSpec, ModelSpec
@@ -114,6 +115,23 @@ def test_steps_made_together_are_the_same_to_the_bit_as_single_ones(together):
             parts = [*robot.links.values(), *robot.joints.values()]
             seen.append([part.state() for part in parts])
     assert seen[0] == seen[1]
+
+
+def test_steps_of_a_damped_joint_are_the_same_however_many_are_made_at_once():
+    bar = link('bar', '<box size="1 0.1 0.1"/>', 1.0, (0.01, 0.1, 0.1))
+    spec = urdf_spec(
+        f'<link name="world"/>{bar}<joint name="j" type="continuous"><parent link="world"/>'
+        f'<child link="bar"/><origin xyz="0 0 2"/><axis xyz="0 1 0"/><dynamics damping="0.7"/></joint>')
+    seen = []
+    for run in (1, 3, 93):
+        with empty_world() as world:
+            joint = world.spawn(spec, 'bar', Pose()).joints['j']
+            joint.push(500.0)
+            for _ in range(93 // run):
+                world.run(run)
+            seen.append(joint.state())
+    assert 1.0 < seen[0][1] < 5.0  # [rad/s]: a motion that is damped
+    assert seen == [seen[0]] * 3
 
 
 def test_a_cancelled_push_ends():

@@ -146,7 +146,8 @@ class Engine(BodyStates):
             self._step_alike(1)
             steps -= 1
         self._pushes.clear()
-        if not (fast or is_sprung or self._weightless or self._slipping.links):
+        one_by_one = is_sprung or self._springs.has_dampers or self._weightless
+        if not (fast or one_by_one or self._slipping.links):
             while steps > 1:
                 together = self._together[min(steps, _TOGETHER)]
                 self._step_together(together)

@@ -32,6 +32,11 @@ class Springs:
         """Tell whether there are any."""
         return bool(self._springs)
 
+    @property
+    def has_dampers(self) -> bool:
+        """Whether joints are damped: PyBullet takes their velocities at the begin of each call."""
+        return any(any(masses.damping) for masses in self._bodies.values())
+
     def set_step_size(self, step_size: float) -> None:
         """Simulate in steps of that size [s] from now on."""
         self._step_size = step_size
