@@ -38,6 +38,9 @@ class FakeEngine:
     def apply(self, physics):
         self.step_size = physics.step_size
 
+    def enable(self, enabled):
+        self.enabled = enabled
+
     def compile(self, spec):
         return CompiledModel(spec, (), 0)
 
@@ -108,8 +111,8 @@ class FakeEngine:
     def set_twist(self, body, twist):
         body.twist = twist
 
-    def set_joint_position(self, body, joint, position):
-        body.state[joint] = [position, 0.0]
+    def set_joint_position(self, body, joint, position, velocity=0.0):
+        body.state[joint] = [position, velocity]
 
     def motor(self, body, joint):
         return body.motors[joint]

@@ -123,6 +123,9 @@ class PhysicsEngine(Protocol):
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
 
+    def enable(self, enabled: bool) -> None:
+        """Let bodies move in steps from now on, or not; pushes are lost while they do not."""
+
     def compile(self, spec: ModelSpec) -> CompiledModel:
         """Make a model ready to be added; any thread may ask.
 
@@ -176,8 +179,10 @@ class PhysicsEngine(Protocol):
     def set_twist(self, body: EngineBody, twist: Twist) -> None:
         """Let all roots move with this twist of their origins, joints at rest."""
 
-    def set_joint_position(self, body: EngineBody, joint: str, position: float) -> None:
-        """Put a joint at `position` [rad or m], at rest."""
+    def set_joint_position(
+        self, body: EngineBody, joint: str, position: float, velocity: float = 0.0
+    ) -> None:
+        """Put a joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
 
     def motor(self, body: EngineBody, joint: str) -> tuple[float, float]:
         """Return the motor's target velocity [rad/s or m/s] and greatest effort [N m or N]."""

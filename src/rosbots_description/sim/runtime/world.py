@@ -72,6 +72,7 @@ class World:
         self.lights: dict[str, LightSpec] = {}
         self.listeners: list[Listener] = []
         self.paused = False
+        self._holders: set[object] = set()  # those who hold physics
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
         self.engine = make_engine(self.physics)
@@ -116,6 +117,16 @@ class World:
             self.schedule.change_step(self.clock.steps, ratio)
             self._watchdog.look_soon()
         self.engine.apply(physics)
+
+    def hold_physics(self, holder: object) -> None:
+        """Let time go on and nothing move, until each holder has released physics."""
+        self._holders.add(holder)
+        self.engine.enable(False)
+
+    def release_physics(self, holder: object) -> None:
+        """Let things move again, unless somebody else holds physics."""
+        self._holders.discard(holder)
+        self.engine.enable(not self._holders)
 
     def compile(self, spec: ModelSpec) -> CompiledModel:
         """Make a model ready to be spawned; the one thing that any thread may ask of the world.

@@ -29,6 +29,7 @@ class BodyStates:
     def __init__(self, client: int) -> None:
         """Work in the world of that PyBullet client."""
         self._client = client
+        self._enabled = True
         self._fast = FastBodies(client)
         self._driven: dict[Body, None] = {}  # those with motors, in the order they came
         self._pushes: list[Push] = []  # since the last step
@@ -175,11 +176,13 @@ class BodyStates:
             self._joint_readings[number] = readings
         return readings[row]
 
-    def set_joint_position(self, body: Body, joint: str, position: float) -> None:
-        """Put a joint at `position` [rad or m], at rest."""
+    def set_joint_position(
+        self, body: Body, joint: str, position: float, velocity: float = 0.0
+    ) -> None:
+        """Put a joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
         self._joint_readings.clear()
         number, index = body.joints[joint]
-        pybullet.resetJointState(number, index, position, 0.0, self._client)
+        pybullet.resetJointState(number, index, position, velocity, self._client)
         self._fast.disturb(number)
 
     def motor(self, body: Body, joint: str) -> tuple[float, float]:
@@ -217,6 +220,8 @@ class BodyStates:
         Args:
             place: where the force acts [m], None for the centre of mass; all in world axes.
         """
+        if not self._enabled:
+            return  # PyBullet would add them all up until its next step
         part = body.parts[link]
         if place is None:
             place = compose(self.link_pose(body, link), part.com_in_origin).position
@@ -229,6 +234,8 @@ class BodyStates:
 
     def push_joint(self, body: Body, joint: str, effort: float) -> None:
         """Push a joint during the next step by `effort` [N m or N], beside its motor."""
+        if not self._enabled:
+            return
         effort = max(min(effort, _ANY_FORCE), -_ANY_FORCE)
         pybullet.setJointMotorControl2(
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client

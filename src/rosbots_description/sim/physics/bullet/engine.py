@@ -125,7 +125,7 @@ class Engine(BodyStates):
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
         fast = self._fast
-        while steps > 0:
+        while steps > 0 and self._enabled:
             if not fast.rest:
                 fast.look()
             run = min(steps, self._until_look, fast.rest)
@@ -170,6 +170,10 @@ class Engine(BodyStates):
         resize(fixedTimeStep=steps * size, numSubSteps=steps, physicsClientId=client)
         self._step(client)
         resize(fixedTimeStep=size, numSubSteps=0, physicsClientId=client)
+
+    def enable(self, enabled: bool) -> None:
+        """Let bodies move in steps from now on, or not; see `PhysicsEngine`."""
+        self._enabled = enabled
 
     def compile(self, spec: ModelSpec) -> BulletModel:
         """Make a model ready to be added; any thread may ask.
