@@ -221,7 +221,8 @@ class ModelSpec:
     joints: tuple[JointSpec, ...] = ()
     plugins: tuple[PluginSpec, ...] = ()
     static: bool = False
-    reduced: Mapping[str, str] = field(default_factory=dict)  # link that vanished -> its new parent
+    # Link that a fixed joint made part of another -> that one, and where it stands in it.
+    reduced: Mapping[str, tuple[str, Pose]] = field(default_factory=dict)
     inner: Mapping[str, Pose] = field(default_factory=dict)  # model within -> pose of its frame
     left_out: tuple[str, ...] = ()  # what it stands without, each in few words
     # Where its description is, e.g. 'robot_description, line 1', to begin a complaint with.

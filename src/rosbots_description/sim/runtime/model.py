@@ -2,7 +2,19 @@
 
 from typing import Any
 
-from ..core import NotFoundError, Pose, Twist, Vector, add, compose, cross, inverse, subtract
+from ..core import (
+    IDENTITY,
+    NotFoundError,
+    Pose,
+    Twist,
+    Vector,
+    add,
+    compose,
+    cross,
+    inverse,
+    rotate,
+    subtract,
+)
 from ..description import Collision, JointSpec, LinkSpec, ModelSpec
 from ..physics import CompiledModel, EngineBody, JointState, PhysicsEngine
 from ..plugin_registry import library_name
@@ -35,6 +47,12 @@ class Link:
     def state(self) -> tuple[Pose, Twist]:
         """Return pose and twist at once, which costs one look instead of two."""
         return self.model.engine.link_state(self.model.body, self.name)
+
+    def state_at(self, offset: Pose) -> tuple[Pose, Twist]:
+        """Return pose and twist of a frame that is fixed at `offset` in the link's."""
+        pose, (linear, angular) = self.state()
+        arm = rotate(pose.orientation, offset.position)
+        return compose(pose, offset), Twist(add(linear, cross(angular, arm)), angular)
 
     def push(self, force: Vector, torque: Vector) -> None:
         """Push during the next step: force [N] at the centre of mass, torque [N m], world axes."""
@@ -117,9 +135,9 @@ class Joint:
         """Drive towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
         self.model.engine.set_joint_motor(self.model.body, self.name, velocity, effort)
 
-    def set_position(self, position: float) -> None:
-        """Put the joint at `position` [rad or m], at rest."""
-        self.model.engine.set_joint_position(self.model.body, self.name, position)
+    def set_position(self, position: float, velocity: float = 0.0) -> None:
+        """Put the joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
+        self.model.engine.set_joint_position(self.model.body, self.name, position, velocity)
 
     def _state(self) -> JointState:
         return self.model.engine.joint_state(self.model.body, self.name)
@@ -251,6 +269,16 @@ class Model:
             raise NotFoundError(
                 f"model '{self.name}' has no link '{name}'; its links: {', '.join(self.links)}")
         return link
+
+    def locate(self, name: str) -> tuple[Link, Pose]:
+        """Return the link of that name, or what it was reduced into, and its pose in that.
+
+        Raises:
+            NotFoundError: the description has no such link, or it has no mass.
+        """
+        parent, pose = self.spec.reduced.get(
+            name.removeprefix(f'{self.name}::'), (name, IDENTITY))
+        return self.link(parent), pose
 
     def plugin(self, name: str) -> Any:
         """Return the plugin that the description calls `name`, or the first from that library.

@@ -1,10 +1,9 @@
 """Links and joints as a tree, before and after fixed joints are reduced."""
 
 from .fixed_joint_reduction import Reduction, reduce_fixed_joints, require_links
-from .frame_references import repoint_plugin
 from .kinematic_tree import FREE, KinematicTree, TreeJoint, TreeLink, build_tree
 
 __all__ = [
     'FREE', 'KinematicTree', 'Reduction', 'TreeJoint', 'TreeLink', 'build_tree',
-    'reduce_fixed_joints', 'repoint_plugin', 'require_links',
+    'reduce_fixed_joints', 'require_links',
 ]

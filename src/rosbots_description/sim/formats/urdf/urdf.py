@@ -15,7 +15,6 @@ from ..kinematics import (
     Reduction,
     build_tree,
     reduce_fixed_joints,
-    repoint_plugin,
     require_links,
 )
 from ..xml import (
@@ -84,9 +83,9 @@ def load_urdf(
         name,
         _turnable_links(reduction.links, notes),
         reduction.joints,
-        tuple(repoint_plugin(plugin, reduction.parents) for plugin in tags.plugins),
+        tuple(tags.plugins),
         tags.static,
-        {link: parent for link, (parent, _) in reduction.parents.items()},
+        reduction.parents,
         left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(reduction.vanished)))),
         location=location(robot),
     )

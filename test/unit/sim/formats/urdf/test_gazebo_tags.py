@@ -1,8 +1,11 @@
 """What the <gazebo> blocks of a URDF say reaches links, joints and plugins."""
 
+import math
+
 import pytest
 
 from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.core.transforms import to_rpy
 from rosbots_description.sim.description.model_spec import Material, Surface
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
@@ -168,25 +171,13 @@ def test_the_sensor_of_a_lumped_link_is_posed_in_the_heir(pose, expected):
     assert sensor.child('x') is not None
 
 
-def test_a_body_name_of_a_lumped_link_becomes_the_heirs_with_the_offset():
-    (p,) = load(plugin('<bodyName>b</bodyName><xyzOffset>0 1 0</xyzOffset>')).plugins
-    found = texts(p.element)
-    assert found['bodyName'] == 'a'
-    assert words(found['xyzOffset']) == pytest.approx([0, 0, 0], abs=1e-9)
-    assert words(found['rpyOffset']) == pytest.approx([0, 0, 1.5707963268])
-
-
-def test_both_names_of_one_lumped_link_count_its_offset_once():
-    (p,) = load(plugin('<bodyName>b</bodyName><frameName>b</frameName>')).plugins
-    found = texts(p.element)
-    assert (found['bodyName'], found['frameName']) == ('a', 'a')
-    assert words(found['xyzOffset']) == pytest.approx([1, 0, 0])
-
-
-def test_other_names_in_plugins_stay():
-    inside = '<robotBaseFrame>b</robotBaseFrame><linkName>b</linkName><bodyName>c</bodyName>'
-    (p,) = load(plugin(inside)).plugins
-    assert texts(p.element) == {'robotBaseFrame': 'b', 'linkName': 'b', 'bodyName': 'c'}
+def test_names_in_plugins_stay_and_reduced_links_are_known_with_their_poses():
+    inside = '<bodyName>b</bodyName><frameName>c</frameName><linkName>b</linkName>'
+    spec = load(plugin(inside))
+    assert texts(spec.plugins[0].element) == {'bodyName': 'b', 'frameName': 'c', 'linkName': 'b'}
+    (name, (parent, pose)), = spec.reduced.items()
+    assert (name, parent) == ('b', 'a')
+    assert (*pose.position, *to_rpy(pose.orientation)) == pytest.approx((1, 0, 0, 0, 0, math.pi / 2))
 
 
 def test_what_is_not_simulated_is_named_once(caplog):
