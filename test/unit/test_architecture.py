@@ -36,6 +36,7 @@ ARROWS = {
     'sim/plugins': 'sim/core sim/description sim/runtime sim/plugin_registry',
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
+    'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
     'sim/rendering':
         'sim/core sim/description sim/resources sim/meshes sim/physics/bullet sim/runtime',
     'sim/public':

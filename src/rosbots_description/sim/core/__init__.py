@@ -28,6 +28,7 @@ from .transforms import (
     IDENTITY,
     NO_ROTATION,
     UP,
+    ZERO,
     Pose,
     Quaternion,
     Twist,
@@ -39,6 +40,7 @@ from .transforms import (
     dot,
     from_rpy,
     inverse,
+    multiply,
     normalise,
     relative,
     rotate,
@@ -50,10 +52,10 @@ from .xml_text import is_expanded_xacro, plain_text
 
 __all__ = [
     'ALONG', 'END', 'HEAVIEST', 'IDENTITY', 'LARGEST', 'LIGHTEST', 'LONGEST', 'MAX_NOTES',
-    'MOST_INERT', 'NANOSECONDS', 'NO_ROTATION', 'SLOWEST_RATE', 'UP', 'AbsentError', 'ModelError',
-    'NotFoundError', 'PluginError', 'Pose', 'Quaternion', 'ShapeError', 'SimClock', 'SimError',
-    'Twist', 'Vector', 'add', 'compose', 'conjugate', 'cross', 'document_url', 'dot', 'fault',
-    'from_rpy', 'inverse', 'is_expanded_xacro', 'line_of', 'location', 'normalise', 'note',
-    'one_line', 'owner', 'plain_text', 'relative', 'rotate', 'shortened', 'source_of', 'subtract',
-    'suggestion', 'to_rpy', 'yaw_of',
+    'MOST_INERT', 'NANOSECONDS', 'NO_ROTATION', 'SLOWEST_RATE', 'UP', 'ZERO', 'AbsentError',
+    'ModelError', 'NotFoundError', 'PluginError', 'Pose', 'Quaternion', 'ShapeError', 'SimClock',
+    'SimError', 'Twist', 'Vector', 'add', 'compose', 'conjugate', 'cross', 'document_url', 'dot',
+    'fault', 'from_rpy', 'inverse', 'is_expanded_xacro', 'line_of', 'location', 'multiply',
+    'normalise', 'note', 'one_line', 'owner', 'plain_text', 'relative', 'rotate', 'shortened',
+    'source_of', 'subtract', 'suggestion', 'to_rpy', 'yaw_of',
 ]

@@ -2,8 +2,10 @@
 
 from .base import ModelPlugin
 from .drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
-from .force import WheelSlip
+from .force import Force, HandOfGod, WheelSlip
+from .state import P3D, JointPoseTrajectory, JointStatePublisher
 
 __all__ = [
-    'DiffDrive', 'ModelPlugin', 'PlanarMove', 'SkidSteerDrive', 'TricycleDrive', 'WheelSlip',
+    'P3D', 'DiffDrive', 'Force', 'HandOfGod', 'JointPoseTrajectory', 'JointStatePublisher',
+    'ModelPlugin', 'PlanarMove', 'SkidSteerDrive', 'TricycleDrive', 'WheelSlip',
 ]

@@ -4,13 +4,13 @@ import logging
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from ..core import NANOSECONDS, NotFoundError, PluginError
+from ..core import NANOSECONDS, NotFoundError, PluginError, Pose
 from ..description import PluginSpec
 from ..runtime import NEVER, Output, Plugin
 from .parameters import Missing, Params, says_default
 
 if TYPE_CHECKING:
-    from ..runtime import Joint, Model, World
+    from ..runtime import Joint, Link, Model, World
 
 logger = logging.getLogger(__name__)
 
@@ -24,6 +24,7 @@ class ModelPlugin(Plugin):
 
     prefix = ''  # how its log lines begin; {} stands for the namespace
     missing: Missing = staticmethod(says_default)
+    missing_level = logging.WARNING  # at which that is said
     # The namespace where <robotNamespace> is absent, or empty; {} stands for the model's name.
     absent_namespace = empty_namespace = ''
     hints: Mapping[str, str] = {}  # by a tag that is not read: what to say of it
@@ -32,7 +33,7 @@ class ModelPlugin(Plugin):
         self.world = world
         self.model = model
         self.spec = spec
-        self.params = Params(spec.element, missing=self.missing)
+        self.params = Params(spec.element, missing=self.missing, level=self.missing_level)
         self.params.ignore('alwaysOn')
         self.namespace = self.find_namespace(self.params.text('robotNamespace'))
         self.log_prefix = self.params.prefix = self.prefix.format(self.namespace)
@@ -83,6 +84,19 @@ class ModelPlugin(Plugin):
     def shared(self) -> Iterable[object]:
         """Return description, tags and outputs."""
         return (self.spec, self.params, *self._all_outputs)
+
+    def link(self, tag: str) -> 'tuple[Link, Pose]':
+        """Return the link that a tag names, or what it was reduced into, and its pose in that.
+
+        Raises:
+            PluginError: the tag is missing, or there is no such link.
+        """
+        name = self.params.required(tag)
+        try:
+            return self.model.locate(name)
+        except NotFoundError as error:
+            raise PluginError(
+                f'{self.log_prefix}{tag}: {name} does not exist: {error}') from None
 
     def joint(self, name: str, what: str) -> 'Joint':
         """Return a joint by its name; `what` it is stands in the message of the `PluginError`."""

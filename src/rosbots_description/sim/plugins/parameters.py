@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..core import SLOWEST_RATE, PluginError
+from ..core import SLOWEST_RATE, PluginError, Vector
 from ..description import Element
 
 logger = logging.getLogger(__name__)
@@ -22,12 +22,13 @@ class Params:
     """
 
     def __init__(
-        self, element: Element, prefix: str = '', missing: Missing | None = None
+        self, element: Element, prefix: str = '', missing: Missing | None = None,
+        level: int = logging.WARNING,
     ) -> None:
-        """Read the tags of `element`; `missing` words the warning about one that is not there."""
+        """Read the tags of `element`; `missing` words what is said of one that is not there."""
         self.prefix = prefix
         self._element = element
-        self._missing = missing or says_default
+        self._missing, self._level = missing or says_default, level
         self._read: set[str] = set()
         self.values: dict[str, str | float | bool] = {}
 
@@ -48,7 +49,7 @@ class Params:
         text = self.text(tag)
         value = default
         if text is None:
-            logger.warning('%s%s', self.prefix, self._missing(tag, shown or default))
+            logger.log(self._level, '%s%s', self.prefix, self._missing(tag, shown or default))
         elif isinstance(default, bool):
             value = self._boolean(tag, text, default)
         elif isinstance(default, float):
@@ -57,6 +58,30 @@ class Params:
             value = text
         self.values[tag] = value
         return value
+
+    def required(self, tag: str) -> str:
+        """Return the tag's text.
+
+        Raises:
+            PluginError: there is none.
+        """
+        text = self.values[tag] = self.text(tag) or ''
+        if not text:
+            raise PluginError(f'{self.prefix}missing <{tag}>, cannot proceed')
+        return text
+
+    def vector(self, tag: str) -> Vector:
+        """Return a tag's three numbers; zeros where it is missing, which is said as by `read`.
+
+        Raises:
+            PluginError: the text is anything else.
+        """
+        numbers = self.read(tag, '0 0 0').split()
+        if len(numbers) != 3:
+            raise PluginError(
+                f"{self.prefix}<{tag}> is '{' '.join(numbers)}'; it takes three numbers")
+        x, y, z = (self._number(tag, number) for number in numbers)
+        return (x, y, z)
 
     def length(self, tag: str, default: float) -> float:
         """Return a length [m], as `read` does.

@@ -9,7 +9,7 @@ Reading = TypeVar('Reading')
 
 
 class Odometry(NamedTuple):
-    """Pose in the odometry frame; twist in the axes of the moving frame."""
+    """Pose in a frame; twist in the axes of what moves, for `P3D` in those of the frame."""
 
     pose: Pose
     twist: Twist

@@ -121,7 +121,8 @@ def test_steps_of_a_damped_joint_are_the_same_however_many_are_made_at_once():
     bar = link('bar', '<box size="1 0.1 0.1"/>', 1.0, (0.01, 0.1, 0.1))
     spec = urdf_spec(
         f'<link name="world"/>{bar}<joint name="j" type="continuous"><parent link="world"/>'
-        f'<child link="bar"/><origin xyz="0 0 2"/><axis xyz="0 1 0"/><dynamics damping="0.7"/></joint>')
+        f'<child link="bar"/><origin xyz="0 0 2"/><axis xyz="0 1 0"/>'
+        '<dynamics damping="0.7"/></joint>')
     seen = []
     for run in (1, 3, 93):
         with empty_world() as world:

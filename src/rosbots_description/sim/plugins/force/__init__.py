@@ -1,6 +1,8 @@
 """Plugins that change which forces act; importing registers them."""
 
-from . import wheel_slip  # noqa: F401
+from . import force, hand_of_god, wheel_slip  # noqa: F401
+from .force import Force
+from .hand_of_god import HandOfGod
 from .wheel_slip import WheelSlip
 
-__all__ = ['WheelSlip']
+__all__ = ['Force', 'HandOfGod', 'WheelSlip']

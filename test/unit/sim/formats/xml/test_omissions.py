@@ -193,8 +193,8 @@ def test_a_library_that_is_unknown_reads_differently(filename, remark):
 
 
 def test_a_plugin_of_a_link_is_named_with_its_library(caplog):
-    urdf(after='<gazebo reference="a"><plugin filename="libgazebo_ros_p3d.so"/></gazebo>')
+    urdf(after='<gazebo reference="a"><plugin filename="libgazebo_ros_elevator.so"/></gazebo>')
     ((level, sentence),) = said(caplog)
     assert level == logging.getLevelName(logging.WARNING)
-    assert 'libgazebo_ros_p3d.so is known but not supported yet' in sentence
+    assert 'libgazebo_ros_elevator.so is known but not supported yet' in sentence
     assert sentence.endswith('put it into a <gazebo> without reference')

@@ -1,0 +1,127 @@
+"""The topics of plugins that push.
+
+Subscribes:
+    <ns>/<topicName> (geometry_msgs/Wrench): what force pushes with; the last counts.
+    /tf, /tf_static (tf2_msgs/TFMessage): hand_of_god follows <frameId>_desired in world, by what
+        was heard last of each frame between the two.
+Publishes:
+    /tf (tf2_msgs/TFMessage): hand_of_god, world to <frameId>_actual in each step once it follows.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import rospy
+from geometry_msgs.msg import Wrench
+from tf2_msgs.msg import TFMessage
+
+from ...sim.core import IDENTITY, Pose, compose, relative
+from ...sim.plugins import Force, HandOfGod
+from ..messages import TransformLayout, read_transform
+from ..server import STATIC_TOPIC
+from ..transport import reader_names
+from .adapter import Adapter
+from .declarations import Endpoint, Pack, PublishedTopic, Publishes, Subscribes, finite
+from .registry import connects
+
+WORLD = 'world'
+_numbers = finite(*(f'{part}.{axis}' for part in ('force', 'torque') for axis in 'xyz'))
+
+
+def read_wrench(message: Wrench) -> tuple:
+    """Return force [N] and torque [N m].
+
+    Raises:
+        ValueError: a number is not finite.
+    """
+    numbers = _numbers(message)
+    return numbers[:3], numbers[3:]
+
+
+def actual_pack(adapter: Adapter) -> Pack:
+    """Return what lays out where the link is; its frames take no prefix."""
+    layout = TransformLayout(WORLD, f'{adapter.plugin.frame}_actual')
+    return lambda _number, now_ns, edge: layout.pack(now_ns, edge.pose)
+
+
+class Actual(Publishes):
+    """Where the link is, for other nodes; this one reads /tf, too, and need not be told."""
+
+    def join(self, adapter: Adapter) -> 'ActualTopic':
+        """Return the topic of the adapter's plugin."""
+        return ActualTopic(adapter, self)
+
+
+class ActualTopic(PublishedTopic):
+    """A topic that has a reader if another node reads it."""
+
+    def is_wanted(self) -> bool:
+        """Tell whether another node reads it."""
+        return super().is_wanted() and bool(reader_names(self.publisher) - {rospy.get_name()})
+
+
+@dataclass(frozen=True)
+class FollowsFrame:
+    """The link goes where TF has a frame."""
+
+    def join(self, adapter: Adapter) -> 'FollowedFrame':
+        """Return what leads the adapter's plugin."""
+        return FollowedFrame(adapter)
+
+
+class FollowedFrame(Endpoint):
+    """Tells a plugin where its desired frame is, as soon as that is known and when it has moved."""
+
+    def __init__(self, adapter: Adapter) -> None:
+        super().__init__(adapter)
+        self._edges: dict[str, tuple[str, Pose]] = {}  # by frame: its parent, and its pose in that
+        self._desired = f'{adapter.plugin.frame}_desired'.lstrip('/')
+        self._told: Pose | None = None
+
+    def open(self) -> None:
+        """Listen to TF."""
+        for topic in ('/tf', STATIC_TOPIC):
+            self.adapter.subscribe(topic, TFMessage, self._take, 100)
+
+    def refresh(self) -> None:
+        """Look again; what others hold still may have changed."""
+        self._look()
+
+    def _take(self, message: TFMessage) -> None:
+        for edge in message.transforms:
+            try:
+                pose = read_transform(edge.transform)
+            except ValueError:
+                continue  # as TF leaves it out
+            self._edges[edge.child_frame_id.lstrip('/')] = edge.header.frame_id.lstrip('/'), pose
+        self._look()
+
+    def _look(self) -> None:
+        server, plugin = self.adapter.server, self.adapter.plugin
+        pose = pose_between(WORLD, self._desired, {**server.static_frames.parents, **self._edges})
+        if pose is not None and pose != self._told:
+            self._told = pose
+            server.loop.post(lambda: plugin.follow(pose))
+
+
+def pose_between(
+    frame: str, child: str, edges: Mapping[str, tuple[str, Pose]]
+) -> Pose | None:
+    """Return the pose of `child` in `frame`; None if no edges lead from one to the other."""
+    (root, base), (other, pose) = (_from_root(name, edges) for name in (frame, child))
+    return relative(pose, base) if root == other else None
+
+
+def _from_root(name: str, edges: Mapping[str, tuple[str, Pose]]) -> tuple[str, Pose]:
+    pose, seen = IDENTITY, {name}
+    while name in edges:
+        name, edge = edges[name]
+        pose = compose(edge, pose)
+        if name in seen:
+            break
+        seen.add(name)
+    return name, pose
+
+
+connects(Force, Subscribes('<topicName>', Wrench, 'command', read_wrench))
+connects(HandOfGod, Actual('actual', '/tf', TFMessage, pack=actual_pack, queue=100), FollowsFrame())

@@ -1,0 +1,54 @@
+"""The topics of plugins that tell or set states.
+
+Subscribes:
+    <ns>/<topicName> (trajectory_msgs/JointTrajectory): what joint_pose_trajectory plays.
+Publishes:
+    <ns>/<topicName> (nav_msgs/Odometry): p3d; the child frame is that of the link, without prefix.
+    <ns>/joint_states (sensor_msgs/JointState): joint_state_publisher.
+Parameters:
+    tf_prefix, searched from the plugin's namespace upward: p3d.
+"""
+
+import math
+
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
+
+from ...sim.plugins import P3D, JointPoseTrajectory, JointStatePublisher
+from ..messages import OdometryLayout
+from .adapter import Adapter
+from .declarations import Pack, Publishes, Subscribes
+from .packs import JointStatesPack
+from .registry import connects
+
+
+def true_odometry_pack(adapter: Adapter) -> Pack:
+    """Return what lays the odometry of p3d out."""
+    plugin = adapter.plugin
+    variances = (plugin.noise**2,) * 6
+    frame = adapter.frame(plugin.params.values['frameName'])
+    return OdometryLayout(frame, plugin.body, variances, variances).pack
+
+
+def read_trajectory(message: JointTrajectory) -> tuple:
+    """Return what `JointPoseTrajectory.play` takes.
+
+    Raises:
+        ValueError: a position is not finite.
+    """
+    points = []
+    for index, point in enumerate(message.points):
+        bad = [position for position in point.positions if not math.isfinite(position)]
+        if bad:
+            raise ValueError(f'positions of point {index} {bad[0]}; it takes finite numbers')
+        points.append((point.positions, point.time_from_start.to_nsec()))
+    header = message.header
+    return header.frame_id, header.stamp.to_nsec(), message.joint_names, points
+
+
+connects(P3D, Publishes('odometry', '<topicName>', Odometry, pack=true_odometry_pack, always=True))
+connects(JointStatePublisher, Publishes(
+    'joint_states', 'joint_states', JointState, pack=JointStatesPack, queue=1000))
+connects(JointPoseTrajectory, Subscribes(
+    '<topicName>', JointTrajectory, 'play', read_trajectory, queue=100))

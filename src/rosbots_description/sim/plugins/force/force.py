@@ -1,0 +1,47 @@
+"""A wrench on a link for as long as nobody says otherwise.
+
+Tags and behaviour are those of libgazebo_ros_force.so in gazebo_ros_pkgs 2.9.2.
+"""
+
+import logging
+import math
+
+from ...core import ZERO, Vector
+from ...plugin_registry import register
+from ...runtime import NEVER
+from ..base import ModelPlugin
+
+
+@register('libgazebo_ros_force.so')
+class Force(ModelPlugin):
+    """Push <bodyName> in each step, along the world's axes and at its centre of mass."""
+
+    prefix = 'force plugin: '
+    missing_level = logging.DEBUG
+
+    def load(self) -> None:
+        """Read the tags and find the link."""
+        self._pushed, _ = self.link('bodyName')
+        self.params.required('topicName')
+        self.wrench = (ZERO, ZERO)
+
+    def command(self, force: Vector, torque: Vector) -> None:
+        """Push by `force` [N] and `torque` [N m] until told else.
+
+        Raises:
+            ValueError: a number is not finite.
+        """
+        if not all(map(math.isfinite, (*force, *torque))):
+            raise ValueError(f'a wrench takes finite numbers; it got force {force}, '
+                             f'torque {torque}')
+        self.wrench = (force, torque)
+        self.reset()
+
+    def before_step(self) -> None:
+        """Push."""
+        self._pushed.push(*self.wrench)
+        self.due = self.world.clock.steps + 1
+
+    def reset(self) -> None:
+        """Go on pushing, as Gazebo's does after a reset."""
+        self.due = NEVER if self.wrench == (ZERO, ZERO) else self.world.clock.steps + 1

@@ -1,0 +1,106 @@
+"""Joints are put where a trajectory has them, point by point, while nothing else moves.
+
+Tags and behaviour are those of libgazebo_ros_joint_pose_trajectory.so in gazebo_ros_pkgs 2.9.2: a
+point holds for its own `time_from_start`, physics of the whole world is off from when the
+trajectory comes to when its last point is over, and joints keep their velocities. As a trajectory
+ends, or with its model, physics goes on; Gazebo's stays off if one takes the place of another.
+"""
+
+import logging
+import math
+from collections.abc import Sequence
+
+from ...core import Pose, compose, inverse
+from ...plugin_registry import register
+from ...runtime import NEVER, WORLD_FRAMES, Joint, Link, Model
+from ..base import ModelPlugin
+
+logger = logging.getLogger(__name__)
+
+Point = tuple[Sequence[float], int]  # positions [rad or m], and how long they hold [ns]
+
+
+@register('libgazebo_ros_joint_pose_trajectory.so')
+class JointPoseTrajectory(ModelPlugin):
+    """Play trajectories of joint positions."""
+
+    prefix = 'joint_pose_trajectory: '
+    missing_level = logging.DEBUG
+
+    def load(self) -> None:
+        """Read the tags."""
+        self.params.read('topicName', 'set_joint_trajectory')
+        self.params.ignore('serviceName', 'updateRate')
+        self._points: list[Point] = []
+
+    def play(
+        self, frame: str, start_ns: int, joints: Sequence[str], points: Sequence[Point]
+    ) -> None:
+        """Play a trajectory in place of any other.
+
+        Joints that are not there are named, and the others move.
+
+        Args:
+            frame: the link that is to stay where it is; it may be of another model, which then
+                moves. The world by its names: the model stays.
+            start_ns: when to begin [ns, simulated]; a past time means now.
+        Raises:
+            ValueError: a position is not finite.
+        """
+        if not all(math.isfinite(position) for point, _ in points for position in point):
+            raise ValueError('a trajectory takes finite positions')
+        link = None if frame in WORLD_FRAMES[1:] else self.world.find_entity(frame)
+        if not (isinstance(link, Link) or frame in WORLD_FRAMES[1:]):
+            logger.error('ros_joint_trajectory plugin needs a reference link [%s] as frame_id, '
+                         'aborting.', frame)
+            return
+        self._model: Model = self.model if link is None else link.model
+        self._held: Link | Model = link or self.model
+        self._joints: list[Joint | None] = [self._model.joints.get(name) for name in joints]
+        unknown = [name for name, joint in zip(joints, self._joints, strict=True) if joint is None]
+        if unknown:
+            logger.warning("%smodel '%s' has no joint %s; its joints: %s", self.log_prefix,
+                           self._model.name, ', '.join(unknown), ', '.join(self._model.joints))
+        now_ns = self.world.clock.now_ns
+        if start_ns > now_ns:
+            logger.warning('%sa trajectory begins at %g s; until it has ended nothing moves',
+                           self.log_prefix, start_ns / 1e9)
+        self._points, self._next = list(points), 0
+        self._start_ns = max(start_ns, now_ns)
+        self.world.hold_physics(self)
+        self._set_due()
+
+    def before_step(self) -> None:
+        """Put the joints where the next point has them; after the last one let physics go on."""
+        is_there = self.world.models.get(self._model.name) is self._model
+        if self._next == len(self._points) or not is_there:
+            self.restart()
+            return
+        positions, duration_ns = self._points[self._next]
+        if len(positions) == len(self._joints):
+            self._put(positions)
+        else:
+            logger.error('point[%d] in JointTrajectory has different number of joint names[%d] and '
+                         'positions[%d].', self._next, len(self._joints), len(positions))
+        self._next += 1
+        self._start_ns += duration_ns
+        self._set_due()
+
+    def restart(self) -> None:
+        """Drop the trajectory."""
+        self._points, self.due = [], NEVER
+        self.world.release_physics(self)
+
+    unload = restart
+
+    def _put(self, positions: Sequence[float]) -> None:
+        before = self._held.pose
+        for joint, position in zip(self._joints, positions, strict=True):
+            if joint is not None:
+                joint.set_position(position, joint.velocity)
+        moved: Pose = compose(before, inverse(self._held.pose))
+        self._model.set_pose(compose(moved, self._model.pose))
+
+    def _set_due(self) -> None:
+        clock = self.world.clock
+        self.due = max(clock.steps + 1, clock.first_step_after(self._start_ns - 1))

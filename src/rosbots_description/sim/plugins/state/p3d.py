@@ -1,0 +1,98 @@
+"""The true pose and twist of a link, in the world or in another link.
+
+Tags, defaults and timing are those of libgazebo_ros_p3d.so in gazebo_ros_pkgs 2.9.2, with what is
+odd about it: noise is on the twist only, <xyzOffset> is added in the axes of the frame, and in the
+frame of another link rotations are multiplied in the wrong order and velocities turned the wrong
+way. A link that a fixed joint made part of another has its true pose; in Gazebo the offset between
+the two has the wrong sign.
+"""
+
+import logging
+import random
+
+from ...core import (
+    NotFoundError,
+    Pose,
+    Twist,
+    Vector,
+    add,
+    conjugate,
+    from_rpy,
+    multiply,
+    normalise,
+    rotate,
+    subtract,
+)
+from ...plugin_registry import register
+from ...runtime import WORLD_FRAMES, Link, Odometry, Output
+from ..base import PeriodicPlugin
+
+logger = logging.getLogger(__name__)
+
+_WORLD = {*WORLD_FRAMES, '/world'} - {''}
+
+
+@register('libgazebo_ros_p3d.so')
+class P3D(PeriodicPlugin):
+    """Tell where <bodyName> is in <frameName>, and how it moves, in the axes of that frame.
+
+    Output: `odometry`. `body` is the name of the link, or of what that was reduced into.
+    """
+
+    prefix = 'gazebo_ros_p3d plugin: '
+    missing_level = logging.DEBUG
+    hints = {'xyzOffsets': ' (the offset is <xyzOffset>)', 'rpyOffsets': ' (it is <rpyOffset>)'}
+    later = keeps_rate = False
+
+    def load(self) -> None:
+        """Read the tags; find the link and the frame.
+
+        A frame that is not there is an error in the log, and then nothing is ever told.
+        """
+        params, read = self.params, self.params.read
+        self._link, self._mount = self.link('bodyName')
+        self.body = self._link.name
+        params.required('topicName')
+        self._frame: tuple[Link, Pose] | None = None  # None for the world
+        frame = read('frameName', 'world')
+        is_known = frame in _WORLD
+        if not is_known:
+            try:
+                self._frame = self.model.locate(frame)
+                is_known = True
+            except NotFoundError as error:
+                logger.error('%sframeName: %s does not exist, will not publish pose: %s',
+                             self.log_prefix, frame, error)
+        self._shift = params.vector('xyzOffset')  # [m]
+        self._turn = from_rpy(*params.vector('rpyOffset'))  # [rad]
+        self.noise = read('gaussianNoise', 0.0)  # standard deviation [m/s and rad/s]
+        self.set_rate(params.rate('updateRate', 0.0))
+        self.odometry: Output[Odometry] = self.output('odometry', is_known)
+
+    def report(self) -> None:
+        """Tell pose and twist."""
+        pose, twist = self._link.state_at(self._mount)
+        if self._frame is not None:
+            link, mount = self._frame
+            pose, twist = _seen_from(*link.state_at(mount), pose, twist)
+        pose = Pose(add(pose.position, self._shift),
+                    normalise(multiply(self._turn, pose.orientation)))
+        self.odometry.send(Odometry(pose, self._noisy(twist) if self.noise else twist))
+
+    def _noisy(self, twist: Twist) -> Twist:
+        """Return the twist with noise that is the same in each run, whoever has read before."""
+        now_ns = self.world.clock.now_ns
+        source = random.Random(f'{self.model.name} {self.spec.name} {now_ns}')
+        return Twist(*(add(one, self._sample(source)) for one in twist))
+
+    def _sample(self, source: random.Random) -> Vector:
+        return tuple(source.gauss(0.0, self.noise) for _ in range(3))
+
+
+def _seen_from(frame: Pose, moving: Twist, pose: Pose, twist: Twist) -> tuple[Pose, Twist]:
+    """Return pose and twist in a frame that moves, as upstream has them."""
+    back = conjugate(frame.orientation)
+    position = rotate(back, subtract(pose.position, frame.position))
+    return Pose(position, multiply(pose.orientation, back)), Twist(*(
+        rotate(frame.orientation, subtract(own, others))
+        for own, others in zip(twist, moving, strict=True)))

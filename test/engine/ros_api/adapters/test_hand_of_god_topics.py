@@ -1,0 +1,56 @@
+"""The hand of god on the wire: it follows a frame of TF, and tells where its link is."""
+
+from contextlib import closing
+
+import pytest
+from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from std_msgs.msg import Header
+from support import urdf_spec
+from support.scenes import box
+from support.wire import Wire
+from tf2_msgs.msg import TFMessage
+
+from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.runtime.world import World
+
+NAN = float('nan')
+STEP = Pose((1.0, 0.0, 0.0))
+PLUGIN = ('<gazebo><plugin name="hog" filename="libgazebo_ros_hand_of_god.so">'
+          '<linkName>base</linkName></plugin></gazebo>')
+
+
+@pytest.fixture
+def world():
+    with closing(World()) as made:
+        yield made
+
+
+def transform(parent, child):
+    edge = TransformStamped(Header(frame_id=parent), child, Transform(
+        Vector3(1.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0)))
+    bad = TransformStamped(Header(frame_id=parent), child, Transform(Vector3(NAN, 0, 0), None))
+    bad.transform.rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
+    return TFMessage([edge, bad])
+
+
+def test_the_hand_of_god_follows_a_frame_and_tells_where_it_is(world, monkeypatch):
+    wire = Wire(monkeypatch)
+    spec = urdf_spec(box('base', (1.0, 1.0, 1.0), 1.0) + PLUGIN)
+    plugin = world.spawn(spec, 'thing', Pose()).plugin('hand_of_god')
+    adapter = wire.join(plugin)
+    take, topic = wire.subscribers['/tf'], wire.publishers['/tf']
+    world.run(3)
+    take(transform('world', 'other'))
+    assert plugin.target is None
+    take(transform('/world', '/hog_desired'))
+    assert plugin.target == STEP
+    topic.read('/unnamed')  # this node, by its subscription
+    world.run(2)
+    assert not topic.sent
+    topic.read()
+    world.run(1)
+    (edge,) = topic.sent[-1].transforms
+    assert (edge.header.frame_id, edge.child_frame_id) == ('world', 'hog_actual')
+    assert edge.header.stamp.to_nsec() == 6_000_000
+    adapter.close()
+    assert not wire.subscribers

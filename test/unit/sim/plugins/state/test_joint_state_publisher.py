@@ -1,0 +1,64 @@
+"""The joint state publisher: which joints it tells of, in which order and when."""
+
+import pytest
+from support.fake_drive import collect, fake_model, make_drive, run, turn
+
+from rosbots_description.sim.plugins.state.joint_state_publisher import JointStatePublisher
+from rosbots_description.sim.runtime.scheduler import NEVER
+
+PREFIX = 'GazeboRosJointStatePublisher Plugin (ns = robot/) '
+
+
+def make(**tags):
+    return make_drive(JointStatePublisher, fake_model(), **tags)
+
+
+def test_joints_are_told_of_in_the_order_written_with_positions_and_velocities():
+    plugin = make(jointName=' right,\n left ', updateRate='0')
+    readings = collect(plugin.joint_states)
+    turn(plugin, left=2.0, right=-1.0)
+    run(plugin, 100)
+    names, positions, velocities, efforts = readings[-1]
+    assert names == ('right', 'left')
+    assert positions == pytest.approx((-0.1, 0.2))
+    assert (velocities, efforts) == ((-1.0, 2.0), ())
+
+
+@pytest.mark.parametrize(('rate', 'steps'), [
+    ('20', [51, 101, 151, 201]), ('30', [34, 67, 100, 134]), ('0', [1, 2, 3, 4]),
+    ('-5', [1, 2, 3, 4]), (None, [11, 21, 31, 41]),
+])
+def test_the_mean_rate_is_exact_and_the_first_reading_a_step_late(rate, steps):
+    plugin, found = make(jointName='left', updateRate=rate), []
+    plugin.joint_states.connect(lambda _: found.append(plugin.world.clock.steps))
+    run(plugin, 210)
+    assert found[:4] == steps
+
+
+def test_who_is_not_read_sleeps():
+    assert make(jointName='left').due == NEVER
+
+
+def test_a_missing_tag_is_said_with_its_default(caplog):
+    plugin = make(jointName='left')
+    assert caplog.messages == [f'{PREFIX}missing <updateRate>, defaults to 100.000000']
+    assert plugin.namespace == 'robot'
+    assert make(jointName='left', robotNamespace='').namespace == 'robot'
+
+
+@pytest.mark.parametrize('names', [None, '', ' , '])
+def test_without_names_empty_states_are_told(names):
+    plugin = make(jointName=names, updateRate='0')
+    readings = collect(plugin.joint_states)
+    run(plugin, 1)
+    assert readings == [((), (), (), ())]
+
+
+def test_a_joint_that_is_not_there_is_named_and_the_others_are_told(caplog):
+    plugin = make(jointName='left,nope', updateRate='0')
+    assert caplog.messages == [
+        f"{PREFIX}Joint nope does not exist! It is left out: model 'robot' has no joint 'nope'; "
+        'its joints: left, right']
+    readings = collect(plugin.joint_states)
+    run(plugin, 1)
+    assert readings[0].names == ('left',)
