@@ -81,8 +81,8 @@ class P3D(PeriodicPlugin):
 
     def _noisy(self, twist: Twist) -> Twist:
         """Return the twist with noise that is the same in each run, whoever has read before."""
-        now_ns = self.world.clock.now_ns
-        source = random.Random(f'{self.model.name} {self.spec.name} {now_ns}')
+        who = self.model.name, self.spec.name, self.params.values['topicName']
+        source = random.Random(f'{who} {self.world.clock.now_ns}')
         return Twist(*(add(one, self._sample(source)) for one in twist))
 
     def _sample(self, source: random.Random) -> Vector:

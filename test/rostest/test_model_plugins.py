@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""p3d, joint states, trajectories, force and hand of god on the wire, as recorded in Gazebo."""
+
+import math
+import sys
+from pathlib import Path
+
+import rospy
+import rostest
+from geometry_msgs.msg import TransformStamped, Twist, Wrench
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from simulator import SimulatorTest, pose, topics_of, wait_until
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
+WHEELS = [f'{side}_{end}_joint' for end in ('front', 'rear') for side in ('left', 'right')]
+TOLD = {'/gt': ('world', 'base_footprint', 20), '/gt_off': ('map', 'base_footprint', 20),
+        '/gt_noise': ('world', 'base_footprint', 20), '/gt_lumped': ('world', 'base_footprint', 20),
+        '/gt_wheel': ('base_footprint', 'left_front_link', 34),
+        '/gt_default': ('world', 'base_footprint', 1)}
+HALF = rospy.Duration(0.5)
+
+
+def period(messages):
+    """Return the least ms between two stamps, of which all others must be multiples.
+
+    A reader whom the machine keeps waiting misses messages, but none comes at another time.
+    """
+    stamps = [message.header.stamp.to_nsec() // 1_000_000 for message in list(messages)]
+    between = {after - before for before, after in zip(stamps, stamps[1:], strict=False)}
+    least = min(between)
+    assert least > 0 and all(gap % least == 0 for gap in between), between
+    return least
+
+
+class ModelPluginsTest(SimulatorTest):
+
+    def bring(self, name, topics, z=0.0):
+        """Spawn a robot, which has to bring these topics."""
+        before = topics_of()
+        xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
+        self.assertTrue(self.spawn(name, xml, pose(z=z)).success)
+        self.assertEqual(topics_of() - before, topics)
+        self.addCleanup(lambda: self.assertEqual(topics_of(), before))
+
+    def sender(self, topic, message_class):
+        publisher = rospy.Publisher(topic, message_class, queue_size=10)
+        self._connections.append(publisher)
+        wait_until(publisher.get_num_connections, f'a subscriber of {topic}')
+        return publisher.publish
+
+    def test_true_poses_and_joint_states_have_gazebos_frames_and_times(self):
+        self.bring('skid4_p3d',
+                   {'/cmd_vel', '/odom', '/tf', '/joint_states', '/gt_badframe', *TOLD})
+        told = {topic: self.collect(topic, Odometry) for topic in TOLD}
+        nothing = self.collect('/gt_badframe', Odometry)
+        states = self.collect('/joint_states', JointState)
+        command = Twist()
+        command.linear.x, command.angular.z = 0.4, 0.5
+        self.sender('/cmd_vel', Twist)(command)
+        wait_until(lambda: len(states) > 40, 'two seconds of joint states')
+        for topic, (frame, child, expected) in TOLD.items():
+            message = told[topic][-1]
+            self.assertEqual((message.header.frame_id, message.child_frame_id), (frame, child))
+            self.assertEqual(message._connection_header.get('latching', '0'), '0')
+            self.assertEqual(period(told[topic]), expected, topic)
+            variance = 1e-4 if topic == '/gt_noise' else 0.0
+            for covariance in (message.pose.covariance, message.twist.covariance):
+                for i, number in enumerate(covariance):
+                    self.assertAlmostEqual(number, variance if i % 7 == 0 else 0.0)
+        self.assertEqual(nothing, [])
+        self.assertEqual(period(states), 50)
+        self.assertEqual(states[-1].name, WHEELS)
+        self.assertEqual((states[-1].header.frame_id, list(states[-1].effort)), ('', []))
+        self.assertGreater(states[-1].velocity[1], states[-1].velocity[0])
+        self.check_poses({topic: messages[-1] for topic, messages in told.items()})
+
+    def check_poses(self, told):
+        """Compare what is told at almost the same time; the robot drives a curve to the left."""
+        twist = told['/gt'].twist.twist
+        yaw = 2.0 * math.atan2(told['/gt'].pose.pose.orientation.z,
+                               told['/gt'].pose.pose.orientation.w)
+        forward = math.cos(yaw) * twist.linear.x + math.sin(yaw) * twist.linear.y
+        self.assertAlmostEqual(forward, 0.4, delta=0.02)
+        self.assertAlmostEqual(told['/gt_off'].pose.pose.position.z - 3.0,
+                               told['/gt'].pose.pose.position.z, delta=1e-3)
+        self.assertAlmostEqual(told['/gt_lumped'].pose.pose.position.z - 0.13,
+                               told['/gt'].pose.pose.position.z, delta=1e-3)
+        wheel = told['/gt_wheel'].pose.pose.position
+        for found, expected in ((wheel.x, 0.18), (wheel.y, 0.22), (wheel.z, 0.1)):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+
+    def test_a_trajectory_is_played_point_by_point(self):
+        self.bring('arm_ft', {'/joint_states', '/set_joint_trajectory'})
+        states = self.collect('/joint_states', JointState)
+        play = self.sender('/set_joint_trajectory', JointTrajectory)
+        for frame in ('', 'nope'):  # which is an error in the log
+            play(JointTrajectory(Header(frame_id=frame), ['elbow'], [
+                JointTrajectoryPoint(positions=[2.0], time_from_start=HALF)]))
+        positions = [(0.3 * k, -0.2 * k) for k in range(1, 4)]
+        play(JointTrajectory(Header(frame_id='world'), ['shoulder', 'elbow'], [
+            JointTrajectoryPoint(positions=point, time_from_start=HALF) for point in positions]))
+        wait_until(lambda: states and abs(states[-1].position[0] - 0.9) < 1e-9, 'the last point')
+        wait_until(lambda: abs(states[-1].position[0] - 0.9) > 1e-3, 'physics again')
+        for point in positions:
+            held = [state for state in states if state.position == point]
+            lasted = held[-1].header.stamp - held[0].header.stamp
+            self.assertAlmostEqual(lasted.to_sec(), 0.5, delta=0.05)
+        self.assertNotIn(2.0, [state.position[1] for state in states])
+
+    def test_a_wrench_acts_until_another_one_comes(self):
+        self.bring('force', {'/force'})
+        push = self.sender('/force', Wrench)
+        wrench = Wrench()
+        wrench.force.x, wrench.force.z = 5.0, 60.0
+        push(wrench)
+        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.2, 'it is pushed')
+        wrench.force.x = float('nan')
+        push(wrench)  # is dropped with an error
+        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.4, 'it goes on')
+        twist = self.model_state('force', '').twist.linear
+        self.assertAlmostEqual(twist.z / twist.x, 2.2, delta=0.01)
+        push(Wrench())
+        wait_until(lambda: self.model_state('force', '').twist.linear.z < 0.0, 'it falls')
+
+    def test_the_hand_of_god_follows_a_frame(self):
+        self.bring('hog', {'/tf', '/tf_static'} - topics_of(), z=0.5)
+        transforms = self.collect('/tf', TFMessage)
+        lead = self.sender('/tf', TFMessage)
+        edge = TransformStamped()
+        edge.header.frame_id, edge.child_frame_id = 'world', 'hog_desired'
+        edge.transform.translation.x = edge.transform.translation.z = 1.0
+        edge.transform.rotation.w = 1.0
+        self.assertEqual(self.actual(transforms), [])
+        self.assertAlmostEqual(self.model_state('hog', '').pose.position.z, 0.5)
+        lead(TFMessage([edge]))
+        wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'it is there')
+        told = self.actual(transforms)
+        self.assertEqual({edge.header.frame_id for edge in told}, {'world'})
+        self.assertEqual(period(told), 1)
+        self.assertLess(max(edge.transform.translation.x for edge in told), 1.0 + 1e-9)
+
+    def actual(self, transforms):
+        """Return what was told of where the link is."""
+        return [edge for message in list(transforms) for edge in message.transforms
+                if edge.child_frame_id == 'hog_actual']
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_model_plugins', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'model_plugins', ModelPluginsTest, sys.argv)
