@@ -6,6 +6,7 @@ is `pose`, given in `frame`, seen from where `frame` is given.
 """
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 Vector = tuple[float, float, float]
@@ -34,6 +35,18 @@ class Twist(NamedTuple):
 
 
 IDENTITY = Pose()
+
+
+def as_vector(numbers: Iterable[float]) -> Vector:
+    """Return three numbers, numpy's too, as a vector."""
+    x, y, z = numbers
+    return (float(x), float(y), float(z))
+
+
+def as_quaternion(numbers: Iterable[float]) -> Quaternion:
+    """Return four numbers (x, y, z, w), numpy's too, as a quaternion."""
+    x, y, z, w = numbers
+    return (float(x), float(y), float(z), float(w))
 
 
 def add(a: Vector, b: Vector) -> Vector:
@@ -67,7 +80,7 @@ def normalise(q: Quaternion) -> Quaternion:
         largest = max(map(abs, q))
         if largest == 0.0:
             return NO_ROTATION
-        q = tuple(part / largest for part in q)
+        q = as_quaternion(part / largest for part in q)
         length = _length(q)
     return (q[0] / length, q[1] / length, q[2] / length, q[3] / length)
 

@@ -6,7 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..core import IDENTITY, NO_ROTATION, Pose, Quaternion, Vector, compose, normalise, rotate
+from ..core import (
+    IDENTITY,
+    NO_ROTATION,
+    Pose,
+    Quaternion,
+    Vector,
+    as_quaternion,
+    as_vector,
+    compose,
+    normalise,
+    rotate,
+)
+from ..core.arrays import FloatArray
 from .model_spec import REVOLUTE, Inertial, JointSpec, LinkSpec
 
 # A body without any resistance to turning cannot be simulated. It gets that of a solid ball of
@@ -46,10 +58,10 @@ def principal_axes(inertial: Inertial) -> tuple[Vector, Quaternion]:
     if np.linalg.det(axes) < 0.0:
         axes[:, np.argmin(np.abs(np.diag(axes)))] *= -1.0
     turned = compose(Pose(orientation=own), Pose(orientation=_quaternion(settle(axes))))
-    return tuple(float(moment) for moment in settle(moments)), normalise(turned.orientation)
+    return as_vector(settle(moments)), normalise(turned.orientation)
 
 
-def settle(values: np.ndarray) -> np.ndarray:
+def settle(values: FloatArray) -> FloatArray:
     """Return `values` without the digits that depend on the machine's linear algebra library.
 
     What is left is the same on every machine, and so is the motion that follows from it.
@@ -60,7 +72,7 @@ def settle(values: np.ndarray) -> np.ndarray:
     return np.round(values, _DIGITS - math.ceil(math.log10(largest))) + 0.0
 
 
-def tensor(inertial: Inertial) -> np.ndarray:
+def tensor(inertial: Inertial) -> FloatArray:
     """Return the 3x3 inertia tensor about the centre of mass, in the axes of `inertial.pose`."""
     return np.array([
         [inertial.ixx, inertial.ixy, inertial.ixz],
@@ -94,7 +106,7 @@ def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
         total += inertial.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     mass, centre, total = round(mass, _DIGITS), settle(centre), settle(total)
     return Inertial(
-        mass, Pose(tuple(float(x) for x in centre)),
+        mass, Pose(as_vector(centre)),
         ixx=float(total[0, 0]), iyy=float(total[1, 1]), izz=float(total[2, 2]),
         ixy=float(total[0, 1]), ixz=float(total[0, 2]), iyz=float(total[1, 2]),
     )
@@ -147,7 +159,7 @@ def _shown(inertial: Inertial) -> str:
     )
 
 
-def _sums_of_two(moments: np.ndarray) -> np.ndarray:
+def _sums_of_two(moments: FloatArray) -> FloatArray:
     """Return the point nearest to `moments` among sums of two of three numbers that are >= 0.
 
     Of the three numbers some are zero, and the others solve a least-squares problem (Karush, Kuhn
@@ -200,7 +212,7 @@ def is_balanced(inertial: Inertial, joint: JointSpec) -> bool:
     return float(inertial.mass * arm @ arm + np.linalg.norm(uneven)) <= _UNEVEN * float(along)
 
 
-def _nearest_order(axes: np.ndarray) -> list[int]:
+def _nearest_order(axes: FloatArray) -> list[int]:
     """Return which column of `axes` to use as x, y and z: the one that points there most."""
     order: list[int] = []
     for row in np.abs(axes):
@@ -209,29 +221,30 @@ def _nearest_order(axes: np.ndarray) -> list[int]:
     return order
 
 
-def mobility(link: LinkSpec, place: Vector, turn: Quaternion) -> np.ndarray:
+def mobility(link: LinkSpec, place: Vector, turn: Quaternion) -> FloatArray:
     """Return how a free link answers a wrench at a place (6x6): turning and moving, in its axes.
 
     Both are in the frame of the link's model; so are the place [m], and what turns the link about
     it.
     """
-    com = compose(link.pose, link.inertial.pose)
+    inertial = link.mass_properties
+    com = compose(link.pose, inertial.pose)
     axes = _matrix(turn) @ _matrix(com.orientation)
-    loose = axes @ np.linalg.inv(tensor(link.inertial)) @ axes.T
+    loose = axes @ np.linalg.inv(tensor(inertial)) @ axes.T
     x, y, z = _matrix(turn) @ np.subtract(com.position, place)
     arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.block([
-        [loose, -loose @ arm], [arm @ loose, np.eye(3) / link.inertial.mass - arm @ loose @ arm],
+        [loose, -loose @ arm], [arm @ loose, np.eye(3) / inertial.mass - arm @ loose @ arm],
     ])
 
 
-def _matrix(q: Quaternion) -> np.ndarray:
+def _matrix(q: Quaternion) -> FloatArray:
     if q == NO_ROTATION:
         return np.eye(3)
     return np.array([rotate(q, axis) for axis in np.eye(3).tolist()]).T
 
 
-def _quaternion(matrix: np.ndarray) -> Quaternion:
+def _quaternion(matrix: FloatArray) -> Quaternion:
     """Return the rotation (x, y, z, w) of an orthonormal right-handed matrix.
 
     The largest component is found first, so nothing is divided by something small (Shepperd 1978).
@@ -248,4 +261,4 @@ def _quaternion(matrix: np.ndarray) -> Quaternion:
         q[i] = 1.0 + 2.0 * m[i, i] - trace
         q[j], q[k] = m[j, i] + m[i, j], m[k, i] + m[i, k]
         q[3] = m[k, j] - m[j, k]
-    return normalise(tuple(float(x) for x in q))
+    return normalise(as_quaternion(q))

@@ -170,6 +170,12 @@ class LinkSpec:
     angular_damping: float = 0.0
     sensors: tuple[Element, ...] = ()
 
+    @property
+    def mass_properties(self) -> Inertial:
+        """Return `inertial`, which every link has that moves."""
+        assert self.inertial is not None, f"link '{self.name}' has no mass"
+        return self.inertial
+
 
 REVOLUTE = 'revolute'  # includes continuous: a revolute joint without limits
 PRISMATIC = 'prismatic'

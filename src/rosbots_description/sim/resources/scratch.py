@@ -24,7 +24,8 @@ class ScratchFolder:
     def __init__(self, prefix: str) -> None:
         """Begin the folder's name with `prefix`."""
         self._prefix = prefix
-        self._folders: list[tempfile.TemporaryDirectory] = []  # several once a disk has filled up
+        # Several once a disk has filled up.
+        self._folders: list[tempfile.TemporaryDirectory[str]] = []
         self._lock = threading.Lock()
 
     def write(self, name: str, content: bytes, source: str) -> Path:

@@ -13,7 +13,7 @@ from .xml_parser import MAX_XML_BYTES, parse_xml
 # Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
 FindModel = Callable[[str], str | None]
 # A directory, or something to ask for directories each time (packages may come and go).
-Directories = Iterable[str | os.PathLike | Callable[[], Iterable[str | os.PathLike]]]
+Directories = Iterable[str | os.PathLike[str] | Callable[[], Iterable[str | os.PathLike[str]]]]
 
 _NEWEST = (1, 7)
 _MANIFESTS = ('model.config', 'manifest.xml')
@@ -172,7 +172,7 @@ def _version(text: str) -> tuple[int, ...]:
     return tuple(int(part) for part in parts)
 
 
-def find_world(name: str, directories: Iterable[str | os.PathLike] = ()) -> Path:
+def find_world(name: str, directories: Iterable[str | os.PathLike[str]] = ()) -> Path:
     """Return the file of a world: as given, else along `directories`, e.g. 'worlds/empty.world'.
 
     In each directory the name may stand as it is, in `worlds/`, and without '.world'; so a

@@ -61,7 +61,8 @@ def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
 
     for element in root.iter(etree.Element):
         try:
-            for key, value in element.attrib.items():
+            for key, text in element.attrib.items():
+                value = str(text)
                 if 'package://' in value:
                     element.set(key, substitute_packages(value, find_once))
                     if element.tag == 'mesh' and key == 'filename':

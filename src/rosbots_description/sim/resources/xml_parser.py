@@ -38,7 +38,7 @@ def parse_xml(text: str | bytes, source: str) -> etree._Element:
     root = _parse_document(document, source)
     for element, line in zip(root.iter(etree.Element), lines, strict=False):
         if line < _FARTHEST:
-            element.sourceline = line
+            element.sourceline = line  # type: ignore[assignment]  # untyped in the stubs
     if b'xmlns=' in document:
         _drop_default_namespace(root)
     return root
