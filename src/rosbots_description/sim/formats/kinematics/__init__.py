@@ -1,9 +1,9 @@
 """Links and joints as a tree, before and after fixed joints are reduced."""
 
 from .fixed_joint_reduction import Reduction, reduce_fixed_joints, require_links
-from .kinematic_tree import FREE, KinematicTree, TreeJoint, TreeLink, build_tree
+from .kinematic_tree import FREE, KinematicTree, LinkFlags, TreeJoint, TreeLink, build_tree
 
 __all__ = [
-    'FREE', 'KinematicTree', 'Reduction', 'TreeJoint', 'TreeLink', 'build_tree',
+    'FREE', 'KinematicTree', 'LinkFlags', 'Reduction', 'TreeJoint', 'TreeLink', 'build_tree',
     'reduce_fixed_joints', 'require_links',
 ]

@@ -9,11 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from lxml import etree
+
 from ...core import IDENTITY, ModelError, Pose, compose, fault
 from ...description import WORLD, Collision, Element, Inertial, JointSpec, LinkSpec, Visual
 from ...description.inertia import merge
 from .frame_references import move_part
-from .kinematic_tree import FREE, KinematicTree, TreeJoint
+from .kinematic_tree import FREE, KinematicTree, LinkFlags, TreeJoint
 
 _LUMPED = '_fixed_joint_lump__'
 
@@ -136,14 +138,15 @@ def _merge_link(
     visuals: list[Visual] = []
     sensors: list[Element] = []
     bodies: list[tuple[Pose, Inertial]] = []
-    flags: dict[str, object] = {}
+    flags = LinkFlags()
     for member in members:
         link, frame = tree.links[member], homes[member][1]
         collisions += [_move(shape, frame, member) for shape in link.spec.collisions]
         visuals += [_move(shape, frame, member) for shape in link.spec.visuals]
         sensors += [move_part(part, frame) for part in link.spec.sensors]
-        if _mass(link.spec.inertial) > 0.0:
-            bodies.append((frame, link.spec.inertial))
+        inertial = link.spec.inertial
+        if inertial is not None and inertial.mass > 0.0:
+            bodies.append((frame, inertial))
         flags.update(link.flags)
     return replace(
         tree.links[name].spec,
@@ -196,7 +199,7 @@ def require_links(tree: KinematicTree, reduction: Reduction) -> None:
         raise _nothing_left(first.spec.name, first.element)
 
 
-def _nothing_left(name: str, element) -> ModelError:
+def _nothing_left(name: str, element: etree._Element) -> ModelError:
     if name == WORLD:
         return fault(element, 'the model has only the world itself; add a link with a mass')
     return fault(

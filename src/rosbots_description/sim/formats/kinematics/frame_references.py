@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ...core import IDENTITY, Pose, compose, from_rpy, to_rpy
+from ...core import IDENTITY, Pose, as_vector, compose, from_rpy, to_rpy
 from ...description import Element
 from ..xml import parse_numbers
 
@@ -19,7 +19,7 @@ def move_part(element: Element, frame: Pose) -> Element:
     if frame == IDENTITY or (old is not None and 'relative_to' in old.attributes):
         return element
     numbers = parse_numbers(old.text, 6) if old is not None else None
-    own = Pose(numbers[:3], from_rpy(*numbers[3:])) if numbers else IDENTITY
+    own = Pose(as_vector(numbers[:3]), from_rpy(*numbers[3:])) if numbers else IDENTITY
     pose = compose(frame, own)
     text = _text((*pose.position, *to_rpy(pose.orientation)))
     moved = replace(old or Element('pose', line=element.line), text=text)

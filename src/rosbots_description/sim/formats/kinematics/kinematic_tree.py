@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TypedDict, TypeVar
 
 from lxml import etree
 
@@ -11,17 +12,25 @@ from ...description import FIXED, WORLD, JointSpec, LinkSpec
 FREE = 'free'  # a joint type that ties nothing: the child becomes a tree of its own
 
 
+class LinkFlags(TypedDict, total=False):
+    """Fields of LinkSpec that a description sets explicitly."""
+
+    gravity: bool
+    self_collide: bool
+    linear_damping: float
+    angular_damping: float
+
+
 @dataclass(frozen=True)
 class TreeLink:
     """A link as described; shape names are the description's own, '' where it gives none.
 
-    `flags` are the fields of `spec` a <gazebo> block sets explicitly; they pass on to the link
-    this one is reduced into.
+    `flags` are what a <gazebo> block sets; they pass on to the link this one is reduced into.
     """
 
     spec: LinkSpec
     element: etree._Element
-    flags: Mapping[str, object] = field(default_factory=dict)
+    flags: LinkFlags = field(default_factory=LinkFlags)
 
 
 @dataclass(frozen=True)
@@ -101,8 +110,11 @@ def build_tree(
     return tree
 
 
-def _unique(items: Sequence, kind: str) -> dict:
-    by_name: dict = {}
+Named = TypeVar('Named', TreeLink, TreeJoint)
+
+
+def _unique(items: Sequence[Named], kind: str) -> dict[str, Named]:
+    by_name: dict[str, Named] = {}
     for item in items:
         first = by_name.setdefault(item.spec.name, item)
         if first is not item:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from typing import TypeVar
 
 from lxml import etree
 
@@ -29,6 +30,8 @@ NEWEST = (1, 7)
 _UNVERSIONED = (1, 6)
 MAX_INCLUDE_DEPTH = 50  # of includes; more can only be files that include each other
 MAX_INCLUDES = 5000
+
+T = TypeVar('T')
 
 
 class SdfDocument:
@@ -107,8 +110,7 @@ class SdfDocument:
             ModelError: there is none, or it cannot be read.
         """
         uri_element = element.find('uri')
-        uri = '' if uri_element is None else scalar(uri_element)
-        if not uri:
+        if uri_element is None or not (uri := scalar(uri_element)):
             raise fault(element, 'an <include> without <uri>; add <uri>model://MODEL</uri>')
         if uri.startswith(('http://', 'https://')):
             raise fault(
@@ -185,7 +187,7 @@ class SdfLibrary:
         """Return the document of a model that is always there."""
         return self._documents.get(uri) or self.add(text, uri)
 
-    def within(self, document: SdfDocument, element: etree._Element, read: Callable):
+    def within(self, document: SdfDocument, element: etree._Element, read: Callable[[], T]) -> T:
         """Return `read()`, during which `document` counts as being read.
 
         Raises:

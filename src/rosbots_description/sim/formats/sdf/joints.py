@@ -7,7 +7,7 @@ from lxml import etree
 
 from ...core import IDENTITY, Pose, Vector, compose, conjugate, fault, relative, rotate
 from ...description import FIXED, PRISMATIC, REVOLUTE, WORLD, JointSpec, LinkSpec
-from ..xml import required_name
+from ..xml import required_name, scalar
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
 from .values import (
@@ -22,8 +22,7 @@ from .values import (
 
 _TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC, 'fixed': FIXED}
 _NOT_SIMULATED = ('ball', 'universal', 'screw', 'revolute2', 'gearbox')
-_DYNAMICS = {'damping': 'damping', 'friction': 'friction', 'spring_stiffness': 'stiffness',
-             'spring_reference': 'reference'}
+_DYNAMICS = ('damping', 'friction', 'spring_stiffness', 'spring_reference')
 _UP = (0.0, 0.0, 1.0)
 # Before SDF 1.5 axes are given in the model's frame; until 1.6 a flag may say so; since 1.7 an
 # attribute names the frame.
@@ -71,7 +70,7 @@ def read_sdf_joint(
     )
     if kind == FIXED:
         return spec
-    return replace(spec, **_motion(document, element, written, frame, frames))
+    return _with_motion(spec, document, element, written, frame, frames)
 
 
 def _child_frame(element: etree._Element) -> str:
@@ -80,49 +79,56 @@ def _child_frame(element: etree._Element) -> str:
 
 
 def _end(element: etree._Element, role: str, frames: Frames) -> str:
-    name = text_of(element, role)
-    if not name:
+    end = element.find(role)
+    if end is None or not (name := scalar(end)):
         raise fault(element, f'it has no <{role}>; name a link')
-    return WORLD if name == WORLD else frames.link_of(name, element.find(role))
+    return WORLD if name == WORLD else frames.link_of(name, end)
 
 
-def _motion(
-    document: SdfDocument, element: etree._Element, written: str, frame: Pose, frames: Frames
-) -> dict:
-    """Return axis, limits and dynamics as fields of JointSpec; `frame` is the joint's."""
+def _with_motion(
+    spec: JointSpec, document: SdfDocument, element: etree._Element, written: str, frame: Pose,
+    frames: Frames,
+) -> JointSpec:
+    """Return the joint with its axis, limits and dynamics; `frame` is the joint's."""
     axis = element.find('axis')
     if axis is None:
-        return {'axis': _UP}
+        return replace(spec, axis=_UP)
     notes = document.notes
     notes.check(
         axis, ('xyz', 'limit', 'dynamics', 'use_parent_model_frame', 'initial_position')
     )
-    fields = {'axis': _axis(document, axis, frame, frames)}
+    spec = replace(spec, axis=_axis(document, axis, frame, frames))
     limit, dynamics = axis.find('limit'), axis.find('dynamics')
     if dynamics is not None:
         notes.check(dynamics, _DYNAMICS)
-        fields |= {
-            field: number_of(dynamics, key, 0.0) if field == 'reference'
-            else not_negative_of(dynamics, key, 0.0) for key, field in _DYNAMICS.items()
-        }
+        spec = replace(
+            spec,
+            damping=not_negative_of(dynamics, 'damping', 0.0),
+            friction=not_negative_of(dynamics, 'friction', 0.0),
+            stiffness=not_negative_of(dynamics, 'spring_stiffness', 0.0),
+            reference=number_of(dynamics, 'spring_reference', 0.0),
+        )
     initial = axis.find('initial_position')
     if initial is not None:
         notes.unread(initial)
     if limit is None:
-        return fields
+        return spec
     notes.check(limit, ('lower', 'upper', 'effort', 'velocity'), ('stiffness', 'dissipation'))
-    for key in ('effort', 'velocity'):
-        value = limit_of(limit, key)
-        fields[key] = value if value is not None and value >= 0.0 else None
+    effort, velocity = limit_of(limit, 'effort'), limit_of(limit, 'velocity')
+    spec = replace(
+        spec,
+        effort=effort if effort is not None and effort >= 0.0 else None,
+        velocity=velocity if velocity is not None and velocity >= 0.0 else None,
+    )
     if written == 'continuous':
-        return fields
+        return spec
     lower, upper = limit_of(limit, 'lower'), limit_of(limit, 'upper')
     if lower is not None and upper is not None and lower > upper:
         notes.warn(
             limit, f'lower limit {lower:g} is above upper limit {upper:g}, the two are switched'
         )
         lower, upper = upper, lower
-    return fields | {'lower': lower, 'upper': upper}
+    return replace(spec, lower=lower, upper=upper)
 
 
 def _axis(document: SdfDocument, axis: etree._Element, frame: Pose, frames: Frames) -> Vector:
@@ -134,8 +140,7 @@ def _axis(document: SdfDocument, axis: etree._Element, frame: Pose, frames: Fram
     version = document.version
     if version >= _AXIS_BY_NAME:
         xyz = axis.find('xyz')
-        named = '' if xyz is None else xyz.get('expressed_in', '')
-        if not named:
+        if xyz is None or not (named := xyz.get('expressed_in')):
             return vector
         given_in = frames.pose_of(named, xyz)
     elif version < _AXIS_IN_JOINT or truth_of(axis, 'use_parent_model_frame'):

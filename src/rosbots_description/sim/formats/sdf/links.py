@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 from lxml import etree
 
@@ -22,7 +23,7 @@ _MOMENTS, _PRODUCTS = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
 # What a link has about which nothing is said.
 UNIT_INERTIAL = Inertial(1.0, IDENTITY, 1.0, 1.0, 1.0)
 
-ReadShape = Callable[[SdfDocument, etree._Element, str, Pose], Collision | Visual | None]
+Shape = TypeVar('Shape', Collision, Visual)
 
 
 def read_link(
@@ -69,7 +70,7 @@ def _sensors(
         if element.tag in _PARTS:
             parts.append(_part(element, frames, link_pose))
         if element.tag == 'sensor':
-            document.notes.left_out.sensor(parts[-1], element, link.get('name'))
+            document.notes.left_out.sensor(parts[-1], element, link.get('name', ''))
     return tuple(parts)
 
 
@@ -79,10 +80,10 @@ def _shapes(
     frames: Frames,
     link_pose: Pose,
     tag: str,
-    read: ReadShape,
-) -> tuple:
+    read: Callable[[SdfDocument, etree._Element, str, Pose], Shape | None],
+) -> tuple[Shape, ...]:
     """Return the shapes of one kind, under names that differ, posed in the link's frame."""
-    shapes: dict[str, Collision | Visual] = {}
+    shapes: dict[str, Shape] = {}
     taken: Counter[str] = Counter()
     for element in link.iterfind(tag):
         plain = name = element.get('name', '').strip() or tag
@@ -123,19 +124,20 @@ def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Iner
     if element is None:
         return UNIT_INERTIAL
     document.notes.check(element, ('mass', 'inertia', 'pose'))
-    mass = number_of(element, 'mass', 1.0)
-    if mass <= 0.0:
+    mass, mass_element = number_of(element, 'mass', 1.0), element.find('mass')
+    if mass_element is not None and mass <= 0.0:
         raise fault(
-            element.find('mass'),
+            mass_element,
             f'mass {mass:g} kg is wrong; a link that moves has a mass greater than zero',
         )
     values = {key: number_of(element, f'inertia/{key}', 1.0) for key in _MOMENTS}
     values |= {key: number_of(element, f'inertia/{key}', 0.0) for key in _PRODUCTS}
     require_mass(element, mass, values.values())
     for key in _MOMENTS:
-        if values[key] < 0.0:
+        moment = element.find(f'inertia/{key}')
+        if moment is not None and values[key] < 0.0:
             raise fault(
-                element.find(f'inertia/{key}'),
+                moment,
                 f'<{key}> is {values[key]:g}; a moment of inertia is greater than zero',
             )
     return Inertial(mass, pose_in(element.find('pose')), **values)

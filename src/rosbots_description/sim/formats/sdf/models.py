@@ -109,7 +109,7 @@ def _add_joint(
     try:
         joint = read_sdf_joint(document, element, frames)
     except AbsentError as error:
-        document.notes.left_out.part(f"joint '{shortened(element.get('name'), 100)}'", error)
+        document.notes.left_out.part(f"joint '{shortened(element.get('name', ''), 100)}'", error)
         return
     if joint is not None:
         parts.joints.append((joint, element))

@@ -1,6 +1,7 @@
 """The <physics> and <gravity> of a world, in today's form and in that of SDF 1.3."""
 
 from dataclasses import fields
+from typing import Any
 
 from lxml import etree
 
@@ -40,7 +41,7 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
         ModelError: something is no number, or one that no world can have.
     """
     plain = PhysicsSettings()
-    settings: dict[str, object] = {}
+    settings: dict[str, Any] = {}  # by field
     gravity = world.find('gravity')
     if gravity is not None and scalar(gravity):
         settings['gravity'] = numbers_of(world, 'gravity', plain.gravity)
@@ -53,13 +54,12 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
         for path in _PATHS.get(field.name, ()):
             element = chosen.find(path)
             if element is not None and scalar(element) and field.name not in settings:
-                value = _value(chosen, path, getattr(plain, field.name))
-                _check_setting(element, field.name, value)
-                settings[field.name] = value
-    model = chosen.findtext(_FRICTION, _PYRAMID).strip()
-    if model not in (_PYRAMID, _CONE):
-        document.notes.warn(chosen.find(_FRICTION),
-                            f"friction_model '{model}' is not supported; {_PYRAMID} is used")
+                settings |= _setting(chosen, path, element, field.name)
+    friction = chosen.find(_FRICTION)
+    model = _PYRAMID if friction is None else (friction.text or '').strip()
+    if friction is not None and model not in (_PYRAMID, _CONE):
+        document.notes.warn(
+            friction, f"friction_model '{model}' is not supported; {_PYRAMID} is used")
     return PhysicsSettings(**settings, friction_cone=model == _CONE)
 
 
@@ -80,16 +80,19 @@ def _check(document: SdfDocument, physics: etree._Element) -> None:
             notes.check(part, read, _ODE_IDLE)
 
 
-def _value(physics: etree._Element, path: str, default: object) -> object:
+def _setting(
+    physics: etree._Element, path: str, element: etree._Element, name: str
+) -> dict[str, Any]:
+    """Return a field with its value; what no world can have is refused, as the services do."""
+    default = getattr(PhysicsSettings(), name)
+    setting: dict[str, Any] = {}
     if isinstance(default, tuple):
-        return numbers_of(physics, path, default)
-    number = number_of(physics, path, 0.0)
-    return round(number) if isinstance(default, int) else number
-
-
-def _check_setting(element: etree._Element, name: str, value: object) -> None:
-    """Refuse what no world can have, as the services do, and say where it stands."""
+        setting[name] = numbers_of(physics, path, default)
+    else:
+        number = number_of(physics, path, 0.0)
+        setting[name] = round(number) if isinstance(default, int) else number
     try:
-        check_physics(PhysicsSettings(**{name: value}))
+        check_physics(PhysicsSettings(**setting))
     except SimError as error:
         raise fault(element, f'<{tag_of(element)}> is wrong: {error}') from None
+    return setting

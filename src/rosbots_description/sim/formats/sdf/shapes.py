@@ -1,8 +1,10 @@
 """Collisions and visuals of SDF: geometry, surface and looks."""
 
+from dataclasses import replace
+
 from lxml import etree
 
-from ...core import AbsentError, ModelError, Pose, ShapeError, fault, location, owner
+from ...core import AbsentError, ModelError, Pose, ShapeError, as_vector, fault, location, owner
 from ...description import (
     Box,
     Collision,
@@ -17,7 +19,7 @@ from ...description import (
     gazebo_material,
 )
 from ...meshes import check_mesh, submesh_file
-from ..xml import ENDLESS_FRICTION, is_endless, tag_of
+from ..xml import ENDLESS_FRICTION, is_endless, scalar, tag_of
 from .document import SdfDocument
 from .values import (
     colour_of,
@@ -29,6 +31,7 @@ from .values import (
     text_of,
     truth_of,
     unit_vector_of,
+    vector_of,
 )
 
 _NOT_SIMULATED = ('heightmap', 'polyline', 'image', 'capsule', 'ellipsoid', 'cone')
@@ -98,15 +101,14 @@ def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None
     shape = shapes[0]
     match shape.tag:
         case 'box':
-            return Box(sizes_of(shape, 'size', 3))
+            return Box(as_vector(sizes_of(shape, 'size', 3)))
         case 'sphere':
             return Sphere(sizes_of(shape, 'radius')[0])
         case 'cylinder':
             return Cylinder(sizes_of(shape, 'radius')[0], sizes_of(shape, 'length')[0])
         case 'plane':
-            return Plane(
-                unit_vector_of(shape, 'normal', _UP), numbers_of(shape, 'size', (1.0, 1.0))
-            )
+            length, width = numbers_of(shape, 'size', (1.0, 1.0))
+            return Plane(unit_vector_of(shape, 'normal', _UP), (length, width))
         case 'mesh':
             return _mesh(document, shape)
         case 'empty':
@@ -124,10 +126,9 @@ def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None
 def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     document.notes.check(element, ('uri', 'scale', 'submesh'))
     uri_element = element.find('uri')
-    uri = text_of(element, 'uri')
-    if not uri:
+    if uri_element is None or not (uri := scalar(uri_element)):
         raise fault(element, 'a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>')
-    scale = numbers_of(element, 'scale', (1.0, 1.0, 1.0))
+    scale = vector_of(element, 'scale', (1.0, 1.0, 1.0))
     if 0.0 in scale:
         written = text_of(element, 'scale')
         raise ShapeError(f"<scale> '{written}' of <mesh> makes it empty")
@@ -146,14 +147,14 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
 
 
 def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
-    default = Surface()
-    extra = {
-        'laser_retro': number_of(collision, 'laser_retro', default.laser_retro),
-        'max_contacts': int(number_of(collision, 'max_contacts', default.max_contacts)),
-    }
+    plain = Surface()
+    default = Surface(
+        laser_retro=number_of(collision, 'laser_retro', plain.laser_retro),
+        max_contacts=int(number_of(collision, 'max_contacts', plain.max_contacts)),
+    )
     surface = collision.find('surface')
     if surface is None:
-        return Surface(**extra)
+        return default
     for path, read in (
         ('.', ('friction', 'contact', 'bounce')),
         ('friction', ('ode',)),
@@ -170,10 +171,11 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
             )
     contact = 'contact/ode'
     stiffness = limit_of(surface, f'{contact}/kp')
-    return Surface(
+    return replace(
+        default,
         mu=_friction(surface, 'friction/ode/mu', default.mu),
         mu2=_friction(surface, 'friction/ode/mu2', default.mu2),
-        fdir1=numbers_of(surface, 'friction/ode/fdir1', default.fdir1),
+        fdir1=vector_of(surface, 'friction/ode/fdir1', default.fdir1),
         slip1=not_negative_of(surface, 'friction/ode/slip1', default.slip1),
         slip2=not_negative_of(surface, 'friction/ode/slip2', default.slip2),
         kp=default.kp if stiffness is None
@@ -183,7 +185,6 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         min_depth=not_negative_of(surface, f'{contact}/min_depth', default.min_depth),
         restitution=not_negative_of(surface, 'bounce/restitution_coefficient', 0.0),
         threshold=not_negative_of(surface, 'bounce/threshold', default.threshold),
-        **extra,
     )
 
 

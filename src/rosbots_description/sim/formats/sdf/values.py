@@ -4,7 +4,7 @@ import math
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, Vector, fault, from_rpy
+from ...core import IDENTITY, Pose, Vector, as_vector, fault, from_rpy
 from ...core import normalise as normalise_quaternion
 from ...description import Colour
 from ..xml import (
@@ -42,6 +42,11 @@ def numbers_of(
     return scalar_numbers(element, len(default))
 
 
+def vector_of(parent: etree._Element, path: str, default: Vector) -> Vector:
+    """Return three finite numbers, as `numbers_of` does."""
+    return as_vector(numbers_of(parent, path, default))
+
+
 def number_of(parent: etree._Element, path: str, default: float) -> float:
     """Return one finite number, as `numbers_of` does."""
     return numbers_of(parent, path, (default,))[0]
@@ -50,8 +55,8 @@ def number_of(parent: etree._Element, path: str, default: float) -> float:
 def not_negative_of(parent: etree._Element, path: str, default: float) -> float:
     """Return one finite number that is zero or more."""
     value = number_of(parent, path, default)
-    if value < 0.0:
-        element = parent.find(path)
+    element = parent.find(path)
+    if element is not None and value < 0.0:
         raise fault(element, f'<{tag_of(element)}> is {value:g}; it must not be negative')
     return value
 
@@ -96,14 +101,16 @@ def colour_of(parent: etree._Element, path: str) -> Colour | None:
         return None
     count = 3 if len(scalar(element).split()) == 3 else 4
     rgba = (*scalar_numbers(element, count), 1.0)[:4]
-    return tuple(min(1.0, max(0.0, value)) for value in rgba)
+    red, green, blue, alpha = (min(1.0, max(0.0, value)) for value in rgba)
+    return (red, green, blue, alpha)
 
 
 def damping_of(parent: etree._Element, path: str) -> float:
     """Return the damping of a link's velocity; none where nothing is said."""
     value = number_of(parent, path, 0.0)
-    if parent.find(path) is not None:
-        require_damping(parent.find(path), value)
+    element = parent.find(path)
+    if element is not None:
+        require_damping(element, value)
     return value
 
 
@@ -115,10 +122,9 @@ def unit_vector_of(parent: etree._Element, path: str, default: Vector) -> Vector
     """
     vector = numbers_of(parent, path, default)
     largest = max(abs(x) for x in vector)
-    if largest == 0.0:
-        raise fault(
-            parent.find(path), f'<{path}> has no direction; one of the three must not be zero'
-        )
+    element = parent.find(path)
+    if element is not None and largest == 0.0:
+        raise fault(element, f'<{path}> has no direction; one of the three must not be zero')
     # Scaled first, so that neither tiny nor huge numbers are squared.
     x, y, z = (x / largest for x in vector)
     length = math.sqrt(x * x + y * y + z * z)
@@ -135,10 +141,9 @@ def pose_in(element: etree._Element | None) -> Pose:
     if element.get('rotation_format') == 'quat_xyzw':
         *position, x, y, z, w = scalar_numbers(element, 7)
         require_near(element, 'the position', position)
-        return Pose(tuple(position), normalise_quaternion((x, y, z, w)))
-    numbers = scalar_numbers(element, 6)
-    require_near(element, 'the position', numbers[:3])
-    angles = numbers[3:]
+        return Pose(as_vector(position), normalise_quaternion((x, y, z, w)))
+    x, y, z, *angles = scalar_numbers(element, 6)
+    require_near(element, 'the position', (x, y, z))
     if element.get('degrees', '').lower() in ('true', '1'):
-        angles = tuple(math.radians(angle) for angle in angles)
-    return Pose(numbers[:3], from_rpy(*angles))
+        angles = [math.radians(angle) for angle in angles]
+    return Pose((x, y, z), from_rpy(*angles))

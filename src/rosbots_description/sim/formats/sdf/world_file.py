@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from ...core import ModelError, Pose, fault
-from ...description import LightSpec, ModelSpec, PluginSpec, SceneSpec, WorldSpec
+from ...description import LightSpec, ModelSpec, ModelState, PluginSpec, SceneSpec, WorldSpec
 from ...resources import MAX_XML_BYTES, FindModel, FindPackage, read_file
 from ..xml import required_name
 from .document import SdfDocument, SdfLibrary
@@ -78,10 +78,11 @@ def load_world(
         if reader is not None:
             with _left_out(content, element.tag):
                 reader(document, element, frames, content)
-    states, time = (), 0.0
-    if world.find('state') is not None:
+    states: tuple[ModelState, ...] = ()
+    time, state = 0.0, world.find('state')
+    if state is not None:
         with _left_out(content, 'state'):
-            states, time = read_states(document, world.find('state'))
+            states, time = read_states(document, state)
     spec = WorldSpec(
         world.get('name', 'default'),
         tuple(content.models.values()),
@@ -98,7 +99,7 @@ def load_world(
 
 
 def open_world(
-    path: str | os.PathLike,
+    path: str | os.PathLike[str],
     *,
     find_model: FindModel,
     find_package: FindPackage | None = None,
@@ -171,8 +172,8 @@ def _add_model(
     if not parts.name:
         raise fault(element, 'the model has no name; add <name>...</name>')
     name = _free_name(document, element, parts.name, content)
-    own = element.find('pose') is not None or parts.pose_element is None
-    pose = frames.place(element if own else parts.pose_element.getparent())
+    posed = None if parts.pose_element is None else parts.pose_element.getparent()
+    pose = frames.place(element if posed is None else posed)
     content.models[name] = (model_spec(parts, name), pose)
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from typing import TypedDict
 
 from lxml import etree
 
@@ -10,6 +11,7 @@ from ...core import (
     ModelError,
     ShapeError,
     Vector,
+    as_vector,
     fault,
     location,
     note,
@@ -44,6 +46,7 @@ from ..xml import (
     positive,
     require_mass,
     required_name,
+    vector,
 )
 
 # URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
@@ -51,6 +54,15 @@ _JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISM
                 'fixed': FIXED, 'floating': FREE, 'planar': FREE}
 
 CheckMesh = Callable[[str, Vector], object]  # file, scale; raises ModelError if it is no good
+
+
+class Limits(TypedDict, total=False):
+    """Fields of JointSpec that a <limit> sets."""
+
+    lower: float
+    upper: float
+    effort: float
+    velocity: float
 
 
 class LinkReader:
@@ -79,8 +91,9 @@ class LinkReader:
         # urdfdom also lets a colour given inside one link count for others.
         for element in robot.iterfind('link/visual/material'):
             colour = self._colour(element)
-            if colour is not None and element.get('name'):
-                self._materials.setdefault(element.get('name'), colour)
+            name = element.get('name')
+            if colour is not None and name:
+                self._materials.setdefault(name, colour)
 
     def read(self, element: etree._Element) -> TreeLink:
         """Return the link of a <link> element.
@@ -134,7 +147,8 @@ class LinkReader:
             if sentence not in self.notes:
                 note(self.notes, lambda: sentence)
             return None
-        return Material(tuple(min(1.0, max(0.0, value)) for value in rgba))
+        red, green, blue, alpha = (min(1.0, max(0.0, value)) for value in rgba)
+        return Material((red, green, blue, alpha))
 
     def _shape(self, element: etree._Element) -> Geometry | None:
         """Return the geometry, or None where there can be none and the link stands without."""
@@ -155,7 +169,7 @@ class LinkReader:
             )
         match shape.tag:
             case 'box':
-                return Box(positive(shape, 'size', 3))
+                return Box(as_vector(positive(shape, 'size', 3)))
             case 'sphere':
                 return Sphere(positive(shape, 'radius')[0])
             case 'cylinder':
@@ -170,7 +184,7 @@ class LinkReader:
         filename = element.get('filename', '').strip()
         if not filename:
             raise fault(element, 'a <mesh> without filename; add filename="package://…"')
-        scale = numbers(element, 'scale', (1.0, 1.0, 1.0))
+        scale = vector(element, 'scale', (1.0, 1.0, 1.0))
         if 0.0 in scale:
             raise ShapeError(f'scale="{element.get("scale")}" of <mesh> makes it empty')
         uri = element.get('uri', filename)
@@ -246,7 +260,7 @@ def read_urdf_joint(
         ))
     if kind in (FIXED, FREE):
         is_reduced = kind == FIXED and name not in kept
-        limits = {'lower': 0.0, 'upper': 0.0} if kept.get(name) == REVOLUTE else {}
+        limits = Limits(lower=0.0, upper=0.0) if kept.get(name) == REVOLUTE else Limits()
         spec = JointSpec(name, kept.get(name, kind) if kind == FIXED else kind,
                          parent, child, **limits)
         return TreeJoint(spec, element, origin(element), is_reduced)
@@ -303,8 +317,8 @@ def _not_negative(
     return max(0.0, value)
 
 
-def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str, float]:
-    """Return the limits as fields of JointSpec; a negative effort or velocity is no limit."""
+def _limits(element: etree._Element, written: str, notes: list[str]) -> Limits:
+    """Return the limits; a negative effort or velocity is no limit."""
     limit = element.find('limit')
     if limit is None:
         if written != 'continuous':
@@ -313,12 +327,13 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str
                 f'a {written} joint needs <limit lower upper effort velocity/>'
                 + ('; or make it continuous' if written == 'revolute' else ''),
             )
-        return {}
-    limits: dict[str, float] = {}
-    for key in ('effort', 'velocity'):
-        value = limit_number(limit, key)
-        if 0.0 <= value < math.inf:
-            limits[key] = value
+        return Limits()
+    limits = Limits()
+    effort, velocity = limit_number(limit, 'effort'), limit_number(limit, 'velocity')
+    if 0.0 <= effort < math.inf:
+        limits['effort'] = effort
+    if 0.0 <= velocity < math.inf:
+        limits['velocity'] = velocity
     lower, upper = limit_number(limit, 'lower', 0.0), limit_number(limit, 'upper', 0.0)
     if written == 'continuous':
         return limits
@@ -329,6 +344,8 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> dict[str
             'the two are switched'
         ))
         lower, upper = low, high
-    return limits | {
-        key: value for key, value in (('lower', lower), ('upper', upper)) if math.isfinite(value)
-    }
+    if math.isfinite(lower):
+        limits['lower'] = lower
+    if math.isfinite(upper):
+        limits['upper'] = upper
+    return limits

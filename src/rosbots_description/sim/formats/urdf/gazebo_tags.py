@@ -10,13 +10,24 @@ import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Literal, TypedDict
 
 from lxml import etree
 
-from ...core import MAX_NOTES, fault, line_of, location, note, shortened, suggestion
+from ...core import (
+    MAX_NOTES,
+    Vector,
+    as_vector,
+    fault,
+    line_of,
+    location,
+    note,
+    shortened,
+    suggestion,
+)
 from ...description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
 from ...plugin_registry import library_remark
-from ..kinematics import TreeLink
+from ..kinematics import LinkFlags, TreeLink
 from ..xml import (
     ENDLESS_FRICTION,
     LeftOut,
@@ -31,13 +42,18 @@ from ..xml import (
     truth,
 )
 
-_SURFACE_NUMBERS = {'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
-                    'minDepth': 'min_depth', 'laserRetro': 'laser_retro'}
+SurfaceNumber = Literal['mu', 'mu2', 'kp', 'kd', 'max_vel', 'min_depth', 'laser_retro']
+_SURFACE_NUMBERS: dict[str, SurfaceNumber] = {
+    'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
+    'minDepth': 'min_depth', 'laserRetro': 'laser_retro',
+}
 # The same inside <collision>, where SDF's own structure is used.
-_SURFACE_PATHS = {'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': 'mu2',
-                  'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
-                  'surface/contact/ode/max_vel': 'max_vel',
-                  'surface/contact/ode/min_depth': 'min_depth', 'laser_retro': 'laser_retro'}
+_SURFACE_PATHS: dict[str, SurfaceNumber] = {
+    'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': 'mu2',
+    'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
+    'surface/contact/ode/max_vel': 'max_vel', 'surface/contact/ode/min_depth': 'min_depth',
+    'laser_retro': 'laser_retro',
+}
 _NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor', 'springStiffness',
                 'springReference'}
 _LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
@@ -49,15 +65,38 @@ _KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', '
 # Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
 _SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
                 'fudgeFactor', 'canonicalBody'}
-_SPRING_TAGS = {'springStiffness': 'stiffness', 'springReference': 'reference'}
+_SPRING_TAGS: dict[str, Literal['stiffness', 'reference']] = {
+    'springStiffness': 'stiffness', 'springReference': 'reference',
+}
+
+
+class SurfaceTags(TypedDict, total=False):
+    """Fields of Surface that the blocks of one link set."""
+
+    mu: float
+    mu2: float
+    fdir1: Vector
+    kp: float
+    kd: float
+    max_vel: float
+    min_depth: float
+    max_contacts: int
+    laser_retro: float
+
+
+class SpringTags(TypedDict, total=False):
+    """Fields of JointSpec that the blocks of one joint set."""
+
+    stiffness: float
+    reference: float
 
 
 @dataclass
 class LinkTags:
     """What the blocks of one link say; only what is written is in the mappings."""
 
-    surface: dict[str, object] = field(default_factory=dict)  # fields of Surface
-    flags: dict[str, object] = field(default_factory=dict)  # fields of LinkSpec
+    surface: SurfaceTags = field(default_factory=SurfaceTags)
+    flags: LinkFlags = field(default_factory=LinkFlags)
     material: Material | None = None
     sensors: list[Element] = field(default_factory=list)
 
@@ -68,7 +107,7 @@ class GazeboTags:
 
     links: dict[str, LinkTags] = field(default_factory=dict)
     kept_joints: dict[str, str] = field(default_factory=dict)  # fixed joint -> what it becomes
-    joints: dict[str, dict[str, float]] = field(default_factory=dict)  # fields of JointSpec
+    joints: dict[str, SpringTags] = field(default_factory=dict)
     static: bool = False
     plugins: list[PluginSpec] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # sentences to warn with
@@ -90,7 +129,7 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
             note(tags.notes, partial(
                 '{}: of <{}> {!r} only the number {} is read, as in Gazebo'.format,
                 location(child), child.tag, shortened(written, 60), found[0]))
-            child.attrib.pop('value', None)
+            child.attrib.pop('value', '')
             child.text = found[0]
 
 
@@ -147,7 +186,7 @@ def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
     spec = replace(
         spec, collisions=collisions, visuals=visuals, sensors=tuple(tags.sensors), **tags.flags
     )
-    return replace(link, spec=spec, flags=dict(tags.flags))
+    return replace(link, spec=spec, flags=tags.flags)
 
 
 def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]) -> None:
@@ -175,6 +214,7 @@ def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
 def _read_link_block(
     block: etree._Element, link: LinkTags, tags: GazeboTags, unread: list[str]
 ) -> None:
+    name = block.get('reference', '')
     for child in block:
         tag = child.tag
         if tag in _KEPT:
@@ -188,18 +228,19 @@ def _read_link_block(
                 tags.idle += [_mention(part) for part in kept if part is not None]
         elif tag in _PARTS:
             link.sensors.append(to_element(child))
-            _mention_part(child, tags, unread)
+            _mention_part(child, name, tags, unread)
         elif tag == 'material':
             _read_script(child, link, tags)
         elif tag == 'visual':
             _read_visual(child, link, tags)
         elif tag not in _JOINT_TAGS:
-            _mention_part(child, tags, unread)
+            _mention_part(child, name, tags, unread)
 
 
-def _mention_part(element: etree._Element, tags: GazeboTags, unread: list[str]) -> None:
+def _mention_part(
+    element: etree._Element, link: str, tags: GazeboTags, unread: list[str]
+) -> None:
     if element.tag == 'sensor':
-        link = element.getparent().get('reference')
         tags.left_out.sensor(to_element(element), element, link)
     elif element.tag == 'plugin':
         _mention_plugin(element, tags)
@@ -215,7 +256,7 @@ def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
     ))
 
 
-def _set_surface(link: LinkTags, key: str, element: etree._Element) -> None:
+def _set_surface(link: LinkTags, key: SurfaceNumber, element: etree._Element) -> None:
     rubs = key in ('mu', 'mu2')
     value = ENDLESS_FRICTION if rubs and is_endless(element) else scalar_number(element)
     if rubs and value < 0.0:
@@ -226,7 +267,7 @@ def _set_surface(link: LinkTags, key: str, element: etree._Element) -> None:
 
 
 def _read_direction(element: etree._Element, link: LinkTags) -> None:
-    link.surface['fdir1'] = scalar_numbers(element, 3)
+    link.surface['fdir1'] = as_vector(scalar_numbers(element, 3))
 
 
 def _read_max_contacts(element: etree._Element, link: LinkTags) -> None:
@@ -297,7 +338,8 @@ def _read_visual(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     if colour is None:
         colour = element.find('material/ambient')
     if colour is not None:
-        link.material = Material(scalar_numbers(colour, 4))
+        red, green, blue, alpha = scalar_numbers(colour, 4)
+        link.material = Material((red, green, blue, alpha))
 
 
 _JOINT_TAGS = {*_SOLVER_TAGS, *_SPRING_TAGS, 'disableFixedJointLumping', 'preserveFixedJoint'}
@@ -319,7 +361,7 @@ def _read_joint_block(
                 value = scalar_number(child)
                 if value < 0.0 and tag == 'springStiffness':
                     raise fault(child, f'<{tag}> is {value:g}; it must not be negative')
-                tags.joints.setdefault(joint, {})[_SPRING_TAGS[tag]] = value
+                tags.joints.setdefault(joint, SpringTags())[_SPRING_TAGS[tag]] = value
             case tag:
                 (tags.idle if tag in _SOLVER_TAGS else unread).append(_mention(child))
 

@@ -28,7 +28,7 @@ from ..xml import (
     tag_of,
 )
 from .elements import LinkReader, read_urdf_joint
-from .gazebo_tags import GazeboTags, apply_tags, read_gazebo_tags
+from .gazebo_tags import GazeboTags, SpringTags, apply_tags, read_gazebo_tags
 
 logger = logging.getLogger(__name__)
 
@@ -112,7 +112,7 @@ def _read(
     notes += tags.notes
     joints = [read_urdf_joint(element, tags.kept_joints, notes) for element in joint_elements]
     joints = [
-        replace(joint, spec=replace(joint.spec, **tags.joints.get(joint.spec.name, {})))
+        replace(joint, spec=replace(joint.spec, **tags.joints.get(joint.spec.name, SpringTags())))
         for joint in joints
     ]
     reader = LinkReader(robot, check_mesh, tags.left_out, find_model)
@@ -132,7 +132,7 @@ def _read(
 def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
     """Return the links, those without resistance to turning with some; `notes` names them."""
     links = tuple(_possible_link(link, notes) for link in links)
-    turned = tuple(replace(link, inertial=turnable(link.inertial)) for link in links)
+    turned = tuple(replace(link, inertial=turnable(link.mass_properties)) for link in links)
     changed = [new.name for old, new in zip(links, turned, strict=True)
                if new.inertial is not old.inertial]
     if changed:
@@ -145,10 +145,11 @@ def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[Link
 
 def _possible_link(link: LinkSpec, notes: list[str]) -> LinkSpec:
     """Return the link with an inertia that a body can have; `notes` has both tensors."""
-    inertial = possible(link.inertial)
-    if inertial is link.inertial:
+    given = link.mass_properties
+    inertial = possible(given)
+    if inertial is given:
         return link
-    note(notes, lambda: impossible(link.name, link.inertial, inertial))
+    note(notes, lambda: impossible(link.name, given, inertial))
     return replace(link, inertial=inertial)
 
 

@@ -25,6 +25,7 @@ from .values import (
     tag_of,
     to_element,
     truth,
+    vector,
 )
 
 __all__ = [
@@ -32,4 +33,5 @@ __all__ = [
     'is_endless', 'limit_number', 'number', 'numbers', 'origin', 'parse_numbers', 'positive',
     'remove_xacro', 'require_damping', 'require_mass', 'require_near', 'require_size',
     'required_name', 'scalar', 'scalar_number', 'scalar_numbers', 'tag_of', 'to_element', 'truth',
+    'vector',
 ]

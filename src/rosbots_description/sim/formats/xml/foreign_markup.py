@@ -7,7 +7,7 @@ text that it is. Only where a number is needed is there none; see `values`.
 from lxml import etree
 
 from ...core import line_of, shortened
-from .values import XACRO_CURE, is_expression, tag_of
+from .values import XACRO_CURE, attributes_of, is_expression, tag_of
 
 _XACRO = 'xacro:'
 _OWN = ('gazebo', 'plugin', 'sensor')  # whatever stands in these is the business of who reads them
@@ -16,9 +16,9 @@ _OWN = ('gazebo', 'plugin', 'sensor')  # whatever stands in these is the busines
 def remove_xacro(root: etree._Element) -> list[str]:
     """Remove all tags of xacro, in place; return the sentences to warn with."""
     tags = _outermost(root)
-    shown = [_opening(element) for element in tags]
-    for element in tags:
-        element.getparent().remove(element)
+    shown = [_opening(element) for _, element in tags]
+    for parent, element in tags:
+        parent.remove(element)
     notes = []
     if shown:
         notes.append(f'unexpanded xacro is ignored: {_listed(shown)}; {XACRO_CURE}')
@@ -39,24 +39,23 @@ def foreign_tags(robot: etree._Element) -> list[str]:
     return [f'tags of another namespace are ignored: {_listed(shown)}'] if shown else []
 
 
-def _outermost(root: etree._Element) -> list[etree._Element]:
-    """Return the tags of xacro that are in no other such tag, in document order."""
-    found, waiting = [], [root]
-    while waiting:
-        for child in waiting.pop():
-            (found if tag_of(child).startswith(_XACRO) else waiting).append(child)
-    return sorted(found, key=lambda element: element.sourceline)
+def _outermost(parent: etree._Element) -> list[tuple[etree._Element, etree._Element]]:
+    """Return the tags of xacro that are in no other such tag, each behind its parent."""
+    found = []
+    for child in parent:
+        found += [(parent, child)] if tag_of(child).startswith(_XACRO) else _outermost(child)
+    return found
 
 
 def _opening(element: etree._Element) -> str:
-    attributes = ''.join(f' {key}="{value}"' for key, value in element.attrib.items())
+    attributes = ''.join(f' {key}="{value}"' for key, value in attributes_of(element).items())
     return f'<{shortened(tag_of(element) + attributes, 100)}> ({line_of(element)})'
 
 
 def _expressions(root: etree._Element) -> list[str]:
     found = []
     for element in root.iter(etree.Element):
-        places = [(f'{key}="{value}"', value) for key, value in element.attrib.items()]
+        places = [(f'{key}="{value}"', value) for key, value in attributes_of(element).items()]
         places.append(((element.text or '').strip(), element.text or ''))
         found += [
             f'{shortened(shown, 100)} in <{tag_of(element)}> ({line_of(element)})'

@@ -12,9 +12,12 @@ from ...core import (
     LIGHTEST,
     LONGEST,
     MOST_INERT,
+    ZERO,
     ModelError,
     Pose,
     ShapeError,
+    Vector,
+    as_vector,
     fault,
     from_rpy,
 )
@@ -101,6 +104,11 @@ def numbers(
             f'{attribute}="{text}" of <{tag_of(element)}> {_no_number(text, "is wrong", count)}',
         )
     return values
+
+
+def vector(element: etree._Element, attribute: str, default: Vector) -> Vector:
+    """Return three finite numbers from an attribute, as `numbers` does."""
+    return as_vector(numbers(element, attribute, default))
 
 
 def _no_number(text: str, fault: str, count: int) -> str:
@@ -241,10 +249,9 @@ def origin(element: etree._Element) -> Pose:
     child = element.find('origin')
     if child is None:
         return IDENTITY
-    zero = (0.0, 0.0, 0.0)
-    position = numbers(child, 'xyz', zero)
+    position = vector(child, 'xyz', ZERO)
     require_near(child, 'xyz', position)
-    return Pose(position, from_rpy(*numbers(child, 'rpy', zero)))
+    return Pose(position, from_rpy(*vector(child, 'rpy', ZERO)))
 
 
 def to_element(element: etree._Element) -> Element:
@@ -252,10 +259,15 @@ def to_element(element: etree._Element) -> Element:
     return Element(
         tag=tag_of(element),
         text=(element.text or '').strip(),
-        attributes=dict(element.attrib),
+        attributes=attributes_of(element),
         children=tuple(to_element(child) for child in element),
-        line=element.sourceline or 0,
+        line=element.sourceline or 0,  # type: ignore[arg-type]  # untyped in the stubs
     )
+
+
+def attributes_of(element: etree._Element) -> dict[str, str]:
+    """Return all attributes by their names."""
+    return {str(key): str(value) for key, value in element.attrib.items()}
 
 
 def is_expression(value: str) -> bool:
