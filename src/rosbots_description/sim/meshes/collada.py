@@ -12,20 +12,22 @@ from typing import NamedTuple
 import numpy as np
 from collada import Collada
 from collada.common import DaeError
-from collada.material import Map
+from collada.material import Effect, Map
 from collada.polylist import Polylist
 from collada.scene import GeometryNode, Node
 from collada.triangleset import TriangleSet
+
+from ..core.arrays import FloatArray, IntArray
 
 
 class ColladaPart(NamedTuple):
     """Triangles of one material, as a node shows them; each has three vertices of its own."""
 
-    vertices: np.ndarray  # (n, 3) in the file's unit, before the node's matrix
-    faces: np.ndarray  # (m, 3), numbers of vertices
-    normals: np.ndarray | None  # (n, 3)
-    matrix: np.ndarray  # (4, 4), from the node's frame to the scene's
-    rgba: np.ndarray | None  # (4,), None without a material
+    vertices: FloatArray  # (n, 3) in the file's unit, before the node's matrix
+    faces: IntArray  # (m, 3), numbers of vertices
+    normals: FloatArray | None  # (n, 3)
+    matrix: FloatArray  # (4, 4), from the node's frame to the scene's
+    rgba: FloatArray | None  # (4,), None without a material
     textured: bool
 
 
@@ -43,9 +45,9 @@ def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
     return parts, 1.0 if unit is None else float(unit)
 
 
-def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
+def _shown_by(node: object, matrix: FloatArray) -> Iterator[ColladaPart]:
     if isinstance(node, GeometryNode):
-        colours = {one.symbol: (_colour(one.target), isinstance(one.target.effect.diffuse, Map))
+        colours = {one.symbol: (_colour(one.target.effect), isinstance(one.target.effect.diffuse, Map))
                    for one in node.materials}
         for primitive in node.geometry.primitives:
             yield from _triangles(primitive, matrix, colours)
@@ -55,7 +57,7 @@ def _shown_by(node: object, matrix: np.ndarray) -> Iterator[ColladaPart]:
 
 
 def _triangles(
-    primitive: object, matrix: np.ndarray, colours: dict[str, tuple[np.ndarray, bool]]
+    primitive: object, matrix: FloatArray, colours: dict[str, tuple[FloatArray, bool]]
 ) -> Iterator[ColladaPart]:
     if isinstance(primitive, Polylist):
         primitive = primitive.triangleset()
@@ -70,8 +72,7 @@ def _triangles(
     yield ColladaPart(vertices, faces, normals, matrix, rgba, textured)
 
 
-def _colour(material: object) -> np.ndarray:
-    effect = material.effect
+def _colour(effect: Effect) -> FloatArray:
     rgba = np.ones(4)
     if isinstance(effect.diffuse, tuple | list):
         rgba = np.array(effect.diffuse, dtype=float)

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from ..core.arrays import FloatArray, IntArray
+
 
 def thinned(
-    vertices: np.ndarray, faces: np.ndarray, most: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    vertices: FloatArray, faces: IntArray, most: int
+) -> tuple[FloatArray, IntArray, IntArray, float]:
     """Return at most `most` triangles that look like many.
 
     Vertices that lie in one cell of a grid become the first of them; triangles that shrink to

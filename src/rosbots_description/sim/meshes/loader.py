@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core import LONGEST, AbsentError, ModelError, shortened
+from ..core.arrays import FloatArray, IntArray
 from ..description import Colour
 from ..resources import read_file, regular_state, within
 from .collada_limits import ColladaError, safe_collada
@@ -48,9 +49,9 @@ _SILENCE = threading.Lock()
 class MeshPart:
     """Triangles of one colour."""
 
-    vertices: np.ndarray  # (n, 3) [m]
-    faces: np.ndarray  # (m, 3), numbers of vertices
-    normals: np.ndarray | None  # (n, 3), unit vectors at the vertices
+    vertices: FloatArray  # (n, 3) [m]
+    faces: IntArray  # (m, 3), numbers of vertices
+    normals: FloatArray | None  # (n, 3), unit vectors at the vertices
     rgba: Colour
     textured: bool = False  # a picture gives it more colours than this one
 
@@ -63,7 +64,7 @@ class MeshData:
     parts: tuple[MeshPart, ...]
     textured: bool = False  # a part of it is
 
-    def triangles(self) -> tuple[np.ndarray, np.ndarray]:
+    def triangles(self) -> tuple[FloatArray, IntArray]:
         """Return all parts as one: vertices (n, 3) [m] and faces (m, 3)."""
         starts = np.cumsum([0, *(len(part.vertices) for part in self.parts)])
         return (
@@ -97,7 +98,7 @@ def read_mesh(path: str) -> MeshData:
     return _read(str(path), *_state(path))  # a plain string: caches hold no file
 
 
-def visual_parts(path: str) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray | None, Colour], ...]:
+def visual_parts(path: str) -> tuple[tuple[FloatArray, IntArray, FloatArray | None, Colour], ...]:
     """Return what a mesh file looks like, by colour: (vertices, faces, normals or None, rgba).
 
     Vertices (n, 3) in metres, faces (m, 3), normals (n, 3). Colours are the diffuse ones of
@@ -185,10 +186,8 @@ def _obj_part(part: ObjPart) -> MeshPart:
     normals = part.normals
     if normals is not None:
         normals = _turn_normals(normals, np.eye(3), len(part.vertices))
-    rgba = GREY
-    if part.colour is not None and np.isfinite(part.colour).all():
-        rgba = (*(min(1.0, max(0.0, value)) for value in part.colour), 1.0)
-    return MeshPart(part.vertices, part.faces, normals, rgba, part.textured)
+    rgba = None if part.colour is None else np.append(part.colour, 1.0)
+    return MeshPart(part.vertices, part.faces, normals, _colour(rgba), part.textured)
 
 
 def _parse_stl(content: bytes, path: str) -> list[MeshPart]:
@@ -211,7 +210,7 @@ def _collada_part(part: 'ColladaPart', unit: float) -> MeshPart:
     return MeshPart(vertices, faces, normals, _colour(part.rgba), part.textured)
 
 
-def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.ndarray | None:
+def _turn_normals(normals: FloatArray, linear: FloatArray, count: int) -> FloatArray | None:
     """Return unit normals after the transform, or None where they are not usable."""
     if normals.shape != (count, 3) or abs(np.linalg.det(linear)) < 1e-300:
         return None
@@ -219,10 +218,11 @@ def _turn_normals(normals: np.ndarray, linear: np.ndarray, count: int) -> np.nda
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     if not np.isfinite(length).all() or (length == 0.0).any():
         return None
-    return normals / length
+    normals /= length
+    return normals
 
 
-def _colour(rgba: np.ndarray | None) -> Colour:
+def _colour(rgba: FloatArray | None) -> Colour:
     if rgba is None or rgba.shape != (4,) or not np.isfinite(rgba).all():
         return GREY
     red, green, blue, alpha = (float(value) for value in np.clip(rgba, 0.0, 1.0))

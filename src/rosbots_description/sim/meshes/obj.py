@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import FloatArray, IntArray
+
 MAX_LIBRARIES = 8  # .mtl files of one .obj
 MAX_MATERIALS = 1000  # each a part of its own; what uses yet another has no colour
 
@@ -23,9 +25,9 @@ ReadLibrary = Callable[[str], str]  # the name of a .mtl file -> its text, '' if
 class ObjPart(NamedTuple):
     """The triangles of one material."""
 
-    vertices: np.ndarray  # (n, 3)
-    faces: np.ndarray  # (m, 3), numbers of vertices
-    normals: np.ndarray | None  # (n, 3), as written
+    vertices: FloatArray  # (n, 3)
+    faces: IntArray  # (m, 3), numbers of vertices
+    normals: FloatArray | None  # (n, 3), as written
     colour: RGB | None  # red, green, blue in 0..1
     textured: bool
 
@@ -103,7 +105,7 @@ def _from_start(number: int, count: int) -> int:
 
 
 def _part(
-    faces: _Faces, points: np.ndarray, directions: np.ndarray, look: Look
+    faces: _Faces, points: FloatArray, directions: FloatArray, look: Look
 ) -> ObjPart:
     corners = _fans(np.asarray(faces.sizes))
     vertices = _checked(np.asarray(faces.vertices), len(points))[corners]
@@ -116,13 +118,13 @@ def _part(
     return ObjPart(points[used // base - 1], triangles, directions[used % base - 1], *look)
 
 
-def _renumbered(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _renumbered(numbers: IntArray) -> tuple[IntArray, IntArray]:
     """Return the different ones of some numbers, and for each number which of them it is."""
     used = np.unique(numbers)
     return used, np.searchsorted(used, numbers)
 
 
-def _checked(numbers: np.ndarray, count: int) -> np.ndarray:
+def _checked(numbers: IntArray, count: int) -> IntArray:
     """Return numbers counted from 1 if there are as many as the greatest of them says."""
     if len(numbers) and (numbers.min() < 1 or numbers.max() > count):
         wrong = numbers[(numbers < 1) | (numbers > count)][0]
@@ -130,7 +132,7 @@ def _checked(numbers: np.ndarray, count: int) -> np.ndarray:
     return numbers
 
 
-def _fans(sizes: np.ndarray) -> np.ndarray:
+def _fans(sizes: IntArray) -> IntArray:
     """Return the triangles (n, 3) of polygons that have `sizes` corners each, corner by corner."""
     starts = np.cumsum(sizes) - sizes
     counts = np.maximum(sizes - 2, 0)

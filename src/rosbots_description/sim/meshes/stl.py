@@ -4,19 +4,21 @@ import re
 
 import numpy as np
 
+from ..core.arrays import FloatArray
+
 _HEADER = 84  # bytes: a title and the number of triangles
 _TRIANGLE = np.dtype([('normal', '<f4', 3), ('corners', '<f4', (3, 3)), ('attribute', '<u2')])
 _VERTEX = re.compile(r'\bvertex\s+(\S+)\s+(\S+)\s+(\S+)', re.IGNORECASE)
 
 
-def write_stl(corners: np.ndarray) -> bytes:
+def write_stl(corners: FloatArray) -> bytes:
     """Return a binary STL file of triangles (n, 3, 3); their normals are left to the reader."""
     triangles = np.zeros(len(corners), _TRIANGLE)
     triangles['corners'] = corners
     return bytes(80) + len(corners).to_bytes(4, 'little') + triangles.tobytes()
 
 
-def read_stl(content: bytes) -> np.ndarray:
+def read_stl(content: bytes) -> FloatArray:
     """Return the corners of the triangles (n, 3, 3) in the file's unit, which ROS takes for metres.
 
     All solids of a text file count as one.
@@ -38,7 +40,7 @@ def read_stl(content: bytes) -> np.ndarray:
     return triangles['corners'].astype(float)
 
 
-def _read_text(text: str) -> np.ndarray:
+def _read_text(text: str) -> FloatArray:
     corners = np.array(_VERTEX.findall(text), dtype=float)
     if len(corners) % 3:
         raise ValueError(f'it has {len(corners)} corners, which make no whole triangles')

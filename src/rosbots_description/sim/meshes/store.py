@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..core import Vector
+from ..core.arrays import FloatArray, IntArray
 from ..description import Mesh
 from ..description.inertia import settle
 from ..resources import HeldFile, HeldFiles
@@ -80,7 +81,7 @@ def _converted(kind: str, mesh: MeshData, scale: Vector) -> bytes:
     return _obj(vertices, faces).encode()
 
 
-def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _hull(points: FloatArray) -> tuple[FloatArray, IntArray]:
     """Return points that span nearly the hull of `points`, and triangles that use each of them."""
     points = _distinct(points)
     if len(points) > HULL_DIRECTIONS:
@@ -91,14 +92,15 @@ def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return points, np.stack([first, first + 1, first + 2], axis=1)
 
 
-def _distinct(points: np.ndarray) -> np.ndarray:
+def _distinct(points: FloatArray) -> FloatArray:
     """Return what `np.unique(points, axis=0)` returns, in an eighth of the time."""
     points = points[np.lexsort(points.T[::-1])]
-    return points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
+    distinct: FloatArray = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
+    return distinct
 
 
 @lru_cache(maxsize=1)
-def _directions() -> np.ndarray:
+def _directions() -> FloatArray:
     """Return evenly spread unit vectors (n, 3): the six axes and a spiral over the sphere.
 
     The axes come along so that the hull is as long, wide and high as the mesh. Spiral: Fibonacci
@@ -112,7 +114,7 @@ def _directions() -> np.ndarray:
     return settle(np.concatenate([np.eye(3), -np.eye(3), spiral]))
 
 
-def _obj(vertices: np.ndarray, faces: np.ndarray) -> str:
+def _obj(vertices: FloatArray, faces: IntArray) -> str:
     lines = ['o mesh']
     lines += ['v {:.9g} {:.9g} {:.9g}'.format(*vertex) for vertex in vertices.tolist()]
     lines += ['f {} {} {}'.format(*face) for face in (faces + 1).tolist()]

@@ -61,15 +61,15 @@ def _parse(path: str) -> etree._Element:
 
 def _keep_only(root: etree._Element, path: str, name: str) -> None:
     shown = [
-        element for node in root.iterfind('.//{*}node') for element in node
+        (node, element) for node in root.iterfind('.//{*}node') for element in node
         if isinstance(element.tag, str) and etree.QName(element).localname in _SHOWN
     ]
-    names = {_name(element.getparent()) for element in shown}
+    names = {_name(node) for node, _ in shown}
     if name not in names:
         raise ModelError(f"mesh file '{path}' has no submesh '{name}'{suggestion(name, names)}")
-    for element in shown:
-        if _name(element.getparent()) != name:
-            element.getparent().remove(element)
+    for node, element in shown:
+        if _name(node) != name:
+            node.remove(element)
 
 
 def _name(node: etree._Element) -> str:
@@ -82,7 +82,7 @@ def _move_to_middle(root: etree._Element, file: str) -> None:
     unit = root.find('{*}asset/{*}unit')
     metres = 1.0 if unit is None else float(unit.get('meter', '1'))
     shift = -(used.min(axis=0) + used.max(axis=0)) / 2.0 / metres
-    scene = root.find('.//{*}visual_scene')
+    scene = next(root.iterfind('.//{*}visual_scene'))  # the file could be read, so it has one
     namespace = etree.QName(scene).namespace
     tag = f'{{{namespace}}}' if namespace else ''
     wrapper = etree.Element(f'{tag}node', id='submesh_centre')

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from ..core.arrays import FloatArray
+
 _AT_ONCE = 1 << 14  # products, so that they stay near the processor
 
 
-def support_points(points: np.ndarray, directions: np.ndarray) -> list[int]:
+def support_points(points: FloatArray, directions: FloatArray) -> list[int]:
     """Return the numbers of the points (n, 3) that reach farthest along any of directions (m, 3).
 
     Sums of three products each, not a product of matrices: that would take gigabytes for a large

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core import Vector, compose
+from ..core.arrays import ByteArray
 from ..description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
 from ..meshes import visual_parts
 from ..runtime import Link, Model, World
@@ -46,7 +47,7 @@ class View:
         target: Vector = TARGET,
         size: tuple[int, int] = SIZE,
         field_of_view: float = FIELD_OF_VIEW,
-    ) -> np.ndarray:
+    ) -> ByteArray:
         """Return the view from `eye` towards `target` [m, world], (height, width, 3) RGB bytes.
 
         Args:
@@ -127,6 +128,6 @@ def _tiles(rgba: tuple[float, float, float, float]) -> list[Triangles]:
         vertices = (corner[:, None, :] + square).reshape(-1, 3)
         first = np.arange(len(corner))[:, None, None] * 4
         faces = (first + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3)
-        shade = tuple(min(1.0, value * brightness) for value in rgba[:3])
-        shades.append(Triangles(vertices, faces, (*shade, rgba[3])))
+        red, green, blue = (min(1.0, value * brightness) for value in rgba[:3])
+        shades.append(Triangles(vertices, faces, (red, green, blue, rgba[3])))
     return shades

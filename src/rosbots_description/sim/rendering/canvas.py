@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core import Pose, Vector
+from ..core.arrays import ByteArray, FloatArray, IntArray
 from ..physics.bullet import pybullet
 
 _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
@@ -15,8 +16,8 @@ _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
 class Triangles:
     """A surface in one colour: vertices (n, 3) [m], faces (m, 3), rgba in 0..1."""
 
-    vertices: np.ndarray
-    faces: np.ndarray
+    vertices: FloatArray
+    faces: IntArray
     rgba: tuple[float, float, float, float]
 
 
@@ -42,7 +43,9 @@ class Canvas:
             rgbaColor=surface.rgba,
             physicsClientId=self._client,
         )
-        return pybullet.createMultiBody(baseVisualShapeIndex=shape, physicsClientId=self._client)
+        number: int = pybullet.createMultiBody(
+            baseVisualShapeIndex=shape, physicsClientId=self._client)
+        return number
 
     def remove(self, number: int) -> None:
         """Take a surface out of the picture."""
@@ -54,7 +57,7 @@ class Canvas:
 
     def picture(
         self, size: tuple[int, int], eye: Vector, target: Vector, field_of_view: float
-    ) -> np.ndarray:
+    ) -> ByteArray:
         """Return what is seen from `eye` looking at `target` [m], z up: (height, width, 3) bytes.
 
         Args:
