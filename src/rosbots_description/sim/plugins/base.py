@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..core import NANOSECONDS, NotFoundError, PluginError, Pose
 from ..description import PluginSpec
@@ -37,8 +37,8 @@ class ModelPlugin(Plugin):
         self.params.ignore('alwaysOn')
         self.namespace = self.find_namespace(self.params.text('robotNamespace'))
         self.log_prefix = self.params.prefix = self.prefix.format(self.namespace)
-        self.outputs: dict[str, Output] = {}
-        self._all_outputs: list[Output] = []
+        self.outputs: dict[str, Output[Any]] = {}
+        self._all_outputs: list[Output[Any]] = []
         self.is_read = False
 
     def find_namespace(self, given: str | None) -> str:
@@ -65,9 +65,9 @@ class ModelPlugin(Plugin):
             PluginError: a tag makes no sense, or something is missing.
         """
 
-    def output(self, name: str, asked_for: bool = True) -> Output:
+    def output(self, name: str, asked_for: bool = True) -> Output[Any]:
         """Return a new output; if the description asks for it, it has a place in `outputs`."""
-        made = Output(self.count_readers)
+        made: Output[Any] = Output(self.count_readers)
         self._all_outputs.append(made)
         if asked_for:
             self.outputs[name] = made

@@ -59,6 +59,10 @@ class Params:
         self.values[tag] = value
         return value
 
+    def string(self, tag: str) -> str:
+        """Return the text that `read` has returned for a tag."""
+        return str(self.values[tag])
+
     def required(self, tag: str) -> str:
         """Return the tag's text.
 

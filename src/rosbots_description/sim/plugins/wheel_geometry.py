@@ -48,4 +48,4 @@ def _middle(joint: 'Joint') -> Vector:
 
 
 def _link(joint: 'Joint') -> LinkSpec:
-    return joint.model.spec.link(joint.spec.child)
+    return joint.model.links[joint.spec.child].spec

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..core import SimClock
+from .model import Joint, Link
 from .scheduler import NEVER, Hook
 
 
@@ -11,7 +12,7 @@ from .scheduler import NEVER, Hook
 class ExternalForce:
     """Does `push()` in each step from `start_ns` to `end_ns` [ns, simulated]; None: for ever."""
 
-    target: object
+    target: Link | Joint
     push: Callable[[], None]
     start_ns: int
     end_ns: int | None
@@ -26,7 +27,7 @@ class ExternalForces(Hook):
 
     def add(
         self,
-        target: object,
+        target: Link | Joint,
         push: Callable[[], None],
         start_ns: int,
         duration_ns: int,
@@ -45,7 +46,7 @@ class ExternalForces(Hook):
         self._forces.append(ExternalForce(target, push, start_ns, end_ns))
         self._set_due()
 
-    def cancel(self, chosen: Callable[[object], bool]) -> None:
+    def cancel(self, chosen: Callable[[Link | Joint], bool]) -> None:
         """Drop the forces whose target is chosen."""
         self._forces = [force for force in self._forces if not chosen(force.target)]
         self._set_due()

@@ -1,6 +1,7 @@
 """A model within a model: it has a name and a frame of its own, its parts are the outer one's."""
 
 from dataclasses import replace
+from typing import TypeVar
 
 from ..core import Pose, Twist, compose, inverse, relative
 from ..description import ModelSpec
@@ -59,7 +60,10 @@ class InnerModel:
         self.outer.move_link(self._first, self._first.pose, twist)
 
 
-def _within(prefix: str, parts: dict) -> dict:
+Part = TypeVar('Part')
+
+
+def _within(prefix: str, parts: dict[str, Part]) -> dict[str, Part]:
     return {
         name.removeprefix(prefix): part for name, part in parts.items() if name.startswith(prefix)
     }

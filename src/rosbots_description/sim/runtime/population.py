@@ -23,12 +23,12 @@ def populate(world: World, spec: WorldSpec) -> None:
     """
     world.set_physics(spec.physics)
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
-    for model, pose in spec.models:
+    for model_spec, pose in spec.models:
         try:
-            world.spawn(model, model.name, pose)
+            world.spawn(model_spec, model_spec.name, pose)
         except SimError as error:
             logger.error(
-                "model '%s': %s; the world stands without this model", model.name, error
+                "model '%s': %s; the world stands without this model", model_spec.name, error
             )
     for state in spec.states:
         model = world.models.get(state.name)

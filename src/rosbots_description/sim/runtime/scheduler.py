@@ -103,7 +103,8 @@ class Schedule:
 
         What falls between two steps of the new size happens at the later one.
         """
-        for hook in (*self._hooks, *self._publishers):
+        scheduled: list[Hook | PreRunPublisher] = [*self._hooks, *self._publishers]
+        for hook in scheduled:
             if hook.due != NEVER:
                 hook.due = now + max(1, math.ceil((hook.due - now) / ratio))
 

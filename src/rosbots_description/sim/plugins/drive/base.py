@@ -53,8 +53,9 @@ class Drive(PeriodicPlugin):
     def send_odometry(self, reading: Odometry, flat: bool = False) -> None:
         """Send odometry in both forms; `flat` if z is 0 in the reading, though not in the other."""
         if self.odometry_transform.wanted:
-            frames = self.params.values['odometryFrame'], self.params.values['robotBaseFrame']
-            self.odometry_transform.send(FrameTransform(*frames, reading.pose))
+            string = self.params.string
+            self.odometry_transform.send(
+                FrameTransform(string('odometryFrame'), string('robotBaseFrame'), reading.pose))
         if self.odometry.wanted:
             if flat:
                 (x, y, _), orientation = reading.pose

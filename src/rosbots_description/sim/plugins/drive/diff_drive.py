@@ -47,8 +47,9 @@ class DiffDrive(WheeledDrive):
         self.set_rate(params.rate('updateRate', 100.0))
         names = read('leftJoint', 'left_joint'), read('rightJoint', 'right_joint')
         self.every_step = reads_encoders(params)
-        self.wheels = tuple(self.joint(name, 'wheel hinge') for name in names)
-        self.encoders = Encoders(*self.wheels, self.wheel_diameter, self.wheel_separation)
+        left, right = (self.joint(name, 'wheel hinge') for name in names)
+        self.wheels = (left, right)
+        self.encoders = Encoders(left, right, self.wheel_diameter, self.wheel_separation)
         self._warn_geometry()
         self._warn_sides()
 

@@ -59,9 +59,9 @@ class TricycleDrive(WheeledDrive):
         self.joints = tuple(self.joint(name, 'wheel hinge') for name in names)
         if len(set(names)) < len(names):
             raise PluginError(f'{self.log_prefix}two of its joints are one: {", ".join(names)}')
-        self._steering, self._driven, *encoders = self.joints
+        self._steering, self._driven, left, right = self.joints
         # Upstream takes the left one for the right one.
-        self.encoders = Encoders(*encoders, encoder_diameter, encoder_separation, turning=-1.0)
+        self.encoders = Encoders(left, right, encoder_diameter, encoder_separation, turning=-1.0)
 
     def restart(self) -> None:
         """Forget everything and let the motors hold the steered wheel."""
