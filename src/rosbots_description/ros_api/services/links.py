@@ -109,7 +109,7 @@ def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyB
         read_vector(request.wrench.force),
         read_vector(request.wrench.torque),
         read_vector(request.reference_point),
-        frame.pose if frame else None,
+        frame.state()[0] if frame else None,
         link.pose,
     )
     start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
