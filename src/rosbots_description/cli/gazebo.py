@@ -6,8 +6,9 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import FrameType
 
 from .gzclient import display_works
 
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return server.returncode
 
 
-def _on_signals(react: signal.Handlers) -> None:
+def _on_signals(react: Callable[[int, FrameType | None], object]) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, react)
 

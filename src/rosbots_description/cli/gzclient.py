@@ -115,7 +115,7 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     """Run the window until it is closed, and say there and here when the simulator has gone."""
     from ..ros_api.clients.server_watch import ServerWatch  # noqa: PLC0415  only a window needs it
 
-    told: list[int] = []
+    told: list[int | None] = []
     window: subprocess.Popen | None = None
 
     def end(number: int | None = None, _frame: object = None) -> None:
@@ -131,11 +131,10 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
         window = subprocess.Popen(command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  it only calls the kernel
         if told:  # meanwhile
             end()
-        code = None
-        while code is None and not told:  # who is told to end says no more of the simulator
+        while window.poll() is None and not told:  # then it says no more of the simulator
             watch.look()
             with contextlib.suppress(subprocess.TimeoutExpired):
-                code = window.wait(PERIOD)
+                window.wait(PERIOD)
         code = window.wait()
         if told:
             return 0

@@ -6,6 +6,7 @@ Noetic's own is on no package index; what ROS 2 has there knows neither rospack 
 
 from __future__ import annotations
 
+import io
 import math
 import os
 import sys
@@ -29,7 +30,8 @@ def main() -> int:
         sys.stderr.write(f'xacro: the Python module xacro is missing for {sys.executable}; install '
                          'it with "python3 -m pip install xacro==1.13.3".\n')
         return 1
-    sys.stdout.reconfigure(encoding='utf-8')  # as XML is, whatever PYTHONIOENCODING says
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(encoding='utf-8')  # as XML is, whatever PYTHONIOENCODING says
     extend(xacro)
     xacro.main()
     return 0
@@ -38,8 +40,7 @@ def main() -> int:
 def extend(xacro: ModuleType) -> None:
     """Let the module understand, in place, what expressions and includes may say in Noetic."""
     for unit, factor in _UNITS.items():
-        _Loader.add_constructor(unit, lambda loader, node, factor=factor: factor * float(
-            eval(loader.construct_scalar(node), xacro.global_symbols)))
+        _Loader.add_constructor(unit, partial(_scaled, xacro, factor))
     load_yaml = partial(_load_yaml, xacro)
     symbols = xacro.global_symbols
     symbols['__builtins__'].update(_PYTHON)
@@ -54,10 +55,14 @@ def extend(xacro: ModuleType) -> None:
             dotify=_Dotted,
         ),
     )
-    xacro.process_include = partial(_include, xacro, xacro.process_include)
+    vars(xacro)['process_include'] = partial(_include, xacro, xacro.process_include)
 
 
-class _Dotted(dict):
+def _scaled(xacro: ModuleType, factor: float, loader: yaml.Loader, node: yaml.Node) -> float:
+    return factor * float(eval(loader.construct_scalar(node), xacro.global_symbols))
+
+
+class _Dotted(dict[str, object]):
     """A mapping that is also read with dots: robot.wheel.radius."""
 
     def __getattr__(self, name: str):

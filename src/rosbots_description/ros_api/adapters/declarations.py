@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any, Protocol
 
+import rospy
 from genpy import Message
 
 from ..messages import stamp
@@ -67,7 +68,7 @@ class Publishes:
     output: str
     topic: str
     message: type[Message]
-    convert: Callable[[Any], Message] | None = None  # makes a message of a reading
+    convert: Callable[[Any], Message] = lambda reading: reading  # makes a message of a reading
     frame: str | None = None  # of the header, which is then filled in; it is a name, too
     queue: int = 1
     latch: bool = False
@@ -88,7 +89,7 @@ class PublishedTopic(Endpoint):
     def __init__(self, adapter: Adapter, declared: Publishes) -> None:
         super().__init__(adapter, declared.topic)
         self.declared = declared
-        self.publisher = None
+        self.publisher: rospy.Publisher | None = None
         self._output = adapter.plugin.outputs.get(declared.output)
         self._connected = False
 
@@ -117,22 +118,26 @@ class PublishedTopic(Endpoint):
 
     def refresh(self) -> None:
         """Take readings as long as somebody reads."""
-        wanted = self.has_output and self.is_wanted()
+        output = self._output
+        if output is None:
+            return
+        wanted = self.is_wanted()
         if wanted and not self._connected:
-            self._output.connect(self.send)
+            output.connect(self.send)
         elif self._connected and not wanted:
-            self._output.disconnect(self.send)
+            output.disconnect(self.send)
         self._connected = wanted
 
     def disconnect(self) -> None:
         """Take no readings any more."""
-        if self._connected:
+        if self._output is not None and self._connected:
             self._output.disconnect(self.send)
         self._connected = False
 
     def send(self, reading: object) -> None:
         """Publish a reading."""
-        publisher, now_ns = self.publisher, self._clock.now_ns
+        publisher: rospy.Publisher = self.publisher
+        now_ns = self._clock.now_ns
         if self._pack is not None:
             publish_serialized(publisher, self._pack(next_number(publisher), now_ns, reading))
             return
@@ -149,7 +154,7 @@ class Subscribes:
     topic: str
     message: type[Message]
     call: str  # the method
-    read: Callable[[Message], tuple]  # gives its arguments, or raises ValueError that tells why not
+    read: Callable[[Message], tuple[Any, ...]]  # gives its arguments, or raises ValueError that tells why not
     queue: int = 1
     log_before: str = ''  # what is said before it is subscribed to
     log: str = ''  # and afterwards

@@ -23,7 +23,6 @@ from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
-from ...sim.runtime import FrameTransform
 from ..server import STATIC_TOPIC
 from ..transport import reader_names, set_level, subscribers
 from .adapter import Adapter
@@ -50,7 +49,7 @@ class StartLog(Endpoint):
         """Log what upstream logs."""
         plugin = self.adapter.plugin
         if 'rosDebugLevel' in plugin.params.values:
-            set_level(plugin.params.values['rosDebugLevel'])
+            set_level(plugin.params.string('rosDebugLevel'))
             logger.debug('Starting plugin %s', plugin.log_prefix.removesuffix(': '))
         logger.debug('%s<tf_prefix> = %s', plugin.log_prefix, self.adapter.tf_prefix)
 
@@ -79,9 +78,9 @@ class WheelStatesTopic(PublishedTopic):
             server.loop.post(lambda: server.static_frames.expect(expected))
         super().open()
 
-    def readers(self) -> set[str]:
+    def readers(self) -> frozenset[str]:
         """Return the names of the nodes that read it, or soon will."""
-        return self._followers | reader_names(self.publisher) if self.publisher else set()
+        return self._followers | reader_names(self.publisher) if self.publisher else frozenset()
 
 
 class WheelFrames(Publishes):
@@ -105,7 +104,7 @@ class WheelFramesTopic(PublishedTopic):
             nodes.intersection(states.readers()) for states in self.adapter.endpoints
             if isinstance(states, WheelStatesTopic)))
 
-    def send(self, reading: FrameTransform) -> None:
+    def send(self, reading: object) -> None:
         """Publish a frame, unless such a node has come since we were told of readers."""
         if self.is_wanted():
             super().send(reading)

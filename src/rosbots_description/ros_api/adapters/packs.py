@@ -1,6 +1,7 @@
 """Readings that are sent often, laid out by hand: `Publishes` takes these as `pack`."""
 
 import logging
+from typing import Any
 
 from ...sim.runtime import FrameTransform, JointStates
 from ..messages import JointStatesLayout, OdometryLayout, TransformLayout
@@ -13,9 +14,10 @@ logger = logging.getLogger(__name__)
 
 def odometry_pack(adapter: Adapter) -> Pack:
     """Return what lays the odometry of a drive out."""
-    plugin, values = adapter.plugin, adapter.plugin.params.values
-    frames = (adapter.frame(values[tag]) for tag in ('odometryFrame', 'robotBaseFrame'))
-    return OdometryLayout(*frames, plugin.pose_variances, plugin.twist_variances).pack
+    plugin: Any = adapter.plugin  # one that has variances, as those have that give odometry out
+    parent, child = (
+        adapter.frame(plugin.params.string(tag)) for tag in ('odometryFrame', 'robotBaseFrame'))
+    return OdometryLayout(parent, child, plugin.pose_variances, plugin.twist_variances).pack
 
 
 class TransformPack:

@@ -4,6 +4,7 @@ import logging
 import time
 import warnings
 from collections.abc import Callable
+from functools import partial
 
 from ...sim.core import PluginError
 from ...sim.plugins import ModelPlugin
@@ -51,24 +52,24 @@ class Adapters:
 
     def model_spawned(self, model: Model) -> None:
         """Give each plugin its topics; they appear shortly after."""
-        for plugin in model.plugins:
+        for plugin in _with_topics(model):
             try:
                 made = Adapter(self._server, plugin, topics_of(type(plugin)))
             except PluginError as error:
                 logger.error('%s: %s; the model lives on without its topics', where(plugin), error)
                 continue
             self._open[plugin] = made
-            self._server.registrar.post(lambda made=made: self._change('come', made.open))
-            self._server.registrar.post(lambda made=made: self._connect(made))
+            self._server.registrar.post(partial(self._change, 'come', made.open))
+            self._server.registrar.post(partial(self._connect, made))
 
     def model_deleted(self, model: Model) -> None:
         """Take the topics of each plugin away."""
-        for plugin in model.plugins:
+        for plugin in _with_topics(model):
             gone = self._open.pop(plugin, None)
             if gone is None:
                 continue
             gone.disconnect()
-            self._server.registrar.post(lambda gone=gone: self._change('go', gone.close))
+            self._server.registrar.post(partial(self._change, 'go', gone.close))
 
     def world_reset(self) -> None:
         """Topics outlive a reset."""
@@ -95,3 +96,8 @@ class Adapters:
                 made.connect()
 
         self._server.loop.post(connect)
+
+
+def _with_topics(model: Model) -> list[ModelPlugin]:
+    """Return the plugins of a model that may have topics."""
+    return [plugin for plugin in model.plugins if isinstance(plugin, ModelPlugin)]

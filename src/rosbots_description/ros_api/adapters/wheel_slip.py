@@ -12,6 +12,7 @@ def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
     """Offer the slip compliances; loading the library must not keep the world waiting."""
     from ..reconfigure.wheel_slip import SlipReconfigure  # noqa: PLC0415
 
+    assert isinstance(adapter.plugin, WheelSlip)
     return SlipReconfigure(adapter.plugin, adapter.server.loop.post).close
 
 

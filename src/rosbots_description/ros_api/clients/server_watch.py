@@ -7,11 +7,15 @@ Publishes:
 
 import socket
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from rosgraph.names import make_caller_id, resolve_name
 
 from ..transport import node_address
+
+if TYPE_CHECKING:
+    import rospy
 
 TIMEOUT = 2.0  # for the simulator to take a connection [s, wall]
 NOTICE = 'the simulator has gone'
@@ -65,7 +69,7 @@ class Notice:
     """A text in the scene, shown by a node that lives from the first time it is needed."""
 
     def __init__(self) -> None:
-        self._publisher = None
+        self._publisher: rospy.Publisher | None = None
 
     def show(self) -> None:
         """Write that the simulator has gone where its models were."""

@@ -13,9 +13,10 @@ import logging
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from types import FrameType
 
 import rospy
 
@@ -219,6 +220,6 @@ def _warn(text: str) -> None:
     sys.stderr.write(f'[WARN] [{time.time():f}]: {text}\n')
 
 
-def _on_signals(react: signal.Handlers) -> None:
+def _on_signals(react: Callable[[int, FrameType | None], object]) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, react)

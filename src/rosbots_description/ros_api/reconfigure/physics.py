@@ -23,6 +23,7 @@ from gazebo_msgs.srv import (
     GetPhysicsPropertiesResponse,
     SetPhysicsPropertiesRequest,
 )
+from genpy import Message
 from geometry_msgs.msg import Vector3
 
 from ..server import Server
@@ -74,6 +75,8 @@ def advertise_reconfigure(server: Server) -> None:
 
 class PhysicsReconfigure(ReconfigureServer):
     """Lets dynamic_reconfigure show and change the physics; its calls come from ROS's threads."""
+
+    config: Config
 
     def __init__(self, server: Server) -> None:
         self._server = server
@@ -133,7 +136,7 @@ class PhysicsReconfigure(ReconfigureServer):
         current.update(settings(response))
         return current
 
-    def _ask(self, name: str, request: object) -> object:
+    def _ask(self, name: str, request: Message) -> Message:
         return respond(self._server, SERVICES[name], request)
 
 

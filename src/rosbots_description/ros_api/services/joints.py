@@ -2,6 +2,7 @@
 
 import contextlib
 from dataclasses import replace
+from typing import Any
 
 from gazebo_msgs.msg import ODEJointProperties
 from gazebo_msgs.srv import (
@@ -138,15 +139,15 @@ def changed_spec(spec: JointSpec, changes: dict[str, float]) -> JointSpec:
         RequestError: the lower limit would be above the upper one, or damping would drive.
 
     """
-    limits = {
-        name: None if abs(value) >= _ENDLESS else value
+    fields: dict[str, Any] = {
+        name: None if name != 'damping' and abs(value) >= _ENDLESS else value
         for name, value in changes.items()
-        if name != 'damping'
     }
-    changed = replace(spec, **(changes | limits))
-    if None not in (changed.lower, changed.upper) and changed.lower > changed.upper:
+    changed = replace(spec, **fields)
+    lower, upper = changed.lower, changed.upper
+    if lower is not None and upper is not None and lower > upper:
         raise RequestError(
-            f"loStop {changed.lower:g} of joint '{spec.name}' is above hiStop {changed.upper:g}"
+            f"loStop {lower:g} of joint '{spec.name}' is above hiStop {upper:g}"
         )
     if changed.damping < 0.0:
         raise RequestError(f"damping of joint '{spec.name}' is {changed.damping:g}; it must not "

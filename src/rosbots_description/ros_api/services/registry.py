@@ -27,7 +27,7 @@ class Service:
     """How a service is answered: `prepare` beside the loop, then `answer`."""
 
     name: str  # without the node's name
-    type: type
+    type: type[Any]
     answer: Answer
     prepare: Answer | None
     registers: bool  # changes which topics there are; the reply waits for that
@@ -40,7 +40,7 @@ EXTENSIONS: dict[str, Service] = {}  # ours
 
 def service(
     name: str,
-    service_type: type,
+    service_type: type[Any],
     prepare: Answer | None = None,
     registers: bool = False,
     on_loop: bool = True,

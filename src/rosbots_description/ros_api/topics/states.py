@@ -6,6 +6,7 @@ Publishes:
     ~model_states (gazebo_msgs/ModelStates): every step while subscribed.
 """
 
+import contextlib
 import logging
 from collections.abc import Iterable, Iterator
 
@@ -86,7 +87,8 @@ class ClockTopic(Topic, PreRunPublisher):
         clock, due = self._world.clock, np.arange(self.due, last + 1)
         if self._period_ns:
             due = np.fromiter(self._due_until(last), np.int64)
-        times = clock.ns_at(due)  # of all at once: one by one takes 1 us each
+        # of all at once: one by one takes 1 us each
+        times = clock.ns_at(0) + due * clock.step_ns
         messages = np.empty(len(times), _CLOCK)
         messages['size'] = _CLOCK_SIZE
         messages['secs'], messages['nsecs'] = np.divmod(times, NANOSECONDS)
@@ -190,12 +192,9 @@ def advertise_clock(server: Server) -> None:
 
 def clock_frequency(value: object) -> int:
     """Return the parameter's value [Hz]; 0, every step, if it is no whole number, with an error."""
-    try:
-        frequency = int(value)
-        if frequency == float(value):
-            return frequency
-    except (TypeError, ValueError, OverflowError):
-        pass
+    with contextlib.suppress(ValueError, OverflowError):
+        if isinstance(value, int | float | str) and int(value) == float(value):
+            return int(value)
     logger.error('~pub_clock_frequency is %r; it must be a whole number [Hz]. 0 is used', value)
     return 0
 

@@ -57,8 +57,9 @@ def outlive_full_disk() -> None:
     for handler in logging.getLogger().handlers:
         if isinstance(handler, logging.FileHandler):
             handler.encoding, handler.errors = 'utf-8', 'backslashreplace'  # when files rotate
-            handler.stream.reconfigure(encoding=handler.encoding, errors=handler.errors)
-            handler.handleError = _Complaint(handler)
+            if handler.stream is not None:
+                handler.stream.reconfigure(encoding=handler.encoding, errors=handler.errors)
+            handler.handleError = _Complaint(handler)  # type: ignore[method-assign]  # the only way
 
 
 class _Complaint:

@@ -1,7 +1,7 @@
 """Calls to the ROS master, which may be away for a while."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from http.client import HTTPException
 from typing import TypeVar
 from xml.parsers.expat import ExpatError
@@ -93,12 +93,16 @@ def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
     Args:
         publishing: another topic; those who publish it are returned as well, in a set of their own.
     """
-    state = once_there(lambda: rosgraph.Master(rospy.get_name()).getSystemState())
-    return tuple({node for name, nodes in part if name == wanted for node in nodes}
-                 for part, wanted in ((state[1], topic), (state[0], publishing)))
+    publishers, readers, _ = once_there(
+        lambda: rosgraph.Master(rospy.get_name()).getSystemState())
+    return _nodes(readers, topic), _nodes(publishers, publishing)
 
 
-def write_parameters(values: Mapping[str, object]) -> None:
+def _nodes(topics: Iterable[tuple[str, list[str]]], wanted: str) -> set[str]:
+    return {node for topic, nodes in topics if topic == wanted for node in nodes}
+
+
+def write_parameters(values: Mapping[str, str | float | bool]) -> None:
     """Write private parameters of this node by one call: each takes as long as all together.
 
     Raises:
@@ -107,4 +111,6 @@ def write_parameters(values: Mapping[str, object]) -> None:
     calls = MultiCall(rosgraph.Master(rospy.get_name()).handle)
     for name, value in values.items():
         calls.setParam(rospy.get_name(), rospy.resolve_name(f'~{name}'), value)
-    tuple(calls())  # a result that is looked at raises what went wrong
+    results = calls()
+    for number in range(len(values)):
+        results[number]  # noqa: B018  a result that is looked at raises what went wrong

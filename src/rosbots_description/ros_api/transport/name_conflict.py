@@ -7,6 +7,7 @@ import socket
 from collections.abc import Sequence
 from dataclasses import dataclass
 from http.client import HTTPConnection
+from typing import Any
 from urllib.parse import urlsplit
 from xmlrpc.client import Error as XmlRpcError
 from xmlrpc.client import ServerProxy, Transport
@@ -59,7 +60,8 @@ def holder(name: str) -> Holder | None:
     except OSError:
         return None  # killed: it could not unregister
     try:
-        return Holder(uri, ServerProxy(uri, transport=_Impatient()).getPid(name)[2])
+        node: Any = ServerProxy(uri, transport=_Impatient())
+        return Holder(uri, node.getPid(name)[2])
     except TimeoutError:
         return Holder(uri, None)
     except (*NO_MASTER, XmlRpcError):  # its port belongs to another program by now
