@@ -43,10 +43,10 @@ def driven_world(robots: int, distance: float, driving: bool) -> Iterator[World]
     world = World()
     try:
         add_empty_world(world)
-        spec = robot_spec() if robots else None
+        spec = robot_spec()
         for i in range(robots):
             model = world.spawn(spec, f'robot{i}', Pose((0.0, distance * i, 0.5)))
-            model.plugins[0].command(FORWARD if driving else 0.0, 0.0)
+            model.plugin('diff_drive').command(FORWARD if driving else 0.0, 0.0)
         yield world
     finally:
         world.close()

@@ -62,12 +62,12 @@ def read_trace(path: Path) -> tuple[list[Command], list[tuple[float, ...]]]:
                 continue
             try:
                 forward = row['cmd_v'] if 'cmd_v' in row else row['cmd_vx']
-                command = tuple(map(float, (forward, row.get('cmd_vy') or 0.0, row['cmd_w'])))
+                vx, vy, w = map(float, (forward, row.get('cmd_vy') or 0.0, row['cmd_w']))
                 time, *values = (float(row[key]) for key in ('t_since_cmd', *COLUMNS))
             except KeyError as error:
                 raise ValueError(f'{path}: there is no column {error}') from None
-            if not commands or commands[-1][1:] != command:
-                commands.append((time if commands else 0.0, *command))
+            if not commands or commands[-1][1:] != (vx, vy, w):
+                commands.append((time if commands else 0.0, vx, vy, w))
             rows.append((time, *values))
     if not rows:
         raise ValueError(f'{path}: no row has a t_since_cmd of 0 or later; nothing was commanded')

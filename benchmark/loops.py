@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 
 from article import driven_world, robot_urdf
+from child import Child
 
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.physics.bullet.silence import silent
@@ -30,30 +30,19 @@ WHEEL_SPEED = 1.9  # [rad/s] of a robot that drives at 0.5 m/s
 WHEEL_TORQUE = 5.0  # [N m]
 BATCH = 0.01  # [s, wall] between two looks at the clock
 
-Steps = Callable[[int], None]
+Steps = Callable[[int], object]
 
 
-class Loop:
+class Loop(Child):
     """One of the loops, in a process of its own that waits between windows."""
 
     def __init__(self, kind: str, robots: int, driving: bool) -> None:
         """Start the process; the first window waits until its robots stand."""
-        self._process = subprocess.Popen(
-            [sys.executable, __file__, kind, str(robots), str(int(driving))],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-        )
-
-    def __enter__(self) -> Loop:
-        return self
-
-    def __exit__(self, *_exception) -> None:
-        self._process.communicate()
+        super().__init__(__file__, kind, str(robots), str(int(driving)))
 
     def speed(self, seconds: float) -> float:
         """Return the steps per second over a window [s, wall]."""
-        self._process.stdin.write(f'{seconds}\n')
-        self._process.stdin.flush()
-        return float(self._process.stdout.readline())
+        return float(self.ask(str(seconds)))
 
 
 @contextlib.contextmanager

@@ -53,7 +53,7 @@ def gazebo_errors(tuning: Tuning) -> tuple[float, float]:
 def driven(world: World) -> Model:
     """Return the article's robot, driving at its steady speed."""
     model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-    model.plugins[0].command(SPEED, 0.0)
+    model.plugin('diff_drive').command(SPEED, 0.0)
     world.run(SETTLED)
     return model
 

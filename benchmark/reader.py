@@ -7,38 +7,27 @@ for each line on its standard input, how many messages have come.
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from itertools import count
 
 import rospy
+from child import Child
 from server import wait_until
 
 PER_SECOND = 500  # messages of one robot per simulated second: odom, joint_states and three edges
 
 
-class Reader:
+class Reader(Child):
     """Such a node, in a process of its own, while a `with` statement lasts."""
 
     def __init__(self, robots: int) -> None:
         """Start it on this process's master and wait until it is connected."""
-        self._process = subprocess.Popen(
-            [sys.executable, __file__, str(robots)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-        )
-        self._process.stdout.readline()
-
-    def __enter__(self) -> Reader:
-        return self
-
-    def __exit__(self, *_exception) -> None:
-        self._process.communicate()
+        super().__init__(__file__, str(robots))
+        self.answer()
 
     def messages(self) -> int:
         """Return how many messages have come."""
-        self._process.stdin.write('\n')
-        self._process.stdin.flush()
-        return int(self._process.stdout.readline())
+        return int(self.ask())
 
 
 def main() -> int:

@@ -82,8 +82,8 @@ def main() -> int:
         if 'left' in joint.name:
             recorder.note_target(velocity)
 
-    node.World = RecordedWorld
-    Joint.set_motor = recorded_set_motor
+    vars(node)['World'] = RecordedWorld
+    Joint.set_motor = recorded_set_motor  # type: ignore[method-assign, assignment]  # on purpose
     code = gzserver.main()
     recorder.save()
     return code

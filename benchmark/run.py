@@ -19,7 +19,7 @@ import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import IO, TextIO
 
 from rosbots_description.cli.launched import descendants, send_signal
 
@@ -104,17 +104,20 @@ def run(command: Sequence[str | Path], name: str, about: float) -> int:
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                 env=os.environ | {'TMPDIR': folder, 'PYTHONUNBUFFERED': '1'},
                 start_new_session=True)  # the terminal's Ctrl-C is for us to hand on
+            assert part.stdout is not None
             with part.stdout:
-                _pass_on(part, Progress(name, about, sys.stderr))
+                _pass_on(part, part.stdout, Progress(name, about, sys.stderr))
             return part.wait()
         finally:
             end_all()
 
 
-def _pass_on(part: subprocess.Popen, progress: Progress) -> None:
+def _pass_on(
+    part: subprocess.Popen[bytes], output: IO[bytes], progress: Progress
+) -> None:
     """Print what the part prints until it closes its output, and the progress in between."""
     with selectors.DefaultSelector() as selector:
-        selector.register(part.stdout, selectors.EVENT_READ)
+        selector.register(output, selectors.EVENT_READ)
         begun = False  # a line that has no end yet
         try:
             while True:
@@ -124,7 +127,7 @@ def _pass_on(part: subprocess.Popen, progress: Progress) -> None:
                     if not begun:
                         progress.show()
                     continue
-                text = os.read(part.stdout.fileno(), 1 << 16)
+                text = os.read(output.fileno(), 1 << 16)
                 if not text:
                     return
                 if not begun:

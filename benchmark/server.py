@@ -16,6 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
 from multiprocessing import get_context
 from pathlib import Path
+from typing import TypeVar
 
 import rosgraph
 import rospy
@@ -40,7 +41,10 @@ USER_TIME, SYSTEM_TIME, STARTED = 11, 12, 19  # fields of /proc/PID/stat after t
 COMMANDS = 'cmd_vel'  # below a robot's namespace, where the article's robot has /part2_cmr/cmd_vel
 
 
-def in_a_process_of_its_own(function: Callable, *arguments: object) -> object:
+Result = TypeVar('Result')
+
+
+def in_a_process_of_its_own(function: Callable[..., Result], *arguments: object) -> Result:
     """Return what a module's function returns in a fresh process."""
     with ProcessPoolExecutor(1, get_context('spawn')) as pool:
         return pool.submit(function, *arguments).result()
@@ -92,7 +96,7 @@ class Server:
     def __enter__(self) -> Server:
         return self
 
-    def __exit__(self, *_exception) -> None:
+    def __exit__(self, *_exception: object) -> None:
         rospy.signal_shutdown('measured')
         self._processes.close()
 

@@ -23,6 +23,7 @@ import rospy
 from article import robot_urdf
 from gazebo_msgs import srv
 from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
+from genpy import Message
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -234,14 +235,14 @@ class Client:
         time.sleep(self._random.uniform(*LOOK))
         subscriber.unregister()
 
-    def _call(self, name: str, service_class: type, *arguments: object) -> object:
+    def _call(self, name: str, service_class: type, *arguments: object) -> Message:
         begin = time.monotonic()
         try:
             return rospy.ServiceProxy(f'/gazebo/{name}', service_class)(*arguments)
         finally:
             self.report.slowest = max(self.report.slowest, time.monotonic() - begin)
 
-    def _expect(self, answer: object, success: bool, words: str) -> None:
+    def _expect(self, answer: Message, success: bool, words: str) -> None:
         if answer.success != success or words not in answer.status_message:
             raise ValueError(f'success={answer.success}: {answer.status_message}')
 

@@ -37,14 +37,14 @@ def turned(case: tuple[str | tuple[float, int], bool]) -> float:
 
 def _yaw(robot: str | tuple[float, int], cone: bool, heading: float) -> float:
     with empty_world(Tuning(friction_cone=cone)) as world:
-        if robot != ARTICLE:
+        if not isinstance(robot, str):
             mass, casters = robot
             model = drive(world, castered(mass, SIZES[mass], casters), SECONDS, heading, SPEED)
             return yaw_of(model.pose.orientation)
         place = Pose(SPAWN_POSE.position, from_rpy(0.0, 0.0, heading))
         model = world.spawn(robot_spec(), 'robot', place)
         world.run(SETTLED)
-        model.plugins[0].command(SPEED, 0.0)
+        model.plugin('diff_drive').command(SPEED, 0.0)
         world.run(1000 * SECONDS)
         return yaw_of(model.pose.orientation)
 
@@ -58,7 +58,7 @@ def main() -> int:
     print(f'veer [rad] after {SECONDS} s at {SPEED:g} m/s, the worst of {len(HEADINGS)} headings')
     print(f'{"robot":24}{"pyramid":>10}{"cone":>10}{"Gazebo":>10}')
     for robot in ROBOTS:
-        name = robot if robot == ARTICLE else f'{robot[0]:g} kg, casters: {robot[1]}'
+        name = robot if isinstance(robot, str) else f'{robot[0]:g} kg, casters: {robot[1]}'
         gazebo = f'{GAZEBO[robot]:10.4f}' if robot in GAZEBO else ''
         print(f'{name:24}' + ''.join(f'{found[robot, cone]:10.4f}' for cone in CONES) + gazebo)
     return 0

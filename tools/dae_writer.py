@@ -1,6 +1,6 @@
 """Write coloured triangle surfaces as one Collada 1.4.1 file."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
@@ -51,7 +51,7 @@ def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = '
     return f'<?xml version="1.0" encoding="utf-8"?>\n{text}\n'
 
 
-def _add_colours(root: ElementTree.Element, colours: Sequence[Colour]) -> None:
+def _add_colours(root: ElementTree.Element, colours: Iterable[Colour]) -> None:
     """Add an effect and a material for each colour."""
     effects = _add(root, 'library_effects')
     for colour in colours:
@@ -103,7 +103,7 @@ def _add_source(mesh: ElementTree.Element, identity: str, vectors: np.ndarray) -
     return index.reshape(-1)
 
 
-def _add_scene(root: ElementTree.Element, name: str, colours: Sequence[Colour]) -> None:
+def _add_scene(root: ElementTree.Element, name: str, colours: Iterable[Colour]) -> None:
     """Add the one scene with the one node that shows the mesh."""
     scenes = _add(root, 'library_visual_scenes')
     node = _add(_add(scenes, 'visual_scene', id='scene', name='scene'), 'node',

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from dae_writer import Colour, collada
 from mesh_shapes import (
+    Surface,
     along_first_axis,
     at_height,
     block,
@@ -26,6 +27,8 @@ from mesh_shapes import (
     ring,
     turned,
 )
+
+Profile = list[tuple[float, float]]
 
 STEEL = Colour('steel', (0.76, 0.79, 0.82), 0.5)
 BLUE = Colour('blue', (0.16, 0.47, 0.86), 0.25)
@@ -45,8 +48,8 @@ def base() -> list:
     size, height, border, corner = (1.1, 1.0), 0.05, 0.035, 0.06
     bevel, panel_recess = 0.004, 0.003
     outer = rectangle((0.0, 0.0), size, corner, 4)
-    outer_top = rectangle((bevel, bevel), np.subtract(size, bevel), corner - bevel, 4)
-    inner = rectangle((border, border), np.subtract(size, border), corner - border, 4)
+    outer_top = rectangle((bevel, bevel), (size[0] - bevel, size[1] - bevel), corner - bevel, 4)
+    inner = rectangle((border, border), (size[0] - border, size[1] - border), corner - border, 4)
     frame = ring([at_height(outer, bevel), at_height(outer, height - bevel),
                   at_height(outer_top, height), at_height(inner, height),
                   at_height(inner, 0.0), at_height(outer_top, 0.0)])
@@ -73,7 +76,7 @@ def wheel() -> list:
     well = [(0.0198, 0.86), (0.0168, 0.86), (0.0168, 0.0)]
     lip = [(0.0200, 0.70), (0.0200, 0.93), (0.0176, 0.93), (0.0164, 0.86), (0.0164, 0.70)]
 
-    def turned_profile(profile, sign):
+    def turned_profile(profile: Profile, sign: float) -> Profile:
         loop = [(r, sign * part * half) for r, part in profile]
         return loop[::int(sign)]
 
@@ -104,7 +107,7 @@ def _tread(radius: float, half: float, width: float, sign: float) -> np.ndarray:
     """
     root, shoulder, slant = 0.0262, 0.0279, 0.7 * width
 
-    def section(crown, start, height):
+    def section(crown: float, start: float, height: float) -> np.ndarray:
         corners = ((root, start), (crown, start), (crown, start + width), (root, start + width))
         return np.array([(r * math.cos(turn), r * math.sin(turn), height) for r, turn in corners])
 
@@ -160,7 +163,7 @@ def battery() -> list:
         return rectangle((low[1] - grow, low[2] - grow), (high[1] + grow, high[2] + grow),
                          0.0060 + grow, 4)
 
-    def piece(start: float, end: float, grow: float, bevel: float = 0.0):
+    def piece(start: float, end: float, grow: float, bevel: float = 0.0) -> Surface:
         return along_first_axis(prism(section(grow), low[0] + start, low[0] + end, bevel))
 
     length = high[0] - low[0]
@@ -186,10 +189,10 @@ def camera() -> list:
 
     seat = body - 0.001  # what stands on the front begins inside it
 
-    def barrel(profile):
+    def barrel(profile: Profile) -> Surface:
         return moved(along_first_axis(lathe(profile, 24)), (0.0, *centre))
 
-    def stud(radius, points, y, z):
+    def stud(radius: float, points: int, y: float, z: float) -> Surface:
         return along_first_axis(prism(circle(radius, points, (y, z)), seat, body + 0.0006))
 
     glass = [(0.0108, seat), (0.0108, depth - 0.0028), (0.0080, depth - 0.0018),

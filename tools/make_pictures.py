@@ -35,7 +35,7 @@ STILL = 0.5  # mean difference of two looks when nothing more comes; a clock tic
 LEAST = 1000  # wide is a window [pixels]; what RViz shows while it starts is less
 FEWEST = 300  # colours with a robot in sight
 # Launch files to open one after the other, each with the text after which the next may come.
-WINDOWS = {
+WINDOWS: dict[str, list[tuple[list[str], str | None]]] = {
     'rviz.png': [(['rosbots_description', 'rviz.launch'], None)],
     'gzclient.png': [
         (['gazebo_ros', 'empty_world.launch', 'world_name:=worlds/room.world'],

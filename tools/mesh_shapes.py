@@ -5,6 +5,7 @@ from outside. An outline is an array of shape (points, 2), counter-clockwise; a 
 (points, 3). Lengths are in whatever unit the caller uses; angles are in radians.
 """
 
+import itertools
 import math
 from collections import defaultdict
 from collections.abc import Sequence
@@ -66,7 +67,7 @@ def cap(loop: np.ndarray) -> Surface:
 
 def loft(loops: Sequence[np.ndarray]) -> Surface:
     """Return the solid through loops of equally many points, first to last, closed at both ends."""
-    bands = [bridge(lower, upper) for lower, upper in zip(loops, loops[1:], strict=False)]
+    bands = [bridge(lower, upper) for lower, upper in itertools.pairwise(loops)]
     return np.concatenate([cap(loops[0][::-1]), *bands, cap(loops[-1])])
 
 
@@ -118,12 +119,12 @@ def _cell_with_hole(corners: np.ndarray, radius: float, bottom: float, top: floa
     """Return both faces of a rectangular cell round an octagonal hole, and the hole's wall."""
     # The octagon starts at its lower left corner: each cell corner then faces two of its points.
     octagon = np.roll(circle(radius, 8, corners.mean(axis=0)), 3, axis=0)
-    face = []
+    triangles = []
     for i, corner in enumerate(corners):
         here, there, beyond = octagon[2 * i], octagon[2 * i + 1], octagon[(2 * i + 2) % 8]
-        face += [(corner, there, here), (corner, corners[(i + 1) % 4], there),
-                 (corners[(i + 1) % 4], beyond, there)]
-    face = np.array(face)
+        triangles += [(corner, there, here), (corner, corners[(i + 1) % 4], there),
+                        (corners[(i + 1) % 4], beyond, there)]
+    face = np.array(triangles)
     lift = [np.dstack([face, np.full(face.shape[:2], height)]) for height in (bottom, top)]
     wall = bridge(at_height(octagon[::-1], bottom), at_height(octagon[::-1], top))
     return np.concatenate([lift[0][:, ::-1], lift[1], wall])
