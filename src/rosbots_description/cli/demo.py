@@ -11,6 +11,7 @@ import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .demo_report import (
     DRIVE,
@@ -24,6 +25,9 @@ from .demo_report import (
 )
 from .launched import Launched
 from .program import run
+
+if TYPE_CHECKING:
+    from ..ros_api.clients.demo import DemoClient
 
 _MODEL = 'rosbots'
 PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
@@ -114,7 +118,7 @@ def _private_environment(folder: Path) -> dict[str, str]:
     return environment
 
 
-def _spawn(client, log: Path, environment: Mapping[str, str]) -> None:
+def _spawn(client: DemoClient, log: Path, environment: Mapping[str, str]) -> None:
     """Spawn the robot by its launch file and wait until it stands and listens."""
     from ..ros_api.clients.demo import wait_until
     with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
@@ -125,7 +129,7 @@ def _spawn(client, log: Path, environment: Mapping[str, str]) -> None:
     wait_until(lambda: client.height() < _LANDED, _SPAWN, 'the robot to reach the ground')
 
 
-def _drive(client, folder: Path) -> list[Row]:
+def _drive(client: DemoClient, folder: Path) -> list[Row]:
     """Drive all segments, write the picture and return what was measured."""
     from .demo_plot import plot_path
     rows, path, odometry = [], [], []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -71,7 +72,7 @@ def steady_motion(samples: Sequence[PlanarSample]) -> MeanMotion:
     if len(steady) < 2 or steady[-1].stamp <= steady[0].stamp:
         raise ValueError(f'{len(steady)} of {len(samples)} samples lie after {SETTLING} s')
     path = turned = 0.0
-    for before, after in zip(steady, steady[1:], strict=False):
+    for before, after in itertools.pairwise(steady):
         step = math.remainder(after.yaw - before.yaw, math.tau)
         # the chord of an arc points along the mean of the headings at its ends
         heading = before.yaw + step / 2

@@ -113,7 +113,7 @@ def _end_with_parent() -> None:
 
 def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     """Run the window until it is closed, and say there and here when the simulator has gone."""
-    from ..ros_api.clients.server_watch import ServerWatch  # noqa: PLC0415  only a window needs it
+    from ..ros_api.clients.server_watch import ServerWatch  # only a window needs it
 
     told: list[int | None] = []
     window: subprocess.Popen | None = None

@@ -89,7 +89,7 @@ def _main(arguments: Sequence[str]) -> int:
     # The threads of numpy's library would find nothing to do, and spin for it.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     gc.disable()  # modules stay to the end; looking for garbage among them takes time
-    from ..ros_api.node import node  # noqa: PLC0415  needs what may be missing
+    from ..ros_api.node import node  # needs what may be missing
 
     gc.freeze()
     gc.enable()

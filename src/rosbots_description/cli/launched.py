@@ -30,7 +30,7 @@ class Launched:
     def __enter__(self) -> Launched:
         return self
 
-    def __exit__(self, *_exception) -> None:
+    def __exit__(self, *_exception: object) -> None:
         self.stop()
 
     @property

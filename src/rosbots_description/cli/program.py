@@ -12,7 +12,10 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 INTERRUPTED = 130  # exit code, as shells have it for who was ended by Ctrl-C
 
@@ -73,9 +76,9 @@ def _patient(stream: TextIO | None) -> TextIO:
 class _Patient(io.FileIO):
     """A file that drops what cannot be written."""
 
-    def write(self, content) -> int:
+    def write(self, content: ReadableBuffer) -> int:
         with contextlib.suppress(OSError):
             written = super().write(content)
             if written is not None:  # else it would have to wait, and somebody has forbidden it
                 return written
-        return len(content)
+        return memoryview(content).nbytes

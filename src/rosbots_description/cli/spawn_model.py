@@ -67,7 +67,7 @@ def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     Raises:
         SystemExit: code 2 with usage on stderr for wrong flags, code 0 for -h.
     """
-    def plain(text):
+    def plain(text: str) -> str:
         # argparse takes -1e-3 for a flag, but knows -0.001 for a number.
         return format(Decimal(text), 'f') if _NEGATIVE_WITH_EXPONENT.fullmatch(text) else text
 

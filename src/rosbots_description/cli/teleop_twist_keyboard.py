@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from .key_terminal import read_key, single_keys
 from .teleop_keys import BANNER, QUIT, Driver, Speeds
+
+if TYPE_CHECKING:
+    from ..ros_api.clients.velocity_publisher import VelocityPublisher
 
 _LOOK = 0.1  # [s] between two looks for a subscriber
 _FIRST_NOTE, _NEXT_NOTE = 2.0, 2.5  # [s] of waiting before the first and between further notes
@@ -28,7 +32,7 @@ class Settings:
     stamped: bool = False
     frame_id: str = ''
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ('speed', 'turn', 'speed_limit', 'turn_limit', 'repeat_rate', 'key_timeout'):
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -74,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _wait_for_subscriber(publisher, go_on) -> bool:
+def _wait_for_subscriber(publisher: VelocityPublisher, go_on: Callable[[], bool]) -> bool:
     """Wait until somebody listens; return false if told to end first.
 
     In wall time: with use_sim_time and no clock yet, ROS time stands still.
@@ -90,12 +94,14 @@ def _wait_for_subscriber(publisher, go_on) -> bool:
     return True
 
 
-def _drive(settings: Settings, publisher, fd: int, go_on) -> None:
+def _drive(
+    settings: Settings, publisher: VelocityPublisher, fd: int, go_on: Callable[[], bool]
+) -> None:
     """Turn keys into commands until Ctrl-C, the end of the node or of the terminal."""
     driver = Driver(Speeds(settings.speed, settings.turn,
                            settings.speed_limit, settings.turn_limit))
 
-    def send():
+    def send() -> None:
         velocity = driver.velocity()
         publisher.send((velocity.x, velocity.y, velocity.z), velocity.yaw)
 

@@ -10,8 +10,10 @@ import io
 import math
 import os
 import sys
+from collections.abc import Callable
 from functools import partial
 from types import ModuleType, SimpleNamespace
+from xml.dom.minidom import Element
 
 import yaml
 
@@ -25,7 +27,7 @@ def main() -> int:
     # The script beside ours is called xacro.py: keep its folder from hiding the module.
     sys.path[:] = [p for p in sys.path if not os.path.isfile(os.path.join(p or '.', 'xacro.py'))]
     try:
-        import xacro  # noqa: PLC0415  only now can it be found
+        import xacro  # only now can it be found
     except ImportError:
         sys.stderr.write(f'xacro: the Python module xacro is missing for {sys.executable}; install '
                          'it with "python3 -m pip install xacro==1.13.3".\n')
@@ -65,14 +67,14 @@ def _scaled(xacro: ModuleType, factor: float, loader: yaml.Loader, node: yaml.No
 class _Dotted(dict[str, object]):
     """A mapping that is also read with dots: robot.wheel.radius."""
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> object:
         try:
             return self[name]
         except KeyError:
             raise AttributeError(f"there is no '{name}' in the YAML at this place") from None
 
 
-def _dotted(value):
+def _dotted(value: object) -> object:
     if isinstance(value, dict):
         return _Dotted({key: _dotted(inner) for key, inner in value.items()})
     if isinstance(value, list):
@@ -84,19 +86,22 @@ class _Loader(yaml.SafeLoader):
     """Reads numbers with units as well: !degrees 90."""
 
 
-def _load_yaml(xacro: ModuleType, name: str):
+def _load_yaml(xacro: ModuleType, name: str) -> object:
     """Return what a YAML file holds; a relative name starts where the present file is."""
     path = xacro.abs_filename_spec(name)
     files = xacro.push_file(path)
     try:
         with open(path, encoding='utf-8') as file:
-            return _dotted(yaml.load(file, _Loader))  # noqa: S506  it is a SafeLoader
+            return _dotted(yaml.load(file, _Loader))  # it is a SafeLoader
     finally:
         xacro.restore_filestack(files)
         xacro.all_includes.append(path)
 
 
-def _include(xacro: ModuleType, include, element, macros, symbols, func) -> None:
+def _include(
+    xacro: ModuleType, include: Callable[..., None], element: Element, macros: object,
+    symbols: object, func: object,
+) -> None:
     """Include a file, or nothing where it is `optional` and not there."""
     optional = element.getAttribute('optional')
     if optional:

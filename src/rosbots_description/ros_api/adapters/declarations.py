@@ -154,7 +154,8 @@ class Subscribes:
     topic: str
     message: type[Message]
     call: str  # the method
-    read: Callable[[Message], tuple[Any, ...]]  # gives its arguments, or raises ValueError that tells why not
+    # Gives its arguments, or raises ValueError that tells why not.
+    read: Callable[[Message], tuple[Any, ...]]
     queue: int = 1
     log_before: str = ''  # what is said before it is subscribed to
     log: str = ''  # and afterwards

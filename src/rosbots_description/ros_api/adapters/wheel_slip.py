@@ -10,7 +10,7 @@ from .registry import connects
 
 def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
     """Offer the slip compliances; loading the library must not keep the world waiting."""
-    from ..reconfigure.wheel_slip import SlipReconfigure  # noqa: PLC0415
+    from ..reconfigure.wheel_slip import SlipReconfigure
 
     assert isinstance(adapter.plugin, WheelSlip)
     return SlipReconfigure(adapter.plugin, adapter.server.loop.post).close

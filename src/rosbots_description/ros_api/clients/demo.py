@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import rosgraph
 import rospy
-from gazebo_msgs.srv import DeleteModel, GetModelState
+from gazebo_msgs.srv import DeleteModel, GetModelState, GetModelStateResponse
 from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
@@ -75,7 +75,7 @@ class DemoClient:
     def _remember(self, message: Odometry) -> None:
         self._odometry.append(_sample(message.header.stamp, message.pose.pose))
 
-    def _state(self):
+    def _state(self) -> GetModelStateResponse:
         try:
             return self._get_state(self._model, '')
         except (rospy.ServiceException, rospy.ROSException) as error:

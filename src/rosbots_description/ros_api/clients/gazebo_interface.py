@@ -4,22 +4,27 @@ Names, arguments, log lines and results are those of the module ``gazebo_ros.gaz
 under which other people's scripts import these functions.
 """
 
-# ruff: noqa: PLR0917  (the argument lists are Gazebo's)
+
 from __future__ import annotations
 
 import math
 import threading
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future, wait
+from typing import Any, TypeVar
 
 import rospy
 from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
+from genpy import Message
 from geometry_msgs.msg import Pose
 
 _POLL = 0.05  # [s] wall time between two looks at the shutdown flag
 
+Result = TypeVar('Result')
 
-def interruptibly(function: Callable, patience: float = math.inf):
+
+def interruptibly(function: Callable[[], Result], patience: float = math.inf) -> Result:
     """Return function(), but stop waiting for it when the node is shut down.
 
     rospy sits in a socket while a service works and does not hear Ctrl-C there. So the function
@@ -32,29 +37,25 @@ def interruptibly(function: Callable, patience: float = math.inf):
         rospy.ROSException: patience ran out.
         Exception: whatever the function raises.
     """
-    outcome = {}
-    done = threading.Event()
+    outcome: Future[Result] = Future()
 
-    def run():
+    def run() -> None:
         try:
-            outcome['result'] = function()
+            outcome.set_result(function())
         except Exception as error:  # handed on to the caller's thread below
-            outcome['error'] = error
-        done.set()
+            outcome.set_exception(error)
 
     threading.Thread(target=run, daemon=True).start()
     give_up = time.monotonic() + patience
-    while not done.wait(_POLL):
+    while not wait((outcome,), _POLL).done:
         if time.monotonic() > give_up:
             raise rospy.ROSException(f'no answer within {patience} s')
         if rospy.is_shutdown():
             raise rospy.ROSInterruptException('shut down while waiting')
-    if 'error' in outcome:
-        raise outcome['error']
-    return outcome['result']
+    return outcome.result()
 
 
-def _call(service: str, service_class, **request):
+def _call(service: str, service_class: type[Any], **request: object) -> Message | None:
     """Wait without limit for the service and call it.
 
     Returns:

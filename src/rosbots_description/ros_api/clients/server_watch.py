@@ -73,11 +73,11 @@ class Notice:
 
     def show(self) -> None:
         """Write that the simulator has gone where its models were."""
-        import rospy  # noqa: PLC0415  a window seldom needs it
-        from visualization_msgs.msg import MarkerArray  # noqa: PLC0415
+        import rospy  # a window seldom needs it
+        from visualization_msgs.msg import MarkerArray
 
-        from ..transport import init_node, is_node  # noqa: PLC0415
-        from ..views.markers import notice  # noqa: PLC0415
+        from ..transport import init_node, is_node
+        from ..views.markers import notice
 
         if not is_node():
             init_node('gzclient_notice', [], anonymous=True, disable_signals=True,

@@ -78,7 +78,7 @@ def _wait_for_model(name: str, gazebo_namespace: str) -> bool:
     rospy.loginfo('Waiting for model %s before proceeding.', name)
     there = threading.Event()
 
-    def look(states):
+    def look(states: ModelStates) -> None:
         if name in states.name:
             there.set()
 

@@ -18,7 +18,7 @@ class VelocityPublisher:
         cmd_vel (geometry_msgs/Twist, or TwistStamped when stamped), not latched
     """
 
-    def __init__(self, stamped: bool = False, frame_id: str = '', repeat_rate: float = 0.0):
+    def __init__(self, stamped: bool = False, frame_id: str = '', repeat_rate: float = 0.0) -> None:
         """Advertise the topic; the node must have been started.
 
         Args:

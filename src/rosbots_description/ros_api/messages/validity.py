@@ -1,7 +1,6 @@
 """Turns away numbers that no world can have, with the field that holds them."""
 
 import math
-from typing import Any
 
 from genpy import Message
 
@@ -23,7 +22,7 @@ def require_finite(message: Message) -> None:
         _require_finite(getattr(message, field), field)
 
 
-def _require_finite(value: Any, path: str) -> None:
+def _require_finite(value: object, path: str) -> None:
     if isinstance(value, float):
         if not math.isfinite(value):
             raise RequestError(f'{path} is {value}; it must be a finite number')

@@ -173,7 +173,7 @@ def _use_simulated_time() -> None:
 
 def _advertise_reconfigure(server: Server) -> None:
     """Offer dynamic_reconfigure last; loading its library must not keep the world waiting."""
-    from ..reconfigure.physics import advertise_reconfigure  # noqa: PLC0415
+    from ..reconfigure.physics import advertise_reconfigure
 
     advertise_reconfigure(server)
 

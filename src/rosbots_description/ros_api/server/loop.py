@@ -9,7 +9,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import AbstractContextManager
 from contextvars import copy_context
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...sim.core import SimError
 from ...sim.runtime import NEVER
@@ -24,6 +24,9 @@ BATCH = 0.005  # longest time without a look at the queue [s, wall]
 BACKLOG = 0.0005  # steps that interest nobody may be put off until they take this long [s, wall]
 _CLOSING = 'the simulator is shutting down'
 MAX_LAG = 0.2  # steps that are later than this are not made up for [s, wall]
+
+
+Result = TypeVar('Result')
 
 
 class LoopError(SimError):
@@ -53,13 +56,13 @@ class Loop:
         self._commands: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._tasks: list[_Task] = []
         self._stopping = False
-        self._ended: Future = Future()  # done when `run` has returned
+        self._ended: Future[None] = Future()  # done when `run` has returned
         self._owner: int | None = None
         self._next_step = 0.0  # when the next step is due [s, monotonic]
         self._step_cost = 0.0  # smoothed wall time of one step [s]
         self._left: int | None = None  # steps still to be made; None: no end
 
-    def call(self, command: Callable[[], Any], deadline: float = DEADLINE) -> Any:
+    def call(self, command: Callable[[], Result], deadline: float = DEADLINE) -> Result:
         """Carry out `command()` between two steps and return its result, or raise its exception.
 
         Callable from any thread; on the loop's own it runs at once. A command whose `deadline`
@@ -71,7 +74,7 @@ class Loop:
         """
         if threading.get_ident() == self._owner:
             return command()
-        future: Future = Future()
+        future: Future[Result] = Future()
         self._commands.put(lambda: _carry_out(future, command))
         if self._stopping:
             future.cancel()
@@ -86,7 +89,7 @@ class Loop:
                 'try again, or see whether a model is too heavy to simulate'
             ) from None
 
-    def beside(self, work: Callable[[], Any]) -> Any:
+    def beside(self, work: Callable[[], Result]) -> Result:
         """Return `work()`, or raise its exception; it has a thread of its own, beside the steps.
 
         The caller's context variables are there, too.
@@ -95,10 +98,11 @@ class Loop:
             LoopError: the simulator is shutting down; nobody waits for the work any more.
 
         """
-        future: Future = Future()
+        future: Future[Result] = Future()
         threading.Thread(target=copy_context().run, args=(_carry_out, future, work), name='beside',
                          daemon=True).start()
-        wait((future, self._ended), return_when=FIRST_COMPLETED)
+        either: list[Future[Any]] = [future, self._ended]
+        wait(either, return_when=FIRST_COMPLETED)
         if not future.done():
             raise LoopError(_CLOSING)
         return future.result()
@@ -216,7 +220,7 @@ class _Task:
         self.next_run = time.monotonic() + period
 
 
-def _carry_out(future: Future, command: Callable[[], Any]) -> None:
+def _carry_out(future: Future[Result], command: Callable[[], Result]) -> None:
     """Run `command` unless its caller has given up, and hand the outcome over."""
     if not future.set_running_or_notify_cancel():
         return

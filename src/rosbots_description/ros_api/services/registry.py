@@ -7,13 +7,14 @@ from functools import partial
 from typing import Any
 
 import rospy
+from genpy import Message
 
 from ...sim.core import SimError
 from ..server import Server
 
 logger = logging.getLogger(__name__)
 
-Answer = Callable[[Server, Any], Any]
+Answer = Callable[[Server, Any], Message]
 
 REGISTRATION = 5.0  # how long a reply waits for the ROS master to know of topics [s, wall]
 
@@ -64,7 +65,7 @@ def service(
     return add
 
 
-def refuse(response: Any, text: str) -> Any:
+def refuse(response: Message, text: str) -> Message:
     """Return the response with success=False and the text, which is logged as well."""
     logger.error('%s', text)
     response.success, response.status_message = False, text
@@ -79,8 +80,8 @@ def advertise(server: Server, table: Mapping[str, Service]) -> list[rospy.Servic
     ]
 
 
-def _handler(server: Server, entry: Service) -> Callable[[Any], Any]:
-    def handle(request: Any) -> Any:
+def _handler(server: Server, entry: Service) -> Callable[[Message], Message]:
+    def handle(request: Message) -> Message:
         try:
             return respond(server, entry, request)
         except CallError as error:
@@ -89,7 +90,7 @@ def _handler(server: Server, entry: Service) -> Callable[[Any], Any]:
     return handle
 
 
-def respond(server: Server, entry: Service, request: Any) -> Any:
+def respond(server: Server, entry: Service, request: Message) -> Message:
     """Return the response to `request`; called on a thread that does not own the world.
 
     Raises:
@@ -117,7 +118,7 @@ def respond(server: Server, entry: Service, request: Any) -> Any:
     return response
 
 
-def _failure(entry: Service, response: Any, sentence: str) -> Any:
+def _failure(entry: Service, response: Message, sentence: str) -> Message:
     """Return `response` with success=False and the sentence in the words of the service."""
     if hasattr(response, 'success'):
         return refuse(response, f'{entry.type.__name__}: Failure - {sentence}')

@@ -7,6 +7,7 @@ import signal
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from types import FrameType
 from typing import Any
 
 import rosgraph
@@ -59,5 +60,5 @@ def is_running() -> bool:
     return not rospy.is_shutdown()
 
 
-def _shut_down(number: int, _frame) -> None:
+def _shut_down(number: int, _frame: FrameType | None) -> None:
     threading.Thread(target=rospy.signal_shutdown, args=(f'signal {number}',)).start()

@@ -113,4 +113,4 @@ def write_parameters(values: Mapping[str, str | float | bool]) -> None:
         calls.setParam(rospy.get_name(), rospy.resolve_name(f'~{name}'), value)
     results = calls()
     for number in range(len(values)):
-        results[number]  # noqa: B018  a result that is looked at raises what went wrong
+        results[number]  # looking at it raises what went wrong

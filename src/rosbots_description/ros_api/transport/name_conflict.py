@@ -90,7 +90,7 @@ def successor(name: str, uri: str) -> Holder | None:
 class _Impatient(Transport):
     """Waits for an answer for `PATIENCE` at most."""
 
-    def make_connection(self, host) -> HTTPConnection:
+    def make_connection(self, host: tuple[str, dict[str, str]] | str) -> HTTPConnection:
         connection = super().make_connection(host)
         connection.timeout = PATIENCE
         return connection

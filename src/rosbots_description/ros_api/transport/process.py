@@ -16,7 +16,7 @@ from .log_file import log_file, log_to_nowhere, obstacle, outlive_full_disk
 _LOOK = 0.001  # between two looks whether the master has taken the node in [s, wall]
 
 
-def init_node(name: str, arguments: Sequence[str], **options) -> None:
+def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     """Start the node as `rospy.init_node` does, also without a log file or a name to be found by.
 
     Args:

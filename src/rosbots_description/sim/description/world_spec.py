@@ -58,7 +58,7 @@ class WorldSpec:
 
     name: str = 'default'
     models: tuple[tuple[ModelSpec, Pose], ...] = ()
-    physics: PhysicsSettings = PhysicsSettings()
+    physics: PhysicsSettings = field(default_factory=PhysicsSettings)
     lights: tuple[LightSpec, ...] = ()
     scene: SceneSpec = SceneSpec()
     plugins: tuple[PluginSpec, ...] = ()

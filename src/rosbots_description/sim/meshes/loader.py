@@ -112,7 +112,7 @@ def visual_parts(path: str) -> tuple[tuple[FloatArray, IntArray, FloatArray | No
 
 def load_readers() -> None:
     """Load what reading Collada files takes, so that the first one need not wait for it."""
-    from . import collada  # noqa: F401, PLC0415  as it says
+    from . import collada  # noqa: F401  as it says
 
 
 def _state(path: str) -> tuple[int, int]:
@@ -159,7 +159,7 @@ def _parse(path: str, extension: str, content: bytes) -> list[MeshPart]:
 
 
 def _parse_collada(content: bytes, path: str) -> list[MeshPart]:
-    from .collada import read_collada  # noqa: PLC0415  as it says
+    from .collada import read_collada
 
     parts, unit = read_collada(safe_collada(content))
     return [_collada_part(part, unit) for part in parts]

@@ -103,7 +103,7 @@ def _parts(visual: Visual) -> list[Triangles]:
 
 
 def _primitive(geometry: Geometry) -> 'trimesh.Trimesh':
-    import trimesh  # noqa: PLC0415  a third of the simulator's start, and seldom needed
+    import trimesh  # a third of the simulator's start, and seldom needed
 
     match geometry:
         case Box(size):

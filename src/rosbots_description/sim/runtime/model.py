@@ -280,7 +280,7 @@ class Model:
             name.removeprefix(f'{self.name}::'), (name, IDENTITY))
         return self.link(parent), pose
 
-    def plugin(self, name: str) -> Any:
+    def plugin(self, name: str) -> Any:  # noqa: ANN401  each class has commands of its own
         """Return the plugin that the description calls `name`, or the first from that library.
 
         Args:

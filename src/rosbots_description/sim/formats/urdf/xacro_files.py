@@ -24,7 +24,7 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         ModelError: xacro is not installed, or rejects the file.
     """
     try:
-        import xacro  # noqa: PLC0415  few need it
+        import xacro  # few need it
     except ImportError:
         raise ModelError(
             f'{path}: the Python module xacro is missing; install it with "python3 -m pip install '

@@ -3,7 +3,7 @@
 import logging
 import math
 from abc import abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from ...core import NANOSECONDS, Pose, Twist, compose, from_rpy, inverse, yaw_of
@@ -30,7 +30,7 @@ class Drive(PeriodicPlugin):
     # Diagonals of the covariances of odometry: x, y, z, roll, pitch, yaw.
     pose_variances: tuple[float, ...] = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
     twist_variances: tuple[float, ...] = NO_VARIANCES
-    hints = {'torque': ' (the motor limit is <wheelTorque>)'}
+    hints: Mapping[str, str] = {'torque': ' (the motor limit is <wheelTorque>)'}
     target = (0.0, 0.0, 0.0)
 
     def read_frames(self, base: str) -> None:
