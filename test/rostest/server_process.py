@@ -4,6 +4,7 @@ import os
 import signal
 import socket
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 
 import rosgraph
@@ -126,7 +127,7 @@ class MasterProcess:
 class OwnServerTest(SimulatorTest):
     """Begins every test with a server of its own, which the test may bring down."""
 
-    program = {}  # if it is not gzserver
+    program: Mapping[str, str] = {}  # if it is not gzserver
 
     def setUp(self):
         self.server = ServerProcess(**self.program)

@@ -4,6 +4,7 @@
 import signal
 import sys
 import time
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 
 import rospy
@@ -30,7 +31,7 @@ ROUGH = BOX.replace('</robot>', ''.join(
 
 class CrashSandboxTest(OwnServerTest):
 
-    program = {'package': 'rosbots_description', 'program': 'crashing_server.py'}
+    program: Mapping[str, str] = {'package': 'rosbots_description', 'program': 'crashing_server.py'}
 
     def test_a_crash_takes_nobodys_work(self):
         self.drive_neighbour()

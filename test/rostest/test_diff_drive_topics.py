@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The article's robot on the wire: topics, frames, names, covariances, signs, stamps."""
 
+import itertools
 import math
 import sys
 
@@ -48,7 +49,7 @@ class DiffDriveTest(SimulatorTest):
         self.assertEqual(set(message.twist.covariance), {0.0})
         stamps = [m.header.stamp.to_nsec() for m in odometry]
         self.assertEqual(
-            {b - a for a, b in zip(stamps, stamps[1:], strict=False)}, {PERIOD})
+            {b - a for a, b in itertools.pairwise(stamps)}, {PERIOD})
         truth = self.model_state('rosbots', '')
         self.assertAlmostEqual(message.pose.pose.position.z, truth.pose.position.z, delta=0.002)
 

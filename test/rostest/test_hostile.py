@@ -33,7 +33,7 @@ from nav_msgs.msg import Odometry
 from simulator import BOX, SimulatorTest, pose, proxy, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from support.hostile import cases  # noqa: E402  (the folder of tests is no package of its own)
+from support.hostile import cases
 
 ANSWERED = 20.0  # [s, wall] for what takes two at most on a machine that does nothing else
 GROWN = 600e6  # [bytes] of memory by all cases together; one of 100 MB takes as much for a moment

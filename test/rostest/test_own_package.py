@@ -20,7 +20,7 @@ from simulator import BOX, wait_until
 from terminal import Terminal
 
 sys.path.insert(0, str(readme.ROOT / 'test'))
-from support.article_package import THEIR_LINK, write_article_package  # noqa: E402  (see above)
+from support.article_package import THEIR_LINK, write_article_package
 
 STEP = 30.0  # [s, wall] in which a step shows what it is to show
 BUILD = 400.0  # [s, wall] for a workspace, which takes 30 s of a machine that does nothing else

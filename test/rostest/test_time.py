@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Simulated time: /clock, pause and the two resets."""
 
+import itertools
 import sys
 import time
 
@@ -27,7 +28,7 @@ class TimeTest(SimulatorTest):
         passed, ticks = time.monotonic() - begin, [m.clock.to_nsec() for m in clock]
         simulated = (clock[-1].clock - first).to_sec()
         self.assertAlmostEqual(simulated / passed, 1.0, delta=RATE_TOLERANCE)
-        steps = {b - a for a, b in zip(ticks, ticks[1:], strict=False)}
+        steps = {b - a for a, b in itertools.pairwise(ticks)}
         self.assertEqual(min(steps), STEP)
 
     def test_states_come_with_every_step_and_name_everything(self):

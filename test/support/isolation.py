@@ -90,7 +90,7 @@ def _serve(make: Callable[[], Any], pipe: Any, output: int) -> None:
             try:
                 target = make() if target is None else target
                 answer = (True, getattr(target, method)(*arguments))
-            except BaseException:  # noqa: BLE001  whatever it is, the parent judges
+            except BaseException:  # whatever it is, the parent judges
                 answer = (False, traceback.format_exc())
             pipe.send(answer)
     os._exit(0)  # without what the parent registered for its own end

@@ -109,7 +109,7 @@ def test_files_that_cannot_be_read_are_named(tmp_path):
     empty.touch()
     with pytest.raises(SourceError, match=f'^Error: file {empty} is empty$'):
         read_file(str(empty))
-    with pytest.raises(MissingFileError, match='specified file /nowhere.urdf does not exist$'):
+    with pytest.raises(MissingFileError, match=r'specified file /nowhere.urdf does not exist$'):
         read_file('/nowhere.urdf')
     with pytest.raises(MissingFileError, match=f'specified file {tmp_path} is not a file$'):
         read_file(str(tmp_path))

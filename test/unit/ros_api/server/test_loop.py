@@ -1,6 +1,7 @@
 """The loop that owns the world: pacing, commands from other threads, pause and end."""
 
 import contextlib
+import itertools
 import threading
 import time
 from types import SimpleNamespace
@@ -173,7 +174,7 @@ def test_a_command_that_waited_too_long_is_never_carried_out(start):
     loop = start(CountingWorld(rate=1000.0))
     release, done = threading.Event(), []
     loop.post(lambda: release.wait(JOIN))
-    with pytest.raises(LoopError, match='busy for 0.05 s and the request was not begun'):
+    with pytest.raises(LoopError, match=r'busy for 0.05 s and the request was not begun'):
         loop.call(lambda: done.append(1), deadline=0.05)
     release.set()
     loop.call(lambda: None)
@@ -235,7 +236,7 @@ def test_runs_that_a_periodic_task_missed_are_left_out(clock):
             clock.now += 0.5
 
     begun = _run_beside(clock, task, 0.01)
-    gaps = [after - before for before, after in zip(begun, begun[1:], strict=False)]
+    gaps = [after - before for before, after in itertools.pairwise(begun)]
     assert max(gaps) >= 0.5
     assert min(gaps) >= 0.005
 

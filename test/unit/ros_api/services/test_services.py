@@ -54,7 +54,7 @@ def test_a_fault_is_a_failure_with_its_sentence(answer, prepare):
 
 
 def test_a_fault_of_a_service_without_success_is_an_error_of_the_call():
-    with pytest.raises(CallError, match='^reset_world: Failure - link a is missing'):
+    with pytest.raises(CallError, match=r'^reset_world: Failure - link a is missing'):
         respond(SERVER, Service('reset_world', Empty, _fail, None, registers=False), None)
 
 

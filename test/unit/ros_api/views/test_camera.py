@@ -37,7 +37,7 @@ def test_three_numbers_are_a_point():
     [math.inf, 0.0, 0.0], {1: 2, 3: 4, 5: 6},
 ])
 def test_anything_else_is_none(value):
-    with pytest.raises(RequestError, match='eye is .* a list of three finite numbers'):
+    with pytest.raises(RequestError, match=r'eye is .* a list of three finite numbers'):
         line_of_sight(value, [0.0, 0.0, 0.0])
     with pytest.raises(RequestError, match='target is'):
         line_of_sight([0.0, 0.0, 0.0], value)

@@ -22,7 +22,7 @@ def test_a_package_becomes_its_directory_without_file_prefix():
 
 
 def test_an_unknown_package_is_named():
-    with pytest.raises(UnknownPackage, match="package 'nope' of .* is unknown") as caught:
+    with pytest.raises(UnknownPackage, match=r"package 'nope' of .* is unknown") as caught:
         substitute_packages('package://nope/m.dae', FOLDERS.get)
     assert caught.value.package == 'nope'
 
@@ -68,7 +68,7 @@ def test_a_path_is_taken_as_it_is_or_decoded_whichever_is_there(tmp_path, scheme
 
 @pytest.mark.parametrize('uri', ['http://x/m.dae', 'model://x/m.dae', 'm.dae', 'package://x/m.dae'])
 def test_other_addresses_are_refused_with_a_cure(uri):
-    with pytest.raises(ModelError, match='use .*file:///path'):
+    with pytest.raises(ModelError, match=r'use .*file:///path'):
         file_path(parse_xml('<mesh/>', 's'), uri)
 
 
@@ -77,7 +77,7 @@ def test_other_addresses_are_refused_with_a_cure(uri):
     'package://bot/..%2fx.dae', 'package://bot%2f../x.dae',
 ])
 def test_an_address_that_climbs_out_of_its_package_is_refused_however_it_is_written(uri):
-    with pytest.raises(ModelError, match="leads out of package 'bot'; '..' is not accepted"):
+    with pytest.raises(ModelError, match=r"leads out of package 'bot'; '..' is not accepted"):
         refuse_climbing(parse_xml('<mesh/>', 's'), uri)
 
 

@@ -1,5 +1,6 @@
 """Wheels are ordinary contacts: what mechanics demands of robots that drive, park, lie and ride."""
 
+import itertools
 import math
 from dataclasses import replace
 from typing import NamedTuple
@@ -133,7 +134,7 @@ def test_a_robot_creeps_up_a_ramp_as_asked_and_never_rolls_back(spec, degrees, s
         for _ in range(40):
             ways.append(within(frame, model).position[0])
             world.run(100)
-        assert min(b - a for a, b in zip(ways, ways[1:], strict=False)) > 0.0
+        assert min(b - a for a, b in itertools.pairwise(ways)) > 0.0
         assert (ways[-1] - ways[0]) / 3.9 == pytest.approx(speed, rel=0.05)
 
 

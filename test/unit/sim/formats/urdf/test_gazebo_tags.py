@@ -149,7 +149,7 @@ def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere()
 
 
 def test_a_namespace_that_xml_cannot_hold_is_an_error():
-    with pytest.raises(ModelError, match="robot_namespace is 'a.*which has a control character"):
+    with pytest.raises(ModelError, match=r"robot_namespace is 'a.*which has a control character"):
         load(plugin(''), robot_namespace='a\x01b')
 
 

@@ -86,11 +86,11 @@ def test_more_than_the_engine_takes_is_refused(meshes, made, most, said):
 
 def test_a_complaint_begins_with_where_the_description_is(meshes):
     too_many = loose(size_limits.MAX_LINKS + 1).links
-    with pytest.raises(ModelError, match='^robot_description, line 1: the model has 501 links'):
+    with pytest.raises(ModelError, match=r'^robot_description, line 1: the model has 501 links'):
         compile_model(replace(urdf_spec(box_urdf('1 1 1', 1.0)), links=too_many), meshes)
     text = '<sdf version="1.6">\n<model name="m"><link name="l"/></model></sdf>'
     spec, _ = load_sdf(text, 'm', source='m.sdf', find_model=ModelSearch())
-    with pytest.raises(ModelError, match="^m.sdf, line 2: model 'm': the model has 501 links"):
+    with pytest.raises(ModelError, match=r"^m.sdf, line 2: model 'm': the model has 501 links"):
         compile_model(replace(spec, links=too_many), meshes)
 
 
