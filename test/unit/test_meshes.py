@@ -3,12 +3,14 @@
 import json
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-import trimesh
+
+from rosbots_description.sim.core import Pose, compose, from_rpy
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / 'tools' / 'make_meshes.py'
@@ -26,10 +28,6 @@ BOXES = {
 COLLADA = {'c': 'http://www.collada.org/2005/11/COLLADASchema'}
 
 
-def load(name: str) -> trimesh.Trimesh:
-    return trimesh.load(ROOT / 'meshes' / f'{name}.dae', force='mesh')
-
-
 def document(name: str) -> ElementTree.Element:
     return ElementTree.parse(ROOT / 'meshes' / f'{name}.dae').getroot()
 
@@ -40,7 +38,7 @@ def floats(root: ElementTree.Element, identity: str) -> np.ndarray:
 
 
 def corners(name: str) -> tuple:
-    """Return (points, normals), each of shape (triangles, 3, 3), read without trimesh."""
+    """Return (points, normals), each of shape (triangles, 3, 3)."""
     root = document(name)
     lists = [np.array(p.text.split(), int) for p in root.findall('.//c:triangles/c:p', COLLADA)]
     indices = np.concatenate(lists).reshape(-1, 3, 2)
@@ -68,11 +66,12 @@ def test_script_makes_these_meshes_and_no_others(made):
 
 @pytest.mark.parametrize('name', BOXES)
 def test_mesh_fills_the_articles_box(name):
-    np.testing.assert_allclose(load(name).bounds, BOXES[name], atol=ROUNDING)
+    points = corners(name)[0].reshape(-1, 3)
+    np.testing.assert_allclose((points.min(axis=0), points.max(axis=0)), BOXES[name], atol=ROUNDING)
 
 
 def test_wheel_is_round():
-    points = load('wheel').vertices
+    points = corners('wheel')[0].reshape(-1, 3)
     radius = np.hypot(points[:, 0], points[:, 1])
     assert radius.max() == pytest.approx(0.0290, abs=ROUNDING)
 
@@ -102,10 +101,13 @@ def test_every_part_is_closed_and_faces_outwards(name, monkeypatch):
     monkeypatch.syspath_prepend(str(SCRIPT.parent))
     from make_meshes import MESHES
     for number, (colour, surface) in enumerate(MESHES[name][0]()):
-        part = trimesh.Trimesh(**trimesh.triangles.to_kwargs(surface))
-        part.merge_vertices(digits_vertex=9)
-        assert part.is_watertight, f'{name} part {number} ({colour.name}) has a gap'
-        assert part.volume > 0.0, f'{name} part {number} ({colour.name}) is inside out'
+        _, vertices = np.unique(surface.reshape(-1, 3).round(9), axis=0, return_inverse=True)
+        a, b, c = vertices.reshape(-1, 3).T.tolist()
+        edges = Counter(zip(a + b + c, b + c + a, strict=True))
+        volume = np.einsum('ij,ij', surface[:, 0], np.cross(surface[:, 1], surface[:, 2])) / 6.0
+        assert all(edges[end, start] == edges[start, end] for start, end in list(edges)), (
+            f'{name} part {number} ({colour.name}) has a gap')
+        assert volume > 0.0, f'{name} part {number} ({colour.name}) is inside out'
 
 
 @pytest.mark.parametrize('name', BOXES)
@@ -134,12 +136,13 @@ def test_mesh_lands_where_the_articles_does(link, ranges):
     joint = next((each for each in article['joints'].values() if each['child'] == link), None)
     visual = article['links'][link]['visual']
     geometry = visual['geometry']
-    mesh = load(Path(geometry['filename']).stem)
-    mesh.apply_transform(np.diag([*geometry.get('scale', (1.0, 1.0, 1.0)), 1.0]))
-    for place in (visual['origin'], *([joint['origin']] if link != 'base_link' else [])):
-        turn = trimesh.transformations.euler_matrix(*place['rpy'], axes='sxyz')
-        turn[:3, 3] = place['xyz']
-        mesh.apply_transform(turn)
+    pose = Pose()
+    for place in (*([joint['origin']] if link != 'base_link' else []), visual['origin']):
+        pose = compose(pose, Pose(tuple(place['xyz']), from_rpy(*place['rpy'])))
+    points = corners(Path(geometry['filename']).stem)[0].reshape(-1, 3)
+    points = points * geometry.get('scale', (1.0, 1.0, 1.0))
+    landed = np.array([compose(pose, Pose(tuple(point))).position for point in points])
     for axis, expected in enumerate(ranges):
         if expected is not None:
-            assert mesh.bounds[:, axis] == pytest.approx(expected, abs=LANDING_TOLERANCE)
+            reached = landed[:, axis].min(), landed[:, axis].max()
+            assert reached == pytest.approx(expected, abs=LANDING_TOLERANCE)

@@ -17,7 +17,6 @@ _VERSION = "gzserver of rosbots_description: Gazebo 11's ROS interface, by PyBul
 # What to install for a module that is missing, as requirements.txt has it.
 _INSTALLED_BY = {
     'pybullet': 'pybullet==3.2.7',
-    'trimesh': 'trimesh==5.2.0',
     'collada': 'pycollada==0.9.3',
 }
 

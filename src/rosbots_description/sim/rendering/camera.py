@@ -1,19 +1,16 @@
 """A camera of the simulator's own: pictures of the world on machines without a screen."""
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from ..core import Vector, compose
 from ..core.arrays import ByteArray
-from ..description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from ..description import Box, Colour, Cylinder, Material, Mesh, Plane, Sphere, Visual
 from ..meshes import visual_parts
 from ..runtime import Link, Model, World
 from .canvas import Canvas, Triangles
-
-if TYPE_CHECKING:
-    import trimesh
 
 EYE: Vector = (1.9, -1.9, 1.3)  # [m] a good look at a robot that stands at the origin
 TARGET: Vector = (0.0, 0.1, 0.25)  # [m]
@@ -77,51 +74,31 @@ class View:
                 self._shown[name] = (
                     model,
                     [
-                        (link, visual, [canvas.add(part) for part in _parts(visual)])
+                        (link, visual, [canvas.add(*part) for part in _parts(visual)])
                         for link in model.links.values()
                         for visual in link.spec.visuals
                     ],
                 )
 
 
-def _parts(visual: Visual) -> list[Triangles]:
-    """Return the surfaces of a visual; a mesh without a material has one for each own colour."""
-    if isinstance(visual.geometry, Mesh):
+def _parts(visual: Visual) -> list[tuple[Triangles | Box | Sphere | Cylinder, Colour]]:
+    """Return the shapes of a visual; a mesh without a material has one for each own colour."""
+    geometry, rgba = visual.geometry, (visual.material or Material()).rgba
+    if isinstance(geometry, Mesh):
         return [
-            Triangles(
-                vertices * np.asarray(visual.geometry.scale),
-                faces,
-                visual.material.rgba if visual.material else rgba,
-            )
-            for vertices, faces, _, rgba in visual_parts(visual.geometry.path)
+            (Triangles(vertices * np.asarray(geometry.scale), faces),
+             visual.material.rgba if visual.material else own)
+            for vertices, faces, _, own in visual_parts(geometry.path)
         ]
-    rgba = (visual.material or Material()).rgba
-    if isinstance(visual.geometry, Plane):
-        return _tiles(rgba)
-    mesh = _primitive(visual.geometry)
-    return [Triangles(np.asarray(mesh.vertices), np.asarray(mesh.faces), rgba)]
+    return list(_tiles(rgba)) if isinstance(geometry, Plane) else [(geometry, rgba)]
 
 
-def _primitive(geometry: Geometry) -> 'trimesh.Trimesh':
-    import trimesh  # a third of the simulator's start, and seldom needed
-
-    match geometry:
-        case Box(size):
-            return trimesh.creation.box(size)
-        case Sphere(radius):
-            return trimesh.creation.icosphere(subdivisions=3, radius=radius)
-        case Cylinder(radius, length):
-            return trimesh.creation.cylinder(radius, length)
-    raise TypeError(f'{geometry!r} has no picture')
-
-
-def _tiles(rgba: tuple[float, float, float, float]) -> list[Triangles]:
-    """Return a square of ground in two shades, so that a picture shows distances."""
+def _tiles(rgba: Colour) -> Iterator[tuple[Triangles, Colour]]:
+    """Yield a square of ground in two shades, so that a picture shows distances."""
     count = round(GROUND_SHOWN / _TILE)
     corners = (np.arange(count) - count / 2) * _TILE
     x, y = (axis.ravel() for axis in np.meshgrid(corners, corners))
     dark = (np.add.outer(np.arange(count), np.arange(count)) % 2 == 0).ravel()
-    shades = []
     for chosen, brightness in ((dark, 1.25), (~dark, 1.45)):
         corner = np.stack([x[chosen], y[chosen], np.zeros(chosen.sum())], axis=1)
         square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]) * _TILE
@@ -129,5 +106,4 @@ def _tiles(rgba: tuple[float, float, float, float]) -> list[Triangles]:
         first = np.arange(len(corner))[:, None, None] * 4
         faces = (first + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3)
         red, green, blue = (min(1.0, value * brightness) for value in rgba[:3])
-        shades.append(Triangles(vertices, faces, (red, green, blue, rgba[3])))
-    return shades
+        yield Triangles(vertices, faces), (red, green, blue, rgba[3])

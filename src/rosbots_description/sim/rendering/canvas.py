@@ -1,4 +1,4 @@
-"""Drawing: surfaces that are only seen, and a camera to see them by."""
+"""Drawing: shapes that are only seen, and a camera to see them by."""
 
 import math
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ import numpy as np
 
 from ..core import Pose, Vector
 from ..core.arrays import ByteArray, FloatArray, IntArray
+from ..description import Box, Colour, Cylinder, Sphere
 from ..physics.bullet import pybullet
 
 _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
@@ -14,11 +15,10 @@ _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
 
 @dataclass(frozen=True)
 class Triangles:
-    """A surface in one colour: vertices (n, 3) [m], faces (m, 3), rgba in 0..1."""
+    """A surface: vertices (n, 3) [m], and faces (m, 3), numbers of vertices."""
 
     vertices: FloatArray
     faces: IntArray
-    rgba: tuple[float, float, float, float]
 
 
 class Canvas:
@@ -34,25 +34,30 @@ class Canvas:
         """Free the canvas."""
         pybullet.disconnect(self._client)
 
-    def add(self, surface: Triangles) -> int:
-        """Put a surface into the picture; return the number to place and remove it by."""
-        shape = pybullet.createVisualShape(
-            pybullet.GEOM_MESH,
-            vertices=surface.vertices.tolist(),
-            indices=surface.faces.ravel().tolist(),
-            rgbaColor=surface.rgba,
-            physicsClientId=self._client,
-        )
+    def add(self, shape: Triangles | Box | Sphere | Cylinder, rgba: Colour) -> int:
+        """Put a shape into the picture; return the number to place and remove it by."""
+        match shape:
+            case Triangles(vertices, faces):
+                kind = pybullet.GEOM_MESH
+                form = {'vertices': vertices.tolist(), 'indices': faces.ravel().tolist()}
+            case Box(size):
+                kind, form = pybullet.GEOM_BOX, {'halfExtents': [edge / 2.0 for edge in size]}
+            case Sphere(radius):
+                kind, form = pybullet.GEOM_SPHERE, {'radius': radius}
+            case Cylinder(radius, length):
+                kind, form = pybullet.GEOM_CYLINDER, {'radius': radius, 'length': length}
+        visual = pybullet.createVisualShape(
+            kind, rgbaColor=rgba, physicsClientId=self._client, **form)
         number: int = pybullet.createMultiBody(
-            baseVisualShapeIndex=shape, physicsClientId=self._client)
+            baseVisualShapeIndex=visual, physicsClientId=self._client)
         return number
 
     def remove(self, number: int) -> None:
-        """Take a surface out of the picture."""
+        """Take a shape out of the picture."""
         pybullet.removeBody(number, self._client)
 
     def place(self, number: int, pose: Pose) -> None:
-        """Move a surface."""
+        """Move a shape."""
         pybullet.resetBasePositionAndOrientation(number, *pose, self._client)
 
     def picture(
