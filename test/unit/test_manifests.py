@@ -1,0 +1,47 @@
+"""The manifests agree with the code: every import is declared, and all versions are one."""
+
+import ast
+import re
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SIMULATOR = ROOT / 'companions' / 'rosbots_simulator'
+# Where pip installs a module by another name.
+FROM_PYPI = {re.split('[=<>]', line)[0] for line in
+             (ROOT / 'requirements.txt').read_text(encoding='utf-8').splitlines()
+             if not line.startswith('#')} | {'collada'}
+
+
+def manifest(folder: Path) -> ElementTree.Element:
+    return ElementTree.parse(folder / 'package.xml').getroot()
+
+
+def imports(folder: Path) -> set[str]:
+    """Return what the modules of a folder import that is neither Python's nor ours."""
+    modules = list(folder.rglob('*.py'))
+    names: set[str] = set()
+    for module in modules:
+        for node in ast.walk(ast.parse(module.read_text(encoding='utf-8'))):
+            if isinstance(node, ast.Import):
+                names |= {alias.name.partition('.')[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                names.add(node.module.partition('.')[0])
+    programs = [*ROOT.glob('benchmark/*.py'), *ROOT.glob('tools/*.py')]  # which tests load
+    own = {module.stem for module in [*modules, *programs]}
+    own |= {inner.name for inner in folder.rglob('*/')}
+    return names - sys.stdlib_module_names - own - {'_typeshed', 'rosbots_description'}
+
+
+@pytest.mark.parametrize(('folder', 'package', 'kinds'), [
+    (ROOT / 'src', SIMULATOR, ('exec_depend',)),
+    (ROOT / 'test', ROOT, ('exec_depend', 'test_depend', 'buildtool_depend')),
+])
+def test_what_is_imported_is_declared(folder, package, kinds):
+    declared = {each.text for kind in kinds for each in manifest(package).iter(kind)}
+    missing = {name for name in imports(folder) - FROM_PYPI
+               if not {name, f'python3-{name.replace("_", "-")}'} & declared}
+    assert missing == set()
