@@ -7,6 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from catkin_pkg.changelog import get_changelog_from_path
 
 ROOT = Path(__file__).resolve().parents[2]
 SIMULATOR = ROOT / 'companions' / 'rosbots_simulator'
@@ -45,3 +46,16 @@ def test_what_is_imported_is_declared(folder, package, kinds):
     missing = {name for name in imports(folder) - FROM_PYPI
                if not {name, f'python3-{name.replace("_", "-")}'} & declared}
     assert missing == set()
+
+
+def test_the_version_is_that_of_the_last_release_in_the_changelog():
+    changelog = get_changelog_from_path(str(ROOT / 'CHANGELOG.rst'), 'rosbots_description')
+    version, date, _ = next(changelog.foreach_version())
+    assert date is not None
+    ours = (ROOT, *ROOT.glob('companions/rosbots_*'))
+    assert {manifest(folder).findtext('version') for folder in ours} == {version}
+
+
+def test_what_is_not_released_yet_stands_before_all_releases():
+    titles = re.findall(r'^(.+)\n-+$', (ROOT / 'CHANGELOG.rst').read_text(encoding='utf-8'), re.M)
+    assert 'Forthcoming' not in titles[1:]
