@@ -1,27 +1,68 @@
 """The loop that owns the world: pacing, commands from other threads, pause and end."""
 
+import bisect
 import contextlib
 import itertools
+import math
 import threading
 import time
-from types import SimpleNamespace
+from dataclasses import replace
+from queue import Empty
 
 import pytest
 
-from rosbots_description.ros_api.server.loop import MAX_LAG, Loop, LoopError
+from rosbots_description.ros_api.server.loop import BATCH, MAX_LAG, Loop, LoopError
 from rosbots_description.sim.core.errors import NotFoundError
+from rosbots_description.sim.description.physics_settings import PhysicsSettings
 
-JOIN = 5.0  # [s] for what takes milliseconds; slow machines are no failure
+JOIN = 30.0  # [s] for what takes milliseconds; slow machines are no failure
+
+
+class WallClock:
+    """A wall clock that moves only while the loop waits or something takes time.
+
+    It is the loop's queue as well, so that a command comes exactly when a test wants it to.
+    """
+
+    def __init__(self):
+        self._now = 100.0
+        self._coming = []  # (time, command), in that order
+
+    def monotonic(self):
+        return self._now
+
+    def sleep(self, seconds):
+        self._now += seconds
+
+    def at(self, when, command):
+        """Let a command come `when` [s] from now on."""
+        bisect.insort(self._coming, (self._now + when, command), key=lambda item: item[0])
+
+    def put(self, command):
+        self.at(0.0, command)
+
+    def empty(self):
+        return not self._coming or self._coming[0][0] > self._now
+
+    def get(self, timeout=None):
+        end = math.inf if timeout is None else self._now + timeout
+        if self._coming[0][0] > end:
+            self._now = end
+            raise Empty
+        when, command = self._coming.pop(0)
+        self._now = max(self._now, when)
+        return command
 
 
 class CountingWorld:
     """A world that only counts its steps, and can be made slow.
 
-    `interest` is the number of steps after which somebody wants to be called.
+    `interest` is the number of steps after which somebody wants to be called; `sleep` is how a step
+    takes its time.
     """
 
-    def __init__(self, rate, step_time=0.0, interest=1):
-        self.physics = SimpleNamespace(max_update_rate=rate)
+    def __init__(self, rate, step_time=0.0, interest=1, sleep=time.sleep):
+        self.set_rate(rate)
         self.paused = False
         self.steps = 0
         self.longest_batch = 0
@@ -29,7 +70,10 @@ class CountingWorld:
         self.clock = self
         self.schedule = self
         self._interest = interest
-        self._step_time = step_time
+        self._step_time, self._sleep = step_time, sleep
+
+    def set_rate(self, rate):
+        self.physics = replace(PhysicsSettings(), max_update_rate=rate)
 
     def next_wanted(self):
         return (self.steps // self._interest + 1) * self._interest
@@ -39,7 +83,7 @@ class CountingWorld:
         self.batches += 1
         self.longest_batch = max(self.longest_batch, steps)
         if self._step_time:
-            time.sleep(steps * self._step_time)
+            self._sleep(steps * self._step_time)
 
 
 @pytest.fixture
@@ -61,24 +105,34 @@ def start():
         assert not thread.is_alive()
 
 
-def test_makes_as_many_steps_as_time_has_passed(start):
+@pytest.fixture
+def clock(monkeypatch):
+    """Give loops a wall clock that does not depend on how busy the machine is."""
+    clock = WallClock()
+    monkeypatch.setattr('rosbots_description.ros_api.server.loop.time', clock)
+    monkeypatch.setattr('rosbots_description.ros_api.server.loop.SimpleQueue', lambda: clock)
+    return clock
+
+
+def run_for(clock, loop, seconds):
+    """Let a loop run for some time on the clock."""
+    clock.at(seconds, loop.stop)
+    loop.run()
+
+
+def test_makes_as_many_steps_as_time_has_passed(clock):
     world = CountingWorld(rate=1000.0)
-    loop = start(world)
-    steps, begin = loop.call(lambda: world.steps), time.monotonic()
-    time.sleep(0.3)  # the measured quantity itself
-    made, passed = loop.call(lambda: world.steps) - steps, time.monotonic() - begin
-    assert made == pytest.approx(1000.0 * passed, abs=5)
+    run_for(clock, Loop(world), 0.3)
+    assert world.steps == pytest.approx(300, abs=1)
 
 
-def test_steps_that_interest_nobody_are_made_in_one_go_but_a_command_finds_them_made(start):
-    world = CountingWorld(rate=1000.0, interest=100)
-    loop = start(world)
-    steps, begin = loop.call(lambda: world.steps), time.monotonic()
-    _wait_for(lambda: world.steps >= steps + 300)
-    batches, reached = world.batches, world.steps
-    assert batches <= reached / 5
-    made, passed = loop.call(lambda: world.steps) - steps, time.monotonic() - begin
-    assert made == pytest.approx(1000.0 * passed, abs=5)
+def test_steps_that_interest_nobody_are_made_in_one_go_but_a_command_finds_them_made(clock):
+    world, found = CountingWorld(1000.0, 1e-6, interest=100, sleep=clock.sleep), []
+    loop = Loop(world)
+    clock.at(0.25, lambda: found.append(world.steps))
+    run_for(clock, loop, 0.3)
+    assert found == pytest.approx([250], abs=1)
+    assert world.batches <= 300 / 5
 
 
 def test_what_surrounds_a_batch_is_there_while_the_world_runs():
@@ -94,58 +148,48 @@ def test_what_surrounds_a_batch_is_there_while_the_world_runs():
     assert inside == [0, 1]
 
 
-def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(start):
-    world = CountingWorld(rate=0.0, step_time=1e-5)
-    loop = start(world)
-    time.sleep(0.1)  # let it find its batch
-    begin = time.monotonic()
-    assert loop.call(lambda: 'served') == 'served'
-    assert time.monotonic() - begin < 0.1
+def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(clock):
+    world, served = CountingWorld(0.0, 1e-5, sleep=clock.sleep), []
+    begin = clock.monotonic()
+    clock.at(0.1, lambda: served.append(clock.monotonic() - begin))
+    run_for(clock, Loop(world), 0.2)
+    assert served == pytest.approx([0.1], abs=2.0 * BATCH)
+    assert world.steps == pytest.approx(0.2 / 1e-5, rel=0.05)
     assert world.longest_batch > 1
 
 
-def test_a_faster_rate_counts_at_once_also_after_a_very_slow_one(start):
-    world = CountingWorld(rate=0.01)
-    loop = start(world)
-    end = time.monotonic() + JOIN
-    while world.steps == 0:  # the next one is due in 100 s
-        assert time.monotonic() < end
-        time.sleep(0.001)
-    loop.call(lambda: setattr(world.physics, 'max_update_rate', 1000.0))
-    while world.steps < 50:
-        assert time.monotonic() < end
-        time.sleep(0.001)
+def test_a_faster_rate_counts_at_once_also_after_a_very_slow_one(clock):
+    world = CountingWorld(rate=0.01)  # after the first step the next one is due in 100 s
+    clock.at(1.0, lambda: world.set_rate(1000.0))
+    run_for(clock, Loop(world), 1.05)
+    assert world.steps == pytest.approx(50, abs=2)
 
 
-def test_a_slow_world_is_not_asked_for_the_past(start):
-    world = CountingWorld(rate=1000.0, step_time=0.002)
-    loop = start(world)
-    loop.call(lambda: time.sleep(2 * MAX_LAG))
-    begin = time.monotonic()
-    loop.call(lambda: None)
-    assert time.monotonic() - begin < MAX_LAG
-
-
-def test_makes_no_step_while_paused_but_serves(start):
+@pytest.mark.parametrize(('lag', 'made_up_for'), [(0.5 * MAX_LAG, True), (2.0 * MAX_LAG, False)])
+def test_a_short_delay_is_made_up_for_and_a_long_one_is_not(clock, lag, made_up_for):
     world = CountingWorld(rate=1000.0)
+    clock.at(0.1, lambda: clock.sleep(lag))
+    run_for(clock, Loop(world), 0.2 + lag)
+    assert world.steps == pytest.approx(200 + 1000 * lag * made_up_for, abs=2)
+
+
+def test_makes_no_step_while_paused_but_serves(clock):
+    world, found = CountingWorld(rate=1000.0), []
     world.paused = True
-    loop = start(world)
-    assert loop.call(lambda: world.steps) == 0
-    loop.call(lambda: setattr(world, 'paused', False))
-    _wait_for(lambda: world.steps > 0)
+    clock.at(0.1, lambda: found.append(world.steps))
+    clock.at(0.2, lambda: setattr(world, 'paused', False))
+    run_for(clock, Loop(world), 0.3)
+    assert found == [0]
+    assert world.steps == pytest.approx(100, abs=1)
 
 
 @pytest.mark.parametrize('pause', [0.75 * MAX_LAG, 2.0 * MAX_LAG])
-def test_a_pause_is_not_made_up_for(start, pause):
+def test_a_pause_is_not_made_up_for(clock, pause):
     world = CountingWorld(rate=1000.0)
-    loop = start(world)
-    loop.call(lambda: setattr(world, 'paused', True))
-    time.sleep(pause)
-    begin, before = time.monotonic(), world.steps
-    loop.call(lambda: setattr(world, 'paused', False))
-    _wait_for(lambda: world.steps > before)
-    made = loop.call(lambda: world.steps) - before
-    assert made <= 1000.0 * (time.monotonic() - begin) + 5
+    clock.at(0.05, lambda: setattr(world, 'paused', True))
+    clock.at(0.05 + pause, lambda: setattr(world, 'paused', False))
+    run_for(clock, Loop(world), 0.1 + pause)
+    assert world.steps == pytest.approx(100, abs=2)
 
 
 def test_ends_after_the_steps_asked_for():
@@ -189,42 +233,26 @@ def test_a_fault_in_a_posted_command_is_logged_and_the_loop_lives(start, caplog)
 
 
 @pytest.mark.parametrize('paused', [False, True])
-def test_periodic_tasks_run_also_while_paused(start, paused):
-    world = CountingWorld(rate=1000.0)
+def test_periodic_tasks_run_also_while_paused(clock, paused):
+    world, runs = CountingWorld(rate=1000.0), []
     world.paused = paused
-    loop = Loop(world)
-    runs = []
-    begin = time.monotonic()
-    loop.every(0.01, lambda: runs.append(time.monotonic()))
-    thread = threading.Thread(target=loop.run)
-    thread.start()
-    _wait_for(lambda: len(runs) >= 5)
-    loop.stop()
-    thread.join(JOIN)
-    assert runs[0] - begin >= 0.01
-    assert runs[4] - begin >= 0.05
-
-
-@pytest.fixture
-def clock(monkeypatch):
-    """Give the loop a wall clock that only moves when the test says so."""
-    clock = SimpleNamespace(now=100.0, monotonic=lambda: clock.now)
-    monkeypatch.setattr('rosbots_description.ros_api.server.loop.time', clock)
-    return clock
+    begin, loop = clock.monotonic(), Loop(world)
+    loop.every(0.01, lambda: runs.append(clock.monotonic() - begin))
+    run_for(clock, loop, 0.055)
+    assert runs == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.05], abs=1e-3)
 
 
 def _run_beside(clock, task, period):
     """Let a loop run 1000 steps of 1 ms, and a task each period; return when it began."""
-    world, begun = CountingWorld(rate=0.0), []
-    world.run = lambda steps: setattr(clock, 'now', clock.now + 0.001 * steps)
+    world, begun = CountingWorld(0.0, 0.001, sleep=clock.sleep), []
     loop = Loop(world)
-    loop.every(period, lambda: (begun.append(clock.now), task(len(begun))))
+    loop.every(period, lambda: (begun.append(clock.monotonic()), task(len(begun))))
     loop.run(steps=1000)
     return begun
 
 
 def test_a_periodic_task_that_takes_time_keeps_its_pace(clock):
-    begun = _run_beside(clock, lambda _: setattr(clock, 'now', clock.now + 0.005), 0.01)
+    begun = _run_beside(clock, lambda _: clock.sleep(0.005), 0.01)
     begun = begun[50:]  # by then the loop knows what a step costs
     assert len(begun) > 100
     assert begun[-1] - begun[0] == pytest.approx(0.01 * (len(begun) - 1), abs=0.005)
@@ -233,7 +261,7 @@ def test_a_periodic_task_that_takes_time_keeps_its_pace(clock):
 def test_runs_that_a_periodic_task_missed_are_left_out(clock):
     def task(number):
         if number == 3:
-            clock.now += 0.5
+            clock.sleep(0.5)
 
     begun = _run_beside(clock, task, 0.01)
     gaps = [after - before for before, after in itertools.pairwise(begun)]
@@ -290,10 +318,3 @@ def test_nobody_waits_for_work_beside_when_the_loop_has_ended():
         loop.beside(lambda: end.wait(JOIN))
     end.set()
     thread.join(JOIN)
-
-
-def _wait_for(condition):
-    end = time.monotonic() + JOIN
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.001)
