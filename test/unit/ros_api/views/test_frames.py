@@ -1,19 +1,25 @@
 """The frames of the window: each model, only when it has moved."""
 
-from types import SimpleNamespace
+from support import urdf_spec
+from support.fake_engine import FakeEngine
 
 from rosbots_description.ros_api.views.frames import ShownFrames
-from rosbots_description.sim.core.transforms import IDENTITY, Pose
+from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.runtime.world import World
+
+BOX = urdf_spec('<link name="box"><inertial><mass value="1"/>'
+                '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>')
 
 
 def test_each_model_is_shown_once_and_again_when_it_has_moved():
-    robot = SimpleNamespace(pose=IDENTITY)
-    shown = ShownFrames(SimpleNamespace(models={
-        'ground': SimpleNamespace(pose=IDENTITY), 'robot': robot}))
+    world = World(make_engine=FakeEngine)
+    world.spawn(BOX, 'crate', Pose())
+    robot = world.spawn(BOX, 'robot', Pose())
+    shown = ShownFrames(world)
     assert [(frame.header.frame_id, frame.child_frame_id) for frame in shown.look()] == [
-        ('world', 'ground'), ('world', 'robot')]
+        ('world', 'crate'), ('world', 'robot')]
     assert shown.look() == []
-    robot.pose = Pose((1.0, 2.0, 3.0))
+    robot.set_pose(Pose((1.0, 2.0, 3.0)))
     (moved,) = shown.look()
     assert moved.child_frame_id == 'robot'
     assert moved.transform.translation.y == 2.0

@@ -1,9 +1,9 @@
 """The markers of a world: what is sent, and that it is sent only once."""
 
 from concurrent.futures import Future
-from types import SimpleNamespace
 
 import pytest
+from support.fake_engine import FakeEngine
 from visualization_msgs.msg import Marker
 
 from rosbots_description.ros_api.views.markers import PLANE_DEPTH, visual_marker
@@ -15,23 +15,30 @@ from rosbots_description.sim.description.model_spec import (
     LinkSpec,
     Material,
     Mesh,
+    ModelSpec,
     Plane,
     Sphere,
     Visual,
 )
+from rosbots_description.sim.runtime.world import World
 
 RED = Material((1.0, 0.0, 0.0, 0.5))
 
 
-def _model(name, visual, pose=IDENTITY):
-    spec = LinkSpec('link', visuals=(visual,))
-    link = SimpleNamespace(scoped_name=f'{name}::link', spec=spec, pose=pose)
-    return SimpleNamespace(name=name, links={'link': link})
+def _spawn(world, name, geometry, visual='v'):
+    link = LinkSpec('link', visuals=(Visual(visual, geometry),))
+    return world.spawn(ModelSpec(name, (link,)), name, IDENTITY)
 
 
 @pytest.fixture
-def world():
-    return SimpleNamespace(models={'box': _model('box', Visual('v', Box((1.0, 2.0, 3.0))))})
+def empty():
+    return World(make_engine=FakeEngine)
+
+
+@pytest.fixture
+def world(empty):
+    _spawn(empty, 'box', Box((1.0, 2.0, 3.0)))
+    return empty
 
 
 @pytest.mark.parametrize(('geometry', 'kind', 'scale'), [
@@ -56,9 +63,9 @@ def test_a_mesh_without_material_keeps_its_own_colours():
     assert marker.color.a == 0.0
 
 
-def test_a_plane_has_a_colour_at_every_corner_and_lies_below_the_grid():
-    world = SimpleNamespace(models={'ground': _model('ground', Visual('v', Plane()))})
-    _, marker = ShownMarkers(world).look()
+def test_a_plane_has_a_colour_at_every_corner_and_lies_below_the_grid(empty):
+    _spawn(empty, 'ground', Plane())
+    _, marker = ShownMarkers(empty).look()
     assert len(marker.colors) == len(marker.points) == 6
     assert marker.pose.position.z == -PLANE_DEPTH
 
@@ -72,7 +79,7 @@ def test_the_first_look_shows_all_and_the_next_nothing(world):
 def test_what_moved_is_shown_where_it_is(world):
     view = ShownMarkers(world)
     view.look()
-    world.models['box'].links['link'].pose = Pose((1.0, 2.0, 3.0))
+    world.models['box'].set_pose(Pose((1.0, 2.0, 3.0)))
     (marker,) = view.look()
     assert (marker.pose.position.x, marker.pose.position.z) == (1.0, 3.0)
 
@@ -80,7 +87,7 @@ def test_what_moved_is_shown_where_it_is(world):
 def test_what_went_is_removed_and_what_came_is_added(world):
     view = ShownMarkers(world)
     view.look()
-    del world.models['box']
+    world.delete('box')
     (gone,) = view.look()
     assert (gone.action, gone.ns, gone.id) == (Marker.DELETE, 'box::link', 0)
 
@@ -88,7 +95,8 @@ def test_what_went_is_removed_and_what_came_is_added(world):
 def test_a_new_model_of_an_old_name_takes_its_place(world):
     view = ShownMarkers(world)
     view.look()
-    world.models['box'] = _model('box', Visual('v', Sphere(1.0)))
+    world.delete('box')
+    _spawn(world, 'box', Sphere(1.0))
     gone, came = view.look()
     assert (gone.action, came.action) == (Marker.DELETE, Marker.ADD)
     assert came.type == Marker.SPHERE
@@ -140,7 +148,8 @@ def test_a_model_is_shown_to_the_window_once_its_files_are_made(world, thread):
 
 
 def test_what_has_no_file_is_shown_as_in_any_rviz(world, thread):
-    world.models['box'] = _model('box', Visual('v', Plane()))
+    world.delete('box')
+    _spawn(world, 'box', Plane())
     view = SunlitMarkers(world, FakeMeshes(), thread)
     view.look()
     thread.jobs.pop()()
@@ -152,11 +161,12 @@ def test_files_of_a_model_that_has_gone_meanwhile_are_not_shown(world, thread):
     view = SunlitMarkers(world, FakeMeshes(), thread)
     view.look()
     first = thread.jobs.pop()
-    world.models['box'] = _model('box', Visual('other', Sphere(1.0)))
+    world.delete('box')
+    _spawn(world, 'box', Sphere(1.0), 'other')
     first()
     assert view.look() == []
     thread.jobs.pop()()
     (marker,) = view.look()
     assert marker.mesh_resource == 'file:///made/other.mesh'
-    del world.models['box']
+    world.delete('box')
     assert [m.action for m in view.look()] == [Marker.DELETE]
