@@ -47,8 +47,9 @@ def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
 
 def _shown_by(node: object, matrix: FloatArray) -> Iterator[ColladaPart]:
     if isinstance(node, GeometryNode):
-        colours = {one.symbol: (_colour(one.target.effect), isinstance(one.target.effect.diffuse, Map))
-                   for one in node.materials}
+        effects = {one.symbol: one.target.effect for one in node.materials}
+        colours = {symbol: (_colour(effect), isinstance(effect.diffuse, Map))
+                   for symbol, effect in effects.items()}
         for primitive in node.geometry.primitives:
             yield from _triangles(primitive, matrix, colours)
     elif isinstance(node, Node):

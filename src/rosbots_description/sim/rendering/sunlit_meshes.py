@@ -10,12 +10,13 @@ import hashlib
 import logging
 import struct
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 import numpy as np
 
 from ..core import ModelError
+from ..core.arrays import FloatArray, IntArray
 from ..description import Box, Colour, Cylinder, Material, Mesh, Sphere, Visual
 from ..meshes import read_mesh
 from ..resources import HeldFile, HeldFiles
@@ -28,7 +29,7 @@ OPAQUE, TRANSPARENT = b'rosbots/sunlit', b'rosbots/sunlit_transparent'  # as in 
 SEGMENTS = 48  # of a round side
 
 # Vertices (n, 3), faces (m, 3) counter-clockwise, normals (n, 3).
-Surface = tuple[np.ndarray, np.ndarray, np.ndarray]
+Surface = tuple[FloatArray, IntArray, FloatArray]
 
 
 class SunlitMeshes:
@@ -71,6 +72,7 @@ def ogre_mesh(parts: list[tuple[Surface, Colour]]) -> bytes:
 # A vertex as the file has it: name, numpy's type, Ogre's type and meaning.
 _ELEMENTS = (('position', '3<f4', 2, 1), ('normal', '3<f4', 2, 4), ('rgba', '4u1', 11, 5))
 _VERTEX = np.dtype([(name, kind) for name, kind, _, _ in _ELEMENTS])
+_OFFSETS = {name: offset for name, (_, offset, *_) in (_VERTEX.fields or {}).items()}
 _TRIANGLE_LIST = 4
 
 
@@ -79,7 +81,7 @@ def _submesh(surface: Surface, rgba: Colour) -> bytes:
     data = np.empty(len(vertices), _VERTEX)
     data['position'], data['normal'] = vertices, normals
     data['rgba'] = np.round(255.0 * np.clip(rgba, 0.0, 1.0))
-    elements = [_chunk(0x5110, struct.pack('<5H', 0, kind, meaning, _VERTEX.fields[name][1], 0))
+    elements = [_chunk(0x5110, struct.pack('<5H', 0, kind, meaning, _OFFSETS[name], 0))
                 for name, _, kind, meaning in _ELEMENTS]
     geometry = _chunk(
         0x5000, struct.pack('<I', len(vertices)), _chunk(0x5100, *elements),
@@ -116,7 +118,7 @@ def _parts(visual: Visual) -> Iterator[tuple[Surface, Colour]]:
         yield _SHAPES[type(visual.geometry)](), (visual.material or Material()).rgba
 
 
-def _flat(corners: np.ndarray) -> Surface:
+def _flat(corners: FloatArray) -> Surface:
     """Return triangles (n, 3, 3) as a surface with an edge between any two of them."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
@@ -149,7 +151,7 @@ def _sphere() -> Surface:
 _SHAPES = {Box: _box, Cylinder: _cylinder, Sphere: _sphere}
 
 
-def _revolved(profile: list) -> Surface:
+def _revolved(profile: Sequence[FloatArray | list[tuple[float, ...]]]) -> Surface:
     """Return what strips sweep that turn about z.
 
     Args:
@@ -157,7 +159,10 @@ def _revolved(profile: list) -> Surface:
     """
     angles = np.linspace(0.0, 2.0 * np.pi, SEGMENTS + 1)
     about = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    vertices, faces, normals, first = [], [], [], 0
+    vertices: list[FloatArray] = []
+    normals: list[FloatArray] = []
+    faces: list[IntArray] = []
+    first = 0
     j = np.arange(SEGMENTS)
     for strip in map(np.asarray, profile):
         for radial, vertical, into in ((0, 1, vertices), (2, 3, normals)):
