@@ -44,7 +44,7 @@ def imports(folder: Path) -> set[str]:
 def test_what_is_imported_is_declared(folder, package, kinds):
     declared = {each.text for kind in kinds for each in manifest(package).iter(kind)}
     missing = {name for name in imports(folder) - FROM_PYPI
-               if not {name, f'python3-{name.replace("_", "-")}'} & declared}
+               if not {name, f'python3-{name.replace("_", "-").lower()}'} & declared}
     assert missing == set()
 
 
