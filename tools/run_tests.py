@@ -9,6 +9,7 @@ without any test counts as failed, so nothing passes by being absent.
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import shutil
 import subprocess
@@ -20,6 +21,8 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest wants a path without blanks
+COVERAGE = REPORTS / 'coverage'
+LEAST = 5  # files that are named
 OUTPUT_LINES = 60  # of a failed test's output, shown at the end
 
 
@@ -98,15 +101,37 @@ def run_lint(_word: str) -> Count:
     return sum((run_command('lint', name, command) for name, command in checks.items()), Count())
 
 
-def run_pytest(phase: str, word: str) -> Count:
-    """Run the tests of test/<phase>."""
+def run_pytest(phase: str, word: str, measure: tuple[str, ...] = ()) -> Count:
+    """Run the tests of test/<phase>; `measure` is what runs pytest as a module and watches it."""
     report = REPORTS / f'{phase}.xml'
     start = time.monotonic()
-    code = subprocess.run([sys.executable, '-m', 'pytest', '-q', f'--junitxml={report}', '-k', word,
-                           f'test/{phase}'], cwd=ROOT, check=False).returncode
+    code = subprocess.run([sys.executable, *measure, '-m', 'pytest', '-q', f'--junitxml={report}',
+                           '-k', word, f'test/{phase}'], cwd=ROOT, check=False).returncode
     count = with_exit_code(count_report(report), code)
     announce(phase, f'test/{phase}', count, time.monotonic() - start)
     return count
+
+
+def run_unit(word: str) -> Count:
+    """Run test/unit and note which lines it runs; of a part of it that would tell nothing."""
+    watched = ('-m', 'coverage', 'run', f'--data-file={COVERAGE}')
+    return run_pytest('unit', word, () if word else watched)
+
+
+def least_covered() -> str:
+    """Return one line about the lines that test/unit has run."""
+    done = subprocess.run(
+        [sys.executable, '-m', 'coverage', 'json', '-i', '-o', '-', f'--data-file={COVERAGE}'],
+        cwd=ROOT, stdout=subprocess.PIPE, check=True)
+    report = json.loads(done.stdout)
+    files = {path.removeprefix('src/rosbots_description/'): file['summary']
+             for path, file in report['files'].items()}
+    share = {path: summary['percent_covered'] for path, summary in files.items()}
+    order = sorted(files, key=lambda path: (share[path], -files[path]['num_statements']))
+    least = (f'{path} {share[path]:.0f} %' for path in order[:LEAST])
+    total = report['totals']['percent_covered']
+    return (f'test/unit runs {total:.0f} % of the lines of sim and ros_api; '
+            f'fewest of {", ".join(least)}')
 
 
 def run_rostest(path: Path) -> Count:
@@ -145,7 +170,7 @@ def run_rostests(word: str) -> Count:
 
 PHASES = {
     'lint': run_lint,
-    'unit': lambda word: run_pytest('unit', word),
+    'unit': run_unit,
     'engine': lambda word: run_pytest('engine', word),
     'rostest': run_rostests,
 }
@@ -166,6 +191,8 @@ def main(argv: list[str] | None = None) -> int:
     start = time.monotonic()
     total = sum((PHASES[phase](arguments.word) for phase in arguments.phases or PHASES), Count())
     skipped = f' ({total.skipped} skipped)' if total.skipped else ''
+    if COVERAGE.exists():
+        print(f'\n{least_covered()}', end='')
     print(f'\nall phases took {time.monotonic() - start:.0f} s{skipped}')
     print(f'{total.passed} passed, {total.failed} failed')
     return 1 if total.failed else 0
