@@ -8,12 +8,12 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from ..core import Pose, Twist, Vector
+from ..core.arrays import FloatArray
 from ..description import ModelSpec, PhysicsSettings
 from .compiled_model import CompiledModel
+
+Points = FloatArray | Sequence[Vector]  # (n, 3) [m]
 
 
 class JointState(NamedTuple):
@@ -89,7 +89,7 @@ class RayHits(NamedTuple):
         collisions: what each ray met, None for nothing; empty unless asked for.
     """
 
-    distances: NDArray[np.float64]
+    distances: FloatArray
     collisions: Sequence[CollisionName | None]
 
 
@@ -225,7 +225,7 @@ class PhysicsEngine(Protocol):
         """
 
     def cast_rays(
-        self, starts: ArrayLike, ends: ArrayLike, named: bool = False
+        self, starts: Points, ends: Points, named: bool = False
     ) -> RayHits:
         """Return what straight rays meet first; they see all collisions, the caster's too.
 

@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...core import Pose, SimError, Vector, conjugate, rotate, subtract
+from ...core.arrays import FloatArray
 from ...description import Box, Collision, Cylinder, Mesh, Plane, Sphere
 from ...meshes import read_stl
-from ..engine import CollisionName, Contact, RayHits
+from ..engine import CollisionName, Contact, Points, RayHits
 from .body import Body, Place
 from .client import pybullet
 from .generated_urdf import MeshFile
@@ -32,7 +32,7 @@ class Surroundings:
         """
         self._client, self._link_pose, self._mesh_file = client, link_pose, mesh_file
         self._owners: dict[Place, tuple[Body, str]] = {}
-        self._triangles: dict[Mesh, NDArray[np.float64]] = {}
+        self._triangles: dict[Mesh, FloatArray] = {}
 
     def add(self, body: Body) -> None:
         """Know a body by its names from now on."""
@@ -75,7 +75,7 @@ class Surroundings:
         owner, name = self._owners[place]
         return owner is body and link in (None, name)
 
-    def cast_rays(self, starts: ArrayLike, ends: ArrayLike, named: bool) -> RayHits:
+    def cast_rays(self, starts: Points, ends: Points, named: bool) -> RayHits:
         """Return what rays meet first; see `PhysicsEngine.cast_rays`."""
         starts, ends = (np.asarray(points, dtype=float) for points in (starts, ends))
         if starts.ndim != 2 or starts.shape[1] != 3 or starts.shape != ends.shape:
@@ -134,7 +134,7 @@ def _outside(reaches: Iterable[float]) -> float:
     return math.hypot(*(max(reach, 0.0) for reach in reaches))
 
 
-def _to_triangles(triangles: NDArray[np.float64], point: NDArray[np.float64]) -> float:
+def _to_triangles(triangles: FloatArray, point: FloatArray) -> float:
     """Return the distance of a point to the nearest of triangles (n, 3, 3) [m]."""
     a, b, c = (triangles[:, k] - point for k in range(3))
     nearest = math.inf

@@ -8,12 +8,10 @@ from functools import partial
 from itertools import repeat
 from typing import Any, cast
 
-from numpy.typing import ArrayLike
-
 from ...core import Pose, Vector
 from ...description import ModelSpec, PhysicsSettings
 from ...meshes import MeshStore
-from ..engine import Contact, PhysicsEngine, RayHits
+from ..engine import Contact, PhysicsEngine, Points, RayHits
 from .body import Body
 from .body_maker import BodyMaker
 from .body_states import BodyStates
@@ -244,7 +242,7 @@ class Engine(BodyStates):
         """Return the contacts of a model, or of one link, in the last step."""
         return self._surroundings.contacts(body, link)
 
-    def cast_rays(self, starts: ArrayLike, ends: ArrayLike, named: bool = False) -> RayHits:
+    def cast_rays(self, starts: Points, ends: Points, named: bool = False) -> RayHits:
         """Return what rays meet first."""
         return self._surroundings.cast_rays(starts, ends, named)
 

@@ -9,9 +9,9 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core import Vector, conjugate, rotate
+from ...core.arrays import FloatArray
 from .body import Masses
 from .client import pybullet
 from .springs import followed_damping, followed_stiffness
@@ -177,7 +177,7 @@ class _Swinging:
 
     def _energy(
         self, step_size: float, gravity: Vector
-    ) -> tuple[float, float, float, NDArray[np.float64]]:
+    ) -> tuple[float, float, float, FloatArray]:
         """Return energies [J], and how the centre of mass drifts [m/s].
 
         All energy, that without place and drift of the centre of mass, and the kinetic part of
@@ -229,7 +229,7 @@ class _Swinging:
         points = pybullet.getContactPoints(self._number, physicsClientId=self._client)
         return {number for point in points for number in point[1:3]} - {self._number}
 
-    def _slow_down(self, share: float, drift: NDArray[np.float64]) -> None:
+    def _slow_down(self, share: float, drift: FloatArray) -> None:
         """Let all parts move with a share of their velocity about the centre of mass."""
         if self._base:
             linear, angular = pybullet.getBaseVelocity(self._number, self._client)
@@ -266,7 +266,7 @@ def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
     return step_size * sum(t * t / i for t, i in zip(torque, moments, strict=True)) / energy
 
 
-def _turned_back(turns: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turned_back(turns: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return vectors (n, 3) turned by the inverse of quaternions (n, 4)."""
     own, w = -turns[:, :3], turns[:, 3:]
     twice = 2.0 * np.cross(own, vectors)

@@ -11,9 +11,9 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core import Pose, rotate
+from ...core.arrays import FloatArray, IntArray
 from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from ...meshes import read_stl, support_points
 from .generated_urdf import MeshFile
@@ -65,9 +65,9 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     )
 
 
-def _points(shape: Geometry | str) -> NDArray[np.float64]:
+def _points(shape: Geometry | str) -> FloatArray:
     """Return points (n, 3) of a shape's surface, among them all that its box touches [m]."""
-    points: NDArray[np.float64]
+    points: FloatArray
     match shape:
         case Box(size):
             points = _CUBE * np.array(size) / 2.0
@@ -82,21 +82,21 @@ def _points(shape: Geometry | str) -> NDArray[np.float64]:
     return points
 
 
-def _box(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _box(points: FloatArray) -> FloatArray:
     """Return the corners of the box, along the axes, around points."""
     low, high = points.min(axis=0), points.max(axis=0)
-    corners: NDArray[np.float64] = (low + high) / 2.0 + _CUBE * (high - low) / 2.0
+    corners: FloatArray = (low + high) / 2.0 + _CUBE * (high - low) / 2.0
     return corners
 
 
-def _placed(points: NDArray[np.float64], pose: Pose) -> NDArray[np.float64]:
+def _placed(points: FloatArray, pose: Pose) -> FloatArray:
     x, y, z = points.T
     turned = np.stack(rotate(pose.orientation, (x, y, z)), axis=1)
-    placed: NDArray[np.float64] = turned + np.array(pose.position)
+    placed: FloatArray = turned + np.array(pose.position)
     return placed
 
 
-def _hull(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _hull(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the sides of the hull of a few points: normals (n, 3) and how far out each is [m].
 
     Each plane through three points is one that has all of the others behind it. What is flat has no
@@ -124,7 +124,7 @@ def _hull(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.
 
 
 @lru_cache(maxsize=16)
-def _triples(count: int) -> NDArray[np.int64]:
+def _triples(count: int) -> IntArray:
     """Return all triples of so many, (3, n)."""
     i = np.arange(count)
     return np.stack(np.nonzero((i[:, None, None] < i[:, None]) & (i[:, None] < i)))

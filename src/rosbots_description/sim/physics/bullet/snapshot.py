@@ -30,7 +30,9 @@ Joints = Sequence[tuple[int, int]]  # by PyBullet's body and index
 class BulletSnapshot:
     """The state of a PyBullet world, and notes of what belongs to it; bodies go by identity."""
 
-    def __init__(self, state: int, bodies: Sequence[Any], idle: Joints, notes: Any) -> None:
+    def __init__(
+        self, state: int, bodies: Sequence[Any], idle: Joints, notes: tuple[Any, ...]
+    ) -> None:
         self.state, self.bodies, self.idle, self.notes = state, tuple(bodies), idle, notes
 
 
@@ -50,7 +52,8 @@ class Snapshots:
         self._kept = set()
 
     def take(
-        self, bodies: Sequence[Any], moving: Sequence[int], idle: Joints, note: Callable[[], Any]
+        self, bodies: Sequence[Any], moving: Sequence[int], idle: Joints,
+        note: Callable[[], tuple[Any, ...]],
     ) -> BulletSnapshot:
         """Return a snapshot.
 
@@ -70,7 +73,7 @@ class Snapshots:
 
     def put_back(
         self, snapshot: BulletSnapshot, bodies: Sequence[Any], moving: Sequence[int]
-    ) -> Any:
+    ) -> tuple[Any, ...]:
         """Restore PyBullet's part of a snapshot, and return the notes.
 
         Raises:
