@@ -1,7 +1,6 @@
 """What services compute from requests: refusals, wrenches, limits, pace."""
 
 import math
-from types import SimpleNamespace
 
 import pytest
 from gazebo_msgs.msg import ModelState, ODEJointProperties
@@ -10,9 +9,12 @@ from gazebo_msgs.srv import (
     SetModelConfigurationRequest,
     SpawnModelRequest,
 )
+from support import package_directory
+from support.fake_engine import FakeEngine
 
 from rosbots_description.ros_api.messages.validity import RequestError, require_finite
 from rosbots_description.ros_api.reconfigure.physics import PARAMETERS, settings
+from rosbots_description.ros_api.server.server import Server
 from rosbots_description.ros_api.services.joints import changed_spec, set_joint_properties
 from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties
@@ -20,8 +22,14 @@ from rosbots_description.ros_api.topics.performance import Pace
 from rosbots_description.ros_api.topics.states import clock_frequency
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
-from rosbots_description.sim.description.model_spec import JointSpec, ModelSpec
+from rosbots_description.sim.description.model_spec import (
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    ModelSpec,
+)
 from rosbots_description.sim.description.physics_settings import PhysicsSettings, check_physics
+from rosbots_description.sim.runtime.world import World
 
 HINGE = JointSpec('hinge', 'revolute', 'a', 'b', lower=-1.0, upper=1.0)
 QUARTER = from_rpy(0.0, 0.0, math.pi / 2)
@@ -82,23 +90,12 @@ def test_limits_that_cross_and_damping_that_drives_are_refused(changes, words):
         changed_spec(HINGE, changes)
 
 
-class FakeJoint:
-    """A joint that only keeps what is set."""
-
-    def __init__(self):
-        self.spec, self.motor = HINGE, (1.0, 2.0)
-        self.model = SimpleNamespace(spec=ModelSpec('m', (), (HINGE,)), respecify=self.respecify)
-
-    def set_motor(self, velocity, effort):
-        self.motor = velocity, effort
-
-    def respecify(self, spec):
-        (self.spec,) = spec.joints
-
-
 def _set_joint(**fields):
-    joint = FakeJoint()
-    server = SimpleNamespace(world=SimpleNamespace(find_joint=lambda _: joint))
+    world = World(make_engine=FakeEngine)
+    links = LinkSpec('a', inertial=Inertial(1.0)), LinkSpec('b', inertial=Inertial(1.0))
+    joint = world.spawn(ModelSpec('m', links, (HINGE,)), 'm', Pose()).joint('hinge')
+    joint.set_motor(1.0, 2.0)
+    server = Server(world, None, None, package_directory, lambda _: None, None)
     request = SetJointPropertiesRequest('hinge', ODEJointProperties(**fields))
     try:
         set_joint_properties(server, request)
