@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """p3d, joint states, trajectories, force and hand of god on the wire, as recorded in Gazebo."""
 
+import itertools
 import math
 import sys
 from pathlib import Path
@@ -30,7 +31,7 @@ def period(messages):
     A reader whom the machine keeps waiting misses messages, but none comes at another time.
     """
     stamps = [message.header.stamp.to_nsec() // 1_000_000 for message in list(messages)]
-    between = {after - before for before, after in zip(stamps, stamps[1:], strict=False)}
+    between = {after - before for before, after in itertools.pairwise(stamps)}
     least = min(between)
     assert least > 0 and all(gap % least == 0 for gap in between), between
     return least

@@ -38,9 +38,14 @@ def read_wrench(message: Wrench) -> tuple:
     return numbers[:3], numbers[3:]
 
 
+def _hand(adapter: Adapter) -> HandOfGod:
+    assert isinstance(adapter.plugin, HandOfGod)
+    return adapter.plugin
+
+
 def actual_pack(adapter: Adapter) -> Pack:
     """Return what lays out where the link is; its frames take no prefix."""
-    layout = TransformLayout(WORLD, f'{adapter.plugin.frame}_actual')
+    layout = TransformLayout(WORLD, f'{_hand(adapter).frame}_actual')
     return lambda _number, now_ns, edge: layout.pack(now_ns, edge.pose)
 
 
@@ -75,7 +80,7 @@ class FollowedFrame(Endpoint):
     def __init__(self, adapter: Adapter) -> None:
         super().__init__(adapter)
         self._edges: dict[str, tuple[str, Pose]] = {}  # by frame: its parent, and its pose in that
-        self._desired = f'{adapter.plugin.frame}_desired'.lstrip('/')
+        self._desired = f'{_hand(adapter).frame}_desired'.lstrip('/')
         self._told: Pose | None = None
 
     def open(self) -> None:
@@ -97,7 +102,7 @@ class FollowedFrame(Endpoint):
         self._look()
 
     def _look(self) -> None:
-        server, plugin = self.adapter.server, self.adapter.plugin
+        server, plugin = self.adapter.server, _hand(self.adapter)
         pose = pose_between(WORLD, self._desired, {**server.static_frames.parents, **self._edges})
         if pose is not None and pose != self._told:
             self._told = pose

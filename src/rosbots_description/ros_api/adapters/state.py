@@ -10,6 +10,7 @@ Parameters:
 """
 
 import math
+from typing import Any
 
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
@@ -26,12 +27,13 @@ from .registry import connects
 def true_odometry_pack(adapter: Adapter) -> Pack:
     """Return what lays the odometry of p3d out."""
     plugin = adapter.plugin
+    assert isinstance(plugin, P3D)
     variances = (plugin.noise**2,) * 6
-    frame = adapter.frame(plugin.params.values['frameName'])
+    frame = adapter.frame(plugin.params.string('frameName'))
     return OdometryLayout(frame, plugin.body, variances, variances).pack
 
 
-def read_trajectory(message: JointTrajectory) -> tuple:
+def read_trajectory(message: JointTrajectory) -> tuple[Any, ...]:
     """Return what `JointPoseTrajectory.play` takes.
 
     Raises:

@@ -13,6 +13,7 @@ from ...core import (
     PluginError,
     Pose,
     Vector,
+    as_vector,
     compose,
     conjugate,
     inverse,
@@ -72,6 +73,8 @@ class HandOfGod(ModelPlugin):
 
     def before_step(self) -> None:
         """Pull."""
+        if self.target is None:
+            return
         pose, (linear, angular) = self._link.state()
         target, inertial = compose(self.target, inverse(self._mount)), self._inertial
         force = self._spring(
@@ -102,7 +105,7 @@ class HandOfGod(ModelPlugin):
         step = self.world.physics.step_size
         stiffness = min(stiffness, (least / step) ** 2 / (4.0 * inertia))
         damping = 2.0 * math.sqrt(stiffness * inertia)
-        return tuple(stiffness * s - damping * v for s, v in zip(away, velocity, strict=True))
+        return as_vector(stiffness * s - damping * v for s, v in zip(away, velocity, strict=True))
 
 
 def _half_rotation(q: tuple[float, float, float, float]) -> Vector:

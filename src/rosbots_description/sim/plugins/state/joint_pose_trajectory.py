@@ -49,13 +49,14 @@ class JointPoseTrajectory(ModelPlugin):
         """
         if not all(math.isfinite(position) for point, _ in points for position in point):
             raise ValueError('a trajectory takes finite positions')
-        link = None if frame in WORLD_FRAMES[1:] else self.world.find_entity(frame)
-        if not (isinstance(link, Link) or frame in WORLD_FRAMES[1:]):
+        in_world = frame in WORLD_FRAMES[1:]
+        link = None if in_world else self.world.find_entity(frame)
+        if not (isinstance(link, Link) or in_world):
             logger.error('ros_joint_trajectory plugin needs a reference link [%s] as frame_id, '
                          'aborting.', frame)
             return
-        self._model: Model = self.model if link is None else link.model
-        self._held: Link | Model = link or self.model
+        self._held: Link | Model = link if isinstance(link, Link) else self.model
+        self._model: Model = link.model if isinstance(link, Link) else self.model
         self._joints: list[Joint | None] = [self._model.joints.get(name) for name in joints]
         unknown = [name for name, joint in zip(joints, self._joints, strict=True) if joint is None]
         if unknown:

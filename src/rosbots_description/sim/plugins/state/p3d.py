@@ -9,6 +9,7 @@ the two has the wrong sign.
 
 import logging
 import random
+from collections.abc import Mapping
 
 from ...core import (
     NotFoundError,
@@ -16,6 +17,7 @@ from ...core import (
     Twist,
     Vector,
     add,
+    as_vector,
     conjugate,
     from_rpy,
     multiply,
@@ -41,7 +43,8 @@ class P3D(PeriodicPlugin):
 
     prefix = 'gazebo_ros_p3d plugin: '
     missing_level = logging.DEBUG
-    hints = {'xyzOffsets': ' (the offset is <xyzOffset>)', 'rpyOffsets': ' (it is <rpyOffset>)'}
+    hints: Mapping[str, str] = {
+        'xyzOffsets': ' (the offset is <xyzOffset>)', 'rpyOffsets': ' (it is <rpyOffset>)'}
     later = keeps_rate = False
 
     def load(self) -> None:
@@ -86,7 +89,7 @@ class P3D(PeriodicPlugin):
         return Twist(*(add(one, self._sample(source)) for one in twist))
 
     def _sample(self, source: random.Random) -> Vector:
-        return tuple(source.gauss(0.0, self.noise) for _ in range(3))
+        return as_vector(source.gauss(0.0, self.noise) for _ in range(3))
 
 
 def _seen_from(frame: Pose, moving: Twist, pose: Pose, twist: Twist) -> tuple[Pose, Twist]:

@@ -1,5 +1,6 @@
 """The hand of god: as recorded in Gazebo, and stable for any link."""
 
+import itertools
 import logging
 import math
 from contextlib import closing
@@ -78,7 +79,7 @@ def test_it_turns_the_shorter_way_and_comes_to_rest(world, turn):
     for _ in range(100):
         world.run(20)
         left.append(angle_between(model.pose, goal))
-    assert all(after <= before + 1e-3 for before, after in zip(left, left[1:], strict=False))
+    assert all(after <= before + 1e-3 for before, after in itertools.pairwise(left))
     assert left[-1] < 0.01
 
 
