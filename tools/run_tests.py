@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
 
-Phases: lint (ruff, catkin_lint, launch files), unit (pytest, no ROS master), engine (pytest,
+Phases: lint (ruff, mypy, catkin_lint, launch files), unit (pytest, no ROS master), engine (pytest,
 physics without a window), rostest (each test/rostest/*.test on a master of its own). A phase
 without any test counts as failed, so nothing passes by being absent.
 """
@@ -90,6 +90,9 @@ def run_lint(_word: str) -> Count:
     """Check style, manifests and launch files."""
     checks = {
         'ruff': ['ruff', 'check', '--quiet', '--output-format', 'concise', '.'],
+        'mypy': [sys.executable, '-m', 'mypy', '--no-error-summary'],
+        'mypy --strict': [sys.executable, '-m', 'mypy', '--no-error-summary', '--strict',
+                          '--cache-dir=.ws/mypy_cache/strict', 'src/rosbots_description/sim'],
         # the folder of a clone may have any name
         'catkin_lint': ['catkin_lint', '-W2', '--strict', '--ignore', 'package_path_name', '.',
                         *map(str, sorted((ROOT / 'companions').iterdir()))],
