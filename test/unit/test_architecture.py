@@ -37,10 +37,13 @@ ARROWS = {
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
+    'sim/sensors':
+        'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins',
     'sim/rendering':
         'sim/core sim/description sim/resources sim/meshes sim/physics/bullet sim/runtime',
     'sim/public':
-        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/plugins',
+        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/plugins '
+        'sim/sensors',
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',
@@ -54,7 +57,7 @@ ARROWS = {
         'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
     'ros_api/reconfigure': 'sim/plugins ros_api/server ros_api/transport ros_api/services',
     'ros_api/adapters':
-        'sim/core sim/runtime sim/plugins '
+        'sim/core sim/runtime sim/plugins sim/sensors '
         'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
     'ros_api/views':
         'sim/core sim/description sim/runtime sim/rendering '

@@ -34,7 +34,8 @@ def parser() -> argparse.ArgumentParser:
     add('-u', '--pause', action='store_true', help='start paused')
     add('-e', '--physics', metavar='ENGINE', default=ENGINE,
         help='accepted for compatibility; the engine is always PyBullet')
-    add('--seed', type=int, metavar='NUMBER', help='accepted; nothing here is random')
+    add('--seed', type=int, metavar='NUMBER', default=0,
+        help='of the noise of sensors; the same seed gives the same run, default 0')
     add('--iters', type=_count, metavar='NUMBER', help='end after so many steps')
     add('--verbose', action='store_true', help='log debug messages too')
     add('-r', '--record', action='store_true', help='not supported')
@@ -93,7 +94,7 @@ def _main(arguments: Sequence[str]) -> int:
     gc.freeze()
     gc.enable()
     options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
-                           given.verbose, given.replace)
+                           given.verbose, given.replace, given.seed)
     try:
         return node.run(options, remappings)
     except SimError as error:
@@ -119,11 +120,6 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
             logging.INFO,
             f"physics engine '{given.physics}' is simulated by PyBullet, as every engine is here; "
             'parameters are those of ode',
-        ))
-    if given.seed is not None:
-        found.append((
-            logging.INFO,
-            f'--seed {given.seed} changes nothing: no number here is random, every run is the same',
         ))
     recording = (given.record_encoding, given.record_path, given.record_period,
                  given.record_filter, given.record_resources)

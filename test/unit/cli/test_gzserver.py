@@ -51,10 +51,11 @@ def test_the_version_is_one_line(option, capsys):
     assert 'PyBullet' in line
 
 
-def test_a_seed_is_accepted_and_said_to_change_nothing():
-    given, ((level, text),) = _read('--seed 3')
-    assert (given.seed, level) == (3, logging.INFO)
-    assert '--seed 3' in text
+def test_the_seed_is_that_of_the_run_and_needs_no_remark():
+    given, unknown = parser().parse_known_args(['--seed', '7'])
+    assert (given.seed, remarks(given, unknown)) == (7, ())
+    assert parser().parse_args([]).seed == 0
+
 
 
 def test_another_engine_is_an_information():

@@ -10,11 +10,11 @@ from .conversions import (
     read_vector,
     stamp,
 )
-from .layouts import JointStatesLayout, OdometryLayout, TransformLayout
+from .layouts import JointStatesLayout, LaserScanLayout, OdometryLayout, TransformLayout, floats
 from .validity import RequestError, require_finite
 
 __all__ = [
-    'JointStatesLayout', 'OdometryLayout', 'RequestError', 'TransformLayout', 'fill_pose',
-    'fill_transform', 'fill_twist', 'read_pose', 'read_transform', 'read_twist', 'read_vector',
-    'require_finite', 'stamp',
+    'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'RequestError', 'TransformLayout',
+    'fill_pose', 'fill_transform', 'fill_twist', 'floats', 'read_pose', 'read_transform',
+    'read_twist', 'read_vector', 'require_finite', 'stamp',
 ]

@@ -8,6 +8,9 @@ numbers are little-endian, and a text or a list stands behind its length.
 import struct
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ...sim.core import NANOSECONDS, Pose
 from ...sim.runtime import JointStates, Odometry
 
@@ -84,6 +87,35 @@ class JointStatesLayout:
         return self._layout.pack(
             self._size, seq, *divmod(now_ns, NANOSECONDS), self._names, *numbers
         )
+
+
+class LaserScanLayout:
+    """sensor_msgs/LaserScan of a frame; the times within a scan are 0."""
+
+    def __init__(self, frame: str) -> None:
+        """Note the name of the frame."""
+        self._frame = _text(frame)
+        self._layout = struct.Struct(f'<4I{len(self._frame)}s7f')
+
+    def pack(
+        self, seq: int, now_ns: int, angles: Sequence[float], limits: Sequence[float],
+        ranges: NDArray[np.float64], intensities: NDArray[np.float64],
+    ) -> bytes:
+        """Return the message with the number `seq`, stamped `now_ns` [ns].
+
+        Args:
+            angles: least, greatest and increment [rad].
+            limits: least and greatest range [m].
+        """
+        size = self._layout.size - _SIZE + 8 + 4 * (len(ranges) + len(intensities))
+        head = self._layout.pack(
+            size, seq, *divmod(now_ns, NANOSECONDS), self._frame, *angles, 0.0, 0.0, *limits)
+        return head + floats(ranges) + floats(intensities)
+
+
+def floats(values: NDArray[np.float64]) -> bytes:
+    """Return a list of float32, behind its length."""
+    return struct.pack('<I', len(values)) + values.astype('<f4').tobytes()
 
 
 def _text(text: str) -> bytes:

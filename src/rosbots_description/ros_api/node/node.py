@@ -74,6 +74,7 @@ class Options:
     remarks: tuple[tuple[int, str], ...] = ()  # what to log at start: level and text
     verbose: bool = False  # log debug messages too
     replace: bool = False  # end the simulator that has this one's name
+    seed: int = 0  # of the noise of sensors
 
 
 def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
@@ -130,7 +131,7 @@ def _simulate(
     for level, text in options.remarks:
         logger.log(level, '%s', text)
     replay(records)
-    world.paused = options.paused
+    world.paused, world.seed = options.paused, options.seed
     _connect(server, spec)
     watch_master(server.registrar, server.parameters)
     gc.freeze()  # else each full collection looks at all modules, for tens of steps

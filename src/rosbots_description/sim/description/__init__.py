@@ -1,6 +1,7 @@
 """Models and worlds as frozen values, complete and checked, in SI units."""
 
 from .built_in import GROUND_PLANE, SUN
+from .element import Element, PluginSpec
 from .materials import gazebo_material
 from .model_spec import (
     FIXED,
@@ -11,7 +12,6 @@ from .model_spec import (
     Collision,
     Colour,
     Cylinder,
-    Element,
     Geometry,
     Inertial,
     JointSpec,
@@ -20,12 +20,12 @@ from .model_spec import (
     Mesh,
     ModelSpec,
     Plane,
-    PluginSpec,
     Sphere,
     Surface,
     Visual,
 )
 from .physics_settings import PhysicsSettings, check_physics
+from .sensor_spec import SensorSpec
 from .world_spec import (
     DIRECTIONAL,
     POINT,
@@ -40,6 +40,6 @@ __all__ = [
     'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN',
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
-    'PhysicsSettings', 'Plane', 'PluginSpec', 'SceneSpec', 'Sphere', 'Surface', 'Visual',
-    'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
+    'PhysicsSettings', 'Plane', 'PluginSpec', 'SceneSpec', 'SensorSpec', 'Sphere', 'Surface',
+    'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
 ]

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose, Vector, rotate
+from .element import Element, PluginSpec
+from .sensor_spec import SensorSpec
 
 Colour = tuple[float, float, float, float]  # red, green, blue, alpha in 0..1
 
@@ -131,30 +133,6 @@ class Inertial:
 
 
 @dataclass(frozen=True)
-class Element:
-    """One XML element of a plugin or sensor block, in plain values, with where it was read."""
-
-    tag: str
-    text: str = ''
-    attributes: Mapping[str, str] = field(default_factory=dict)
-    children: tuple['Element', ...] = ()
-    line: int = 0
-
-    def child(self, tag: str) -> 'Element | None':
-        """Return the first child of that tag, or None."""
-        return next((child for child in self.children if child.tag == tag), None)
-
-
-@dataclass(frozen=True)
-class PluginSpec:
-    """A plugin as the description asks for it: `filename` picks the code, `element` its tags."""
-
-    name: str
-    filename: str
-    element: Element
-
-
-@dataclass(frozen=True)
 class LinkSpec:
     """A rigid body; `pose` is where it stands in the model frame with all joints at zero."""
 
@@ -168,7 +146,8 @@ class LinkSpec:
     kinematic: bool = False  # moved by its user only; forces and contacts do not move it
     linear_damping: float = 0.0
     angular_damping: float = 0.0
-    sensors: tuple[Element, ...] = ()
+    sensors: tuple[SensorSpec, ...] = ()
+    parts: tuple[Element, ...] = ()  # lights and projectors, which nothing here acts on
 
     @property
     def mass_properties(self) -> Inertial:

@@ -2,7 +2,7 @@
 
 from difflib import get_close_matches
 
-from .registry import known_filenames, library_name
+from .registry import known_filenames, library_name, sensor_plugin_class
 
 PAGE = 'doc/gazebo_compatibility.md'
 _CLOSE = 0.9  # similarity of a name that is misspelt; that of somebody else's library is less
@@ -33,7 +33,8 @@ def library_remark(filename: str) -> str:
     if name in missing:
         return f'{name} is known but not supported yet'
     if name in known_filenames():
-        return f'{name} works only in a <gazebo> or <model>, not in a part of it'
+        place = 'a <sensor>' if sensor_plugin_class(name) else 'a <gazebo> or <model>'
+        return f'{name} works only in {place}, not where it stands'
     close = get_close_matches(name[:100], [*known_filenames(), *missing], 1, _CLOSE)
     cure = f"did you mean '{close[0]}'?" if close else 'nothing is loaded from GAZEBO_PLUGIN_PATH'
     return f"unknown library '{name}'; {cure}"

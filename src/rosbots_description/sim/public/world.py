@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Self
 
-from .. import plugins, runtime  # noqa: F401  the former registers what <plugin> tags load
+from .. import plugins, runtime, sensors  # noqa: F401  two register what descriptions load
 from ..core import (
     NANOSECONDS,
     NotFoundError,

@@ -3,7 +3,7 @@
 from .empty_world import add_empty_world
 from .model import Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
-from .plugin_life import Plugin
+from .plugin_life import Plugin, SensorLife
 from .population import populate
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .world import WORLD_FRAMES, Entity, World
@@ -11,6 +11,6 @@ from .world_state import SavedState
 
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Hook', 'Joint', 'JointStates', 'Link',
-    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState', 'World',
+    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState', 'SensorLife', 'World',
     'add_empty_world', 'populate',
 ]

@@ -19,7 +19,7 @@ from ..description import Collision, JointSpec, LinkSpec, ModelSpec
 from ..physics import CompiledModel, EngineBody, JointState, PhysicsEngine
 from ..plugin_registry import library_name
 from .outputs import JointStates
-from .plugin_life import Plugin
+from .plugin_life import ModelPart, Plugin, SensorLife
 
 
 class Link:
@@ -167,7 +167,8 @@ class Model:
             for joint in spec.joints
             if joint.name in self.body.joints
         }
-        self.plugins: list[Plugin] = []
+        self.plugins: list[Plugin] = []  # those in sensors, too
+        self.sensors: list[SensorLife] = []
         self.left_out = list(spec.left_out)  # what it stands without, each in few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)
@@ -299,6 +300,24 @@ class Model:
         known = ', '.join(f"'{one.spec.name}' ({one.spec.filename})" for one in self.plugins)
         raise NotFoundError(
             f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}")
+
+    @property
+    def parts(self) -> list[ModelPart]:
+        """Return plugins and sensors, as they were loaded."""
+        return [*self.plugins, *self.sensors]
+
+    def sensor(self, name: str) -> Any:
+        """Return the sensor of that name, or `LINK::NAME`; the first, if there are several.
+
+        Raises:
+            NotFoundError: the model has no such sensor, or it was left out as it was loaded.
+        """
+        for sensor in self.sensors:
+            if name in (sensor.name, sensor.scoped_name.removeprefix(f'{self.name}::')):
+                return sensor
+        known = ', '.join(one.scoped_name.removeprefix(f'{self.name}::') for one in self.sensors)
+        raise NotFoundError(
+            f"model '{self.name}' has no sensor '{name}'; its sensors: {known or 'none'}")
 
     def joint(self, name: str) -> Joint:
         """Return the joint of that plain or scoped name.

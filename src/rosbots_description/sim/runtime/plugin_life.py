@@ -1,15 +1,13 @@
-"""What a world asks of the plugins of its models."""
+"""What a world asks of the plugins and sensors of its models."""
 
 from collections.abc import Iterable
 
-from ..description import PluginSpec
+from ..description import PluginSpec, SensorSpec
 from .scheduler import Hook
 
 
-class Plugin(Hook):
+class ModelPart(Hook):
     """Something that lives with a model and runs in the steps it asks for."""
-
-    spec: PluginSpec
 
     def start(self) -> None:
         """Load and begin.
@@ -30,12 +28,32 @@ class Plugin(Hook):
         """Take note of which outputs have readers; they may have come or gone."""
 
     def shared(self) -> Iterable[object]:
-        """Return what the plugin holds that is no part of its state, beside the world's parts.
+        """Return what it holds that is no part of its state, beside the world's parts.
 
-        Such are outputs, since their readers come from outside, and what never changes. All else
-        that its attributes lead to is copied when the state of the world is saved.
+        Such are its description, outputs, since their readers come from outside, and what never
+        changes. All else that its attributes lead to is copied when the state of the world is
+        saved.
         """
-        return (self.spec,)
+        return ()
 
     def unload(self) -> None:
-        """Let go of what the plugin holds; the model is about to be deleted."""
+        """Let go of what it holds; the model is about to be deleted."""
+
+
+class Plugin(ModelPart):
+    """What a <plugin> loads."""
+
+    spec: PluginSpec
+
+    def shared(self) -> Iterable[object]:
+        """Return the description."""
+        return (self.spec,)
+
+
+class SensorLife(ModelPart):
+    """What a <sensor> is: it measures, where it is fixed to a link."""
+
+    spec: SensorSpec
+    name: str
+    scoped_name: str  # with those of its model and link
+    measures: bool  # False: it is of a type that is not simulated

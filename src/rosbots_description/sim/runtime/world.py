@@ -16,15 +16,24 @@ from ..core import (
     SimClock,
     SimError,
     Twist,
+    shortened,
 )
-from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec
+from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec, SensorSpec
 from ..physics import CompiledModel, EngineFactory, make_engine
-from ..plugin_registry import PAGE, library_name, library_remark, missing_libraries, plugin_class
+from ..plugin_registry import (
+    PAGE,
+    library_name,
+    library_remark,
+    missing_libraries,
+    plugin_class,
+    sensor_class,
+    sensor_plugin_class,
+)
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
 from .model import CollisionFrame, Joint, Link, Model
 from .nested_model import InnerModel, inner_models
-from .plugin_life import Plugin
+from .plugin_life import ModelPart, Plugin
 from .scheduler import Schedule
 from .world_state import SavedState
 
@@ -73,6 +82,7 @@ class World:
         self.listeners: list[Listener] = []
         self.paused = False
         self._holders: set[object] = set()  # those who hold physics
+        self.seed = 0  # of the noise of sensors that come; set it before they do
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
         self.engine = make_engine(self.physics)
@@ -161,6 +171,9 @@ class World:
         try:
             for plugin in compiled.spec.plugins:
                 self._load_plugin(spawned, plugin)
+            for link in spawned.links.values():
+                for sensor in link.spec.sensors:
+                    self._load_sensor(link, sensor)
         except BaseException:
             self._remove(spawned)  # nobody has been told of it
             raise
@@ -193,9 +206,9 @@ class World:
 
     def _remove(self, model: Model) -> None:
         self.external_forces.cancel(lambda target: target.model is model)
-        for plugin in reversed(model.plugins):
-            self.schedule.remove(plugin)
-            plugin.unload()
+        for part in reversed(model.parts):
+            self.schedule.remove(part)
+            part.unload()
         model.leave()
         del self.models[model.name]
 
@@ -205,8 +218,8 @@ class World:
             model.set_pose(model.initial_pose)
             if not model.static:
                 model.set_twist(Twist())
-        for plugin in self._plugins():
-            plugin.reset()
+        for part in self._parts():
+            part.reset()
         self._tell_reset()
 
     def reset_simulation(self) -> None:
@@ -220,8 +233,8 @@ class World:
         self.engine.reset()
         for model in self.models.values():
             model.enter()
-        for plugin in self._plugins():
-            plugin.restart()
+        for part in self._parts():
+            part.restart()
         self._tell_reset()
 
     def save_state(self) -> SavedState:
@@ -230,7 +243,7 @@ class World:
         From here on the world moves bit for bit as it does after each `restore` of this state. To
         save lets the engine find all contacts anew, which moves things by less than 1 um/step.
         """
-        return SavedState(self, (self.external_forces, self._watchdog, *self._plugins()))
+        return SavedState(self, (self.external_forces, self._watchdog, *self._parts()))
 
     def restore(self, state: SavedState) -> None:
         """Go back to a state that was saved, time and what plugins remember included.
@@ -257,8 +270,8 @@ class World:
             if model.name in motions:
                 self.engine.set_motion(model.body, motions[model.name])
         for model in diverged:
-            for plugin in model.plugins:
-                plugin.restart()
+            for part in model.parts:
+                part.restart()
             logger.error(
                 "model '%s' diverged: its pose or velocity was no longer a number of this world. "
                 'It is back where it was spawned; a command, force or property was too large',
@@ -309,25 +322,56 @@ class World:
     def _load_plugin(self, model: Model, spec: PluginSpec) -> None:
         where = f"model '{model.name}', plugin '{spec.name}'"
         cls = plugin_class(spec.filename)
-        if cls is None:
+        plugin = None if cls is None else cls(self, model, spec)
+        self._start_plugin(model, spec, plugin, where, f"plugin '{spec.filename}'")
+
+    def _load_sensor(self, link: Link, spec: SensorSpec) -> None:
+        """Give a link a sensor; what is not simulated of it is named."""
+        model, kind = link.model, spec.type or 'sensor'
+        called = shortened(f"{kind} '{spec.name}'", 100)
+        where = f"model '{model.name}', {called} of link '{link.name}'"
+        cls = sensor_class(spec.type) or sensor_class('')
+        if cls is None:  # nobody has loaded any sensors
+            return
+        sensor = cls(self, link, spec)
+        try:
+            sensor.start()
+        except SimError as error:
+            logger.error('%s: %s; the model lives on without it', where, error)
+            model.left_out.append(called)
+            return
+        model.sensors.append(sensor)
+        self.schedule.add(sensor)
+        for inner in spec.plugins:
+            plugin_cls = sensor_plugin_class(inner.filename)
+            plugin = None if plugin_cls is None else plugin_cls(sensor, inner)
+            self._start_plugin(model, inner, plugin, where, f'{called} ({inner.filename})')
+        if not (spec.plugins or sensor.measures):
+            logger.warning('%s: sensors of this type are not simulated yet; see %s', where, PAGE)
+            model.left_out.append(called)
+
+    def _start_plugin(
+        self, model: Model, spec: PluginSpec, plugin: Plugin | None, where: str, called: str
+    ) -> None:
+        """Load a plugin; None stands for one whose library is not here."""
+        if plugin is None:
             known = library_name(spec.filename) in missing_libraries()
             logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
                        where, library_remark(spec.filename), PAGE)
-            model.left_out.append(f"plugin '{spec.filename}'")
+            model.left_out.append(called)
             return
-        plugin = cls(self, model, spec)
         try:
             plugin.start()
         except SimError as error:
             logger.error('%s: %s; the model lives on without it', where, error)
-            model.left_out.append(f"plugin '{spec.filename}'")
+            model.left_out.append(called)
             return
         model.plugins.append(plugin)
         self.schedule.add(plugin)
 
-    def _plugins(self) -> Iterator[Plugin]:
+    def _parts(self) -> Iterator[ModelPart]:
         for model in self.models.values():
-            yield from model.plugins
+            yield from model.parts
 
     def _tell_reset(self) -> None:
         for listener in self.listeners:

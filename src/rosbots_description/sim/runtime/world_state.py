@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core import SimError
 from .outputs import Output
-from .plugin_life import Plugin
+from .plugin_life import ModelPart
 from .scheduler import Hook
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class SavedState:
-    """What a world was at one moment: motion, time, forces, and what its plugins remember."""
+    """What a world was at one moment: motion, time, forces, what plugins and sensors remember."""
 
     def __init__(self, world: 'World', hooks: Sequence[Hook]) -> None:
         """Take the state of a world between two runs, and that of these hooks of its own."""
@@ -50,16 +50,16 @@ class SavedState:
             vars(hook).update(self._copied(state))
         for output, reading in self._newest:
             output.kept = reading
-        for plugin in self._plugins():
-            plugin.count_readers()  # they are those of now
+        for part in self._parts():
+            part.count_readers()  # they are those of now
 
-    def _plugins(self) -> Iterator[Plugin]:
+    def _parts(self) -> Iterator[ModelPart]:
         for model in self._models:
-            yield from model.plugins
+            yield from model.parts
 
     def _outputs(self) -> Iterator[Output[Any]]:
-        for plugin in self._plugins():
-            yield from (one for one in plugin.shared() if isinstance(one, Output))
+        for part in self._parts():
+            yield from (one for one in part.shared() if isinstance(one, Output))
 
     def _copied(self, state: dict[str, Any]) -> dict[str, Any]:
         """Return a copy of all that a hook alone holds; what belongs to others stays the same."""
@@ -72,8 +72,8 @@ class SavedState:
         for model in self._models:
             yield from (model, model.spec, model.body, *model.links.values())
             yield from model.joints.values()
-        for plugin in self._plugins():
-            yield from (plugin, *plugin.shared())
+        for part in self._parts():
+            yield from (part, *part.shared())
 
 
 def _listed(models: Sequence[Any]) -> str:

@@ -4,17 +4,19 @@ import io
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from genpy import Time
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry as OdometryMessage
 from rospy.msg import serialize_message
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, LaserScan
 from tf2_msgs.msg import TFMessage
 
 from rosbots_description.ros_api.messages.conversions import fill_pose, fill_twist
 from rosbots_description.ros_api.messages.layouts import (
     JointStatesLayout,
+    LaserScanLayout,
     OdometryLayout,
     TransformLayout,
 )
@@ -55,6 +57,17 @@ def test_a_transform(parent, child):
     translation.x, translation.y, translation.z = POSE.position
     rotation.x, rotation.y, rotation.z, rotation.w = POSE.orientation
     assert TransformLayout(parent, child).pack(NOW_NS, POSE) == on_the_wire(TFMessage([edge]))
+
+
+@pytest.mark.parametrize('ranges', [[1.5, math.inf, 0.1], []])
+def test_a_laser_scan(ranges):
+    message = LaserScan(angle_min=-0.5, angle_max=0.5, angle_increment=0.25, range_min=0.125,
+                        range_max=30.0, ranges=ranges, intensities=[0.0, 1500.0][:len(ranges)])
+    message.header.frame_id, message.header.stamp = 'läser', STAMP
+    packed = LaserScanLayout('läser').pack(
+        SEQ, NOW_NS, (-0.5, 0.5, 0.25), (0.125, 30.0), np.array(ranges),
+        np.array(message.intensities))
+    assert packed == on_the_wire(message)
 
 
 @pytest.mark.parametrize('names', [('right', 'left'), ('rädchen',), ()])

@@ -20,7 +20,11 @@ from rosbots_description.ros_api.services.spawning import DEEP, warn_overlap
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
-from rosbots_description.sim.plugin_registry.registry import known_filenames, plugin_class
+from rosbots_description.sim.plugin_registry.registry import (
+    known_filenames,
+    plugin_class,
+    sensor_plugin_class,
+)
 
 SERVER = SimpleNamespace(loop=SimpleNamespace(
     **dict.fromkeys(('call', 'beside'), lambda command: command())))
@@ -86,7 +90,7 @@ def test_a_service_is_answered_by_one_function():
 
 @pytest.mark.parametrize('filename', known_filenames())
 def test_every_plugin_has_its_topics(filename):
-    assert topics_of(plugin_class(filename))
+    assert topics_of(plugin_class(filename) or sensor_plugin_class(filename))
 
 
 def test_relative_velocity_is_turned_but_has_no_share_of_the_frames_rotation():

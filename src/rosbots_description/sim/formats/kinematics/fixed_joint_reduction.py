@@ -12,9 +12,18 @@ from typing import TypeVar
 from lxml import etree
 
 from ...core import IDENTITY, ModelError, Pose, compose, fault
-from ...description import WORLD, Collision, Element, Inertial, JointSpec, LinkSpec, Visual
+from ...description import (
+    WORLD,
+    Collision,
+    Element,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    SensorSpec,
+    Visual,
+)
 from ...description.inertia import merge
-from .frame_references import move_part
+from .frame_references import move_part, move_sensor
 from .kinematic_tree import FREE, KinematicTree, LinkFlags, TreeJoint
 
 _LUMPED = '_fixed_joint_lump__'
@@ -54,7 +63,7 @@ def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
         if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
     )
     return Reduction(
-        links=tuple(_merge_link(tree, name, members[name], homes, poses[name]) for name in kept),
+        links=tuple(_merge_link(tree, name, members[name], homes, poses) for name in kept),
         joints=joints,
         parents={
             name: homes[name] for parent in kept for name in members[parent] if name != parent
@@ -132,29 +141,33 @@ def _merge_link(
     name: str,
     members: Sequence[str],
     homes: Mapping[str, tuple[str, Pose]],
-    pose: Pose,
+    poses: Mapping[str, Pose],
 ) -> LinkSpec:
     collisions: list[Collision] = []
     visuals: list[Visual] = []
-    sensors: list[Element] = []
+    sensors: list[SensorSpec] = []
+    parts: list[Element] = []
     bodies: list[tuple[Pose, Inertial]] = []
     flags = LinkFlags()
     for member in members:
         link, frame = tree.links[member], homes[member][1]
         collisions += [_move(shape, frame, member) for shape in link.spec.collisions]
         visuals += [_move(shape, frame, member) for shape in link.spec.visuals]
-        sensors += [move_part(part, frame) for part in link.spec.sensors]
+        sensors += [move_sensor(sensor, frame, poses[name], poses)
+                    for sensor in link.spec.sensors]
+        parts += [move_part(part, frame) for part in link.spec.parts]
         inertial = link.spec.inertial
         if inertial is not None and inertial.mass > 0.0:
             bodies.append((frame, inertial))
         flags.update(link.flags)
     return replace(
         tree.links[name].spec,
-        pose=pose,
+        pose=poses[name],
         inertial=merge(bodies),
         collisions=_named(collisions, name, '_collision'),
         visuals=_named(visuals, name, '_visual'),
         sensors=tuple(sensors),
+        parts=tuple(parts),
         **flags,
     )
 

@@ -1,14 +1,15 @@
 """Follow reduced links: what stood in the child's frame now stands in its parent's."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
-from ...core import IDENTITY, Pose, as_vector, compose, from_rpy, to_rpy
-from ...description import Element
+from ...core import IDENTITY, Pose, as_vector, compose, from_rpy, relative, to_rpy
+from ...description import Element, SensorSpec
 from ..xml import parse_numbers
 
 
 def move_part(element: Element, frame: Pose) -> Element:
-    """Return a sensor, light or projector of a reduced link with its <pose> in the parent's frame.
+    """Return a light or projector of a reduced link with its <pose> in the parent's frame.
 
     A pose with `relative_to` keeps its meaning and so its text.
 
@@ -25,6 +26,23 @@ def move_part(element: Element, frame: Pose) -> Element:
     moved = replace(old or Element('pose', line=element.line), text=text)
     others = tuple(child for child in element.children if child is not old)
     return replace(element, children=(moved, *others))
+
+
+def move_sensor(
+    sensor: SensorSpec, frame: Pose, parent: Pose, poses: Mapping[str, Pose]
+) -> SensorSpec:
+    """Return a sensor of a reduced link, posed in the parent's frame.
+
+    Args:
+        frame: where the reduced link stands in its parent.
+        parent: where that stands in the model.
+        poses: where links stand in the model, for a <pose> with `relative_to`; what is none of them
+            is the model's own frame.
+    """
+    pose = sensor.element.child('pose')
+    if pose is not None and 'relative_to' in pose.attributes:
+        frame = relative(poses.get(pose.attributes['relative_to'], IDENTITY), parent)
+    return replace(sensor, pose=compose(frame, sensor.pose))
 
 
 def _text(values: tuple[float, ...]) -> str:

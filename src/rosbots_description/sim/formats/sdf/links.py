@@ -2,14 +2,13 @@
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TypeVar
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, fault, relative, to_rpy
-from ...description import WORLD, Collision, Element, Inertial, LinkSpec, Visual
-from ..xml import require_mass, required_name, to_element
+from ...core import IDENTITY, Pose, fault, relative
+from ...description import WORLD, Collision, Inertial, LinkSpec, SensorSpec, Visual
+from ..xml import read_sensor, require_mass, required_name, to_element
 from .document import SdfDocument
 from .frames import Frames
 from .shapes import read_collision, read_visual
@@ -17,7 +16,7 @@ from .values import damping_of, number_of, pose_in, truth_of
 
 _READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
          'velocity_decay', 'sensor', 'light', 'projector')
-_PARTS = ('sensor', 'light', 'projector')
+_PARTS = ('light', 'projector')
 _MOMENTS, _PRODUCTS = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
 
 # What a link has about which nothing is said.
@@ -59,19 +58,17 @@ def read_link(
         linear_damping=damping_of(element, 'velocity_decay/linear'),
         angular_damping=damping_of(element, 'velocity_decay/angular'),
         sensors=_sensors(document, element, frames, pose),
+        parts=tuple(to_element(child) for child in element if child.tag in _PARTS),
     )
 
 
 def _sensors(
     document: SdfDocument, link: etree._Element, frames: Frames, link_pose: Pose
-) -> tuple[Element, ...]:
-    parts = []
-    for element in link:
-        if element.tag in _PARTS:
-            parts.append(_part(element, frames, link_pose))
-        if element.tag == 'sensor':
-            document.notes.left_out.sensor(parts[-1], element, link.get('name', ''))
-    return tuple(parts)
+) -> tuple[SensorSpec, ...]:
+    return tuple(
+        read_sensor(child, document.notes.say, _pose_in_link(child, frames, link_pose))
+        for child in link.iterfind('sensor')
+    )
 
 
 def _shapes(
@@ -102,18 +99,6 @@ def _pose_in_link(element: etree._Element, frames: Frames, link_pose: Pose) -> P
     if pose is not None and (pose.get('relative_to') or pose.get('frame')):
         return relative(frames.place(element), link_pose)
     return pose_in(pose)
-
-
-def _part(element: etree._Element, frames: Frames, link_pose: Pose) -> Element:
-    """Return a sensor, light or projector as plain values, its <pose> given in the link."""
-    part = to_element(element)
-    old = part.child('pose')
-    if old is None:
-        return part
-    pose = _pose_in_link(element, frames, link_pose)
-    numbers = (*pose.position, *to_rpy(pose.orientation))
-    new = Element('pose', ' '.join(f'{0.0 + x:.12g}' for x in numbers), line=old.line)
-    return replace(part, children=tuple(new if c is old else c for c in part.children))
 
 
 def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Inertial | None:

@@ -5,13 +5,22 @@ joints stay joints: only those of URDF are reduced.
 """
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
 from ...core import AbsentError, Pose, compose, fault, location, shortened
-from ...description import WORLD, Element, JointSpec, LinkSpec, ModelSpec, Plane, PluginSpec
+from ...description import (
+    WORLD,
+    Element,
+    JointSpec,
+    LinkSpec,
+    ModelSpec,
+    Plane,
+    PluginSpec,
+    SensorSpec,
+)
 from ...description.inertia import impossible, possible, turnable
 from ..xml import required_name, to_element
 from .document import SdfDocument
@@ -198,7 +207,7 @@ def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
             name=prefix + link.name,
             pose=compose(pose, link.pose),
             kinematic=link.kinematic or bolted,
-            sensors=tuple(_scoped(sensor, names, prefix) for sensor in link.sensors),
+            sensors=tuple(_scoped_sensor(sensor, names, prefix) for sensor in link.sensors),
         )
         for link in inner.links
     ]
@@ -214,18 +223,29 @@ def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
         )
         for joint, element in inner.joints
     ]
-    parts.plugins += [
-        replace(plugin, element=_scoped(plugin.element, names, prefix))
-        for plugin in inner.plugins
-    ]
+    parts.plugins += _scoped_plugins(inner.plugins, names, prefix)
 
 
 def _scoped(element: Element, names: Collection[str], prefix: str) -> Element:
-    """Return a plugin or sensor of an inner model; links and joints it names get their new name."""
+    """Return an element of an inner model; links and joints it names get their new name."""
     return replace(
         element,
         text=prefix + element.text if element.text in names else element.text,
         children=tuple(_scoped(child, names, prefix) for child in element.children),
+    )
+
+
+def _scoped_plugins(
+    plugins: Iterable[PluginSpec], names: Collection[str], prefix: str
+) -> list[PluginSpec]:
+    return [replace(plugin, element=_scoped(plugin.element, names, prefix)) for plugin in plugins]
+
+
+def _scoped_sensor(sensor: SensorSpec, names: Collection[str], prefix: str) -> SensorSpec:
+    return replace(
+        sensor,
+        element=_scoped(sensor.element, names, prefix),
+        plugins=tuple(_scoped_plugins(sensor.plugins, names, prefix)),
     )
 
 

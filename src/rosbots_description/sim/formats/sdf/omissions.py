@@ -24,7 +24,7 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
 
 # Read and kept for whoever asks, but nothing here acts on it: parent -> children.
 _KEPT = {
-    'ode': ('max_vel', 'min_depth'), 'collision': ('max_contacts', 'laser_retro'),
+    'ode': ('max_vel', 'min_depth'), 'collision': ('max_contacts',),
     'limit': ('velocity',), 'scene': ('ambient', 'background', 'shadows'),
 }
 # The same, but the model is not what its author expects.
@@ -86,7 +86,7 @@ class Notes:
         """Say everything; what changes nothing that is simulated only at level debug."""
         for sentence in self.left_out.errors():
             logger.error('%s', self._with_source(sentence))
-        for sentence in (*self._sentences, *self.left_out.remarks()):
+        for sentence in (*self._sentences, *self.left_out.warnings):
             logger.warning('%s', self._with_source(sentence))
         if self._unread:
             logger.warning('%s: not simulated: %s', self._source, _list(self._unread))

@@ -25,7 +25,16 @@ from ...core import (
     shortened,
     suggestion,
 )
-from ...description import FIXED, REVOLUTE, Element, LinkSpec, Material, PluginSpec, gazebo_material
+from ...description import (
+    FIXED,
+    REVOLUTE,
+    Element,
+    LinkSpec,
+    Material,
+    PluginSpec,
+    SensorSpec,
+    gazebo_material,
+)
 from ...plugin_registry import library_remark
 from ..kinematics import LinkFlags, TreeLink
 from ..xml import (
@@ -33,6 +42,7 @@ from ..xml import (
     LeftOut,
     is_endless,
     parse_numbers,
+    read_sensor,
     require_damping,
     scalar,
     scalar_number,
@@ -57,11 +67,10 @@ _SURFACE_PATHS: dict[str, SurfaceNumber] = {
 _NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor', 'springStiffness',
                 'springReference'}
 _LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
-_PARTS = ('sensor', 'light', 'projector')
+_PARTS = ('light', 'projector')
 # Read and kept for whoever asks, but nothing here acts on it.
-_KEPT = {'maxVel', 'minDepth', 'maxContacts', 'laserRetro'}
-_KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'laser_retro',
-               'max_contacts'}
+_KEPT = {'maxVel', 'minDepth', 'maxContacts'}
+_KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'max_contacts'}
 # Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
 _SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
                 'fudgeFactor', 'canonicalBody'}
@@ -98,7 +107,8 @@ class LinkTags:
     surface: SurfaceTags = field(default_factory=SurfaceTags)
     flags: LinkFlags = field(default_factory=LinkFlags)
     material: Material | None = None
-    sensors: list[Element] = field(default_factory=list)
+    sensors: list[SensorSpec] = field(default_factory=list)
+    parts: list[Element] = field(default_factory=list)  # lights and projectors
 
 
 @dataclass
@@ -184,7 +194,8 @@ def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
     visuals = tuple(replace(shape, material=tags.material) for shape in spec.visuals) \
         if tags.material else spec.visuals
     spec = replace(
-        spec, collisions=collisions, visuals=visuals, sensors=tuple(tags.sensors), **tags.flags
+        spec, collisions=collisions, visuals=visuals, sensors=tuple(tags.sensors),
+        parts=tuple(tags.parts), **tags.flags
     )
     return replace(link, spec=spec, flags=tags.flags)
 
@@ -226,26 +237,30 @@ def _read_link_block(
             if tag == 'collision':
                 kept = [child.find(path) for path in sorted(_KEPT_PATHS)]
                 tags.idle += [_mention(part) for part in kept if part is not None]
-        elif tag in _PARTS:
-            link.sensors.append(to_element(child))
-            _mention_part(child, name, tags, unread)
         elif tag == 'material':
             _read_script(child, link, tags)
         elif tag == 'visual':
             _read_visual(child, link, tags)
         elif tag not in _JOINT_TAGS:
-            _mention_part(child, name, tags, unread)
+            _read_part(child, link, tags, unread)
 
 
-def _mention_part(
-    element: etree._Element, link: str, tags: GazeboTags, unread: list[str]
+def _read_part(
+    element: etree._Element, link: LinkTags, tags: GazeboTags, unread: list[str]
 ) -> None:
-    if element.tag == 'sensor':
-        tags.left_out.sensor(to_element(element), element, link)
-    elif element.tag == 'plugin':
-        _mention_plugin(element, tags)
-    else:
-        unread.append(_mention(element))
+    match element.tag:
+        case 'sensor':
+            link.sensors.append(read_sensor(element, partial(_say, tags)))
+        case 'plugin':
+            _mention_plugin(element, tags)
+        case tag:
+            if tag in _PARTS:
+                link.parts.append(to_element(element))
+            unread.append(_mention(element))
+
+
+def _say(tags: GazeboTags, sentence: str) -> None:
+    note(tags.notes, lambda: sentence)
 
 
 def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:

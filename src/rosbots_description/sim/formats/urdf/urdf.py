@@ -92,7 +92,7 @@ def load_urdf(
     pose = _robot_origin(robot)
     for sentence in tags.left_out.errors():
         logger.error("model '%s' (%s): %s", name, source, sentence)
-    for sentence in [*notes, *tags.left_out.remarks(), *_reduction_notes(reduction)]:
+    for sentence in [*notes, *tags.left_out.warnings, *_reduction_notes(reduction)]:
         logger.warning("model '%s' (%s): %s", name, source, sentence.removeprefix(f'{source}, '))
     if tags.idle:
         idle = ', '.join(dict.fromkeys(tags.idle))

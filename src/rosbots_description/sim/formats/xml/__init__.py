@@ -3,6 +3,7 @@
 from .foreign_markup import foreign_tags, remove_xacro
 from .omissions import LeftOut
 from .robot_namespace import inject_namespace
+from .sensors import read_sensor
 from .values import (
     ENDLESS_FRICTION,
     XACRO_CURE,
@@ -31,7 +32,7 @@ from .values import (
 __all__ = [
     'ENDLESS_FRICTION', 'XACRO_CURE', 'LeftOut', 'check_name', 'foreign_tags', 'inject_namespace',
     'is_endless', 'limit_number', 'number', 'numbers', 'origin', 'parse_numbers', 'positive',
-    'remove_xacro', 'require_damping', 'require_mass', 'require_near', 'require_size',
-    'required_name', 'scalar', 'scalar_number', 'scalar_numbers', 'tag_of', 'to_element', 'truth',
-    'vector',
+    'read_sensor', 'remove_xacro', 'require_damping', 'require_mass', 'require_near',
+    'require_size', 'required_name', 'scalar', 'scalar_number', 'scalar_numbers', 'tag_of',
+    'to_element', 'truth', 'vector',
 ]

@@ -1,13 +1,10 @@
-"""What a model is to have and stands without: shapes that cannot be made, sensors, plugins."""
+"""What a model is to have and stands without: shapes that cannot be made, parts that nobody has."""
 
-from collections.abc import Iterable
 from itertools import islice
 
 from lxml import etree
 
 from ...core import MAX_NOTES, ModelError, ShapeError, line_of, location, owner, shortened
-from ...description import Element
-from ...plugin_registry import PAGE, library_remark
 
 
 class LeftOut:
@@ -23,7 +20,6 @@ class LeftOut:
         self.warnings: list[str] = []
         self._meshes: dict[str, list[str]] = {}  # what is wrong with a file -> who uses it
         self._faults: list[str] = []
-        self._sensors: list[str] = []
 
     def shape(self, element: etree._Element, error: ShapeError) -> None:
         """Take note of a <collision> or <visual> without a shape."""
@@ -44,20 +40,6 @@ class LeftOut:
             self._faults.append(f'{error}; the model stands without {called}')
         self.parts.append(called)
 
-    def sensor(self, part: Element, element: etree._Element, link: str) -> None:
-        """Take note of a <sensor> of a link, with the plugins in it."""
-        libraries = [
-            child.attributes.get('filename', '').strip() for child in part.children
-            if child.tag == 'plugin'
-        ]
-        kind, name = part.attributes.get('type', part.tag), part.attributes.get('name', '')
-        called = shortened(f"{kind} '{name}'", 100)
-        within = f' ({", ".join(shortened(library, 60) for library in libraries)})'
-        self.parts.append(called + (within if libraries else ''))
-        remarks = ''.join(f', {library_remark(library)}' for library in libraries)
-        at = f"link '{shortened(link, 60)}' ({line_of(element)})"
-        self._sensors.append(f'{called} of {at}{remarks}')
-
     def errors(self) -> list[str]:
         """Return the sentences about what is not there; one for each mesh, with all who use it."""
         return [
@@ -66,16 +48,7 @@ class LeftOut:
               for reason, users in islice(self._meshes.items(), MAX_NOTES)),
         ]
 
-    def remarks(self) -> list[str]:
-        """Return the sentences to warn with."""
-        if not self._sensors:
-            return self.warnings
-        sensors = _listed(self._sensors, '; ')
-        return [*self.warnings,
-                f'left out, as no <sensor> is simulated yet: {sensors}; see {PAGE}']
 
-
-def _listed(items: Iterable[str], separator: str = ', ', most: int = 12) -> str:
-    items = list(items)
+def _listed(items: list[str], most: int = 12) -> str:
     more = f' and {len(items) - most} more' if len(items) > most else ''
-    return separator.join(items[:most]) + more
+    return ', '.join(items[:most]) + more

@@ -47,7 +47,10 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
       <surface><friction><ode><mu>1</mu><mu2>1</mu2><fdir1>1 0 0</fdir1><slip1>0</slip1>
       <slip2>0</slip2></ode></friction>
       <bounce><restitution_coefficient>0</restitution_coefficient><threshold>1</threshold></bounce>
-      <contact><ode><kp>1</kp><kd>1</kd></ode></contact></surface></collision>
+      <contact><ode><kp>1</kp><kd>1</kd></ode></contact></surface>
+      <laser_retro>1</laser_retro></collision><sensor name="s" type="ray">
+      <pose>0 0 0 0 0 0</pose><update_rate>1</update_rate><always_on>1</always_on>
+      <visualize>1</visualize><topic>t</topic><plugin name="p" filename="lib.so"/></sensor>
     <visual name="v"><pose>0 0 0 0 0 0</pose><transparency>0</transparency><visible>1</visible>
       <geometry><sphere><radius>1</radius></sphere></geometry><material><script>
       <name>Gazebo/Red</name></script><diffuse>1 1 1</diffuse><ambient>1 1 1</ambient></material>

@@ -65,9 +65,8 @@ def test_a_sensor_posed_in_another_frame_ends_up_in_its_link():
     sensor = load('''<link name="a"><pose>1 0 0 0 0 0</pose><sensor name="s" type="ray">
       <pose relative_to="__model__">1 0 2 0 0 0</pose><always_on>1</always_on></sensor></link>
       ''').links[0].sensors[0]
-    assert sensor.child('pose').text == '0 0 2 0 0 0'
-    assert sensor.child('pose').attributes == {}
-    assert sensor.child('always_on').text == '1'
+    assert sensor.pose == Pose((0.0, 0.0, 2.0))
+    assert sensor.always_on
 
 
 def test_a_joint_may_carry_a_pose():
@@ -123,7 +122,7 @@ def test_plugins_and_sensors_of_inner_models_name_links_and_joints_as_they_are_c
     spec = load(NESTED)
     plugin = spec.plugins[0].element
     assert (plugin.child('jointName').text, plugin.child('topic').text) == ('arm::elbow', 'other')
-    assert spec.link('arm::upper').sensors[0].child('frame').text == 'arm::upper'
+    assert spec.link('arm::upper').sensors[0].element.child('frame').text == 'arm::upper'
 
 
 def test_a_model_that_stands_inside_one_that_moves_is_moved_by_nothing():

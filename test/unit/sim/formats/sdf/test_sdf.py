@@ -309,7 +309,7 @@ def test_sensors_and_plugins_are_kept_with_their_lines():
     spec = load(link('<sensor name="s" type="ray"><update_rate>5</update_rate></sensor>')
                 + '\n<plugin name="p" filename="lib.so"><a>1</a></plugin>')
     sensor, plugin = spec.links[0].sensors[0], spec.plugins[0]
-    assert (sensor.attributes['type'], sensor.child('update_rate').text) == ('ray', '5')
+    assert (sensor.type, sensor.update_rate) == ('ray', 5.0)
     assert (plugin.name, plugin.filename, plugin.element.child('a').text) == ('p', 'lib.so', '1')
     assert plugin.element.line == 2
 

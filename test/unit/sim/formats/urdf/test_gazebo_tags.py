@@ -143,9 +143,9 @@ def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere()
     block = ('<gazebo reference="c"><sensor name="s"><plugin name="p" filename="l"/>'
              '</sensor></gazebo>')
     (sensor,) = load(block, robot_namespace='/bot').link('c').sensors
-    assert sensor.child('plugin').child('robotNamespace').text == '/bot'
+    assert sensor.plugins[0].element.child('robotNamespace').text == '/bot'
     (sensor,) = load(block).link('c').sensors
-    assert sensor.child('plugin').children == ()
+    assert sensor.plugins[0].element.children == ()
 
 
 def test_a_namespace_that_xml_cannot_hold_is_an_error():
@@ -156,19 +156,23 @@ def test_a_namespace_that_xml_cannot_hold_is_an_error():
 def test_sensors_lights_and_projectors_are_kept_in_their_link():
     block = ('<gazebo reference="c"><sensor name="s"/><light name="l"/>'
              '<projector name="p"/></gazebo>')
-    assert [part.tag for part in load(block).link('c').sensors] == ['sensor', 'light', 'projector']
+    link = load(block).link('c')
+    assert [sensor.name for sensor in link.sensors] == ['s']
+    assert [part.tag for part in link.parts] == ['light', 'projector']
 
 
 @pytest.mark.parametrize(('pose', 'expected'), [
     ('', (1.0, 0.0, 0.0, 0.0, 0.0, 1.5707963268)),
     ('<pose>1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
-    ('<pose relative_to="b">1 0 0 0 0 0</pose>', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    ('<pose relative_to="b">1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
+    ('<pose relative_to="a">1 0 0 0 0 0</pose>', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
 ])
 def test_the_sensor_of_a_lumped_link_is_posed_in_the_heir(pose, expected):
     block = f'<gazebo reference="b"><sensor name="s">{pose}<x/></sensor></gazebo>'
     (sensor,) = load(block).link('a').sensors
-    assert words(sensor.child('pose').text) == pytest.approx(expected)
-    assert sensor.child('x') is not None
+    pose = sensor.pose
+    assert (*pose.position, *to_rpy(pose.orientation)) == pytest.approx(expected)
+    assert sensor.element.child('x') is not None
 
 
 def test_names_in_plugins_stay_and_reduced_links_are_known_with_their_poses():

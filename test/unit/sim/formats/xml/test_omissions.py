@@ -8,7 +8,7 @@ from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.description.model_spec import Box
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.plugin_registry.gazebo_libraries import PAGE, library_remark
+from rosbots_description.sim.plugin_registry.gazebo_libraries import library_remark
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 MASS = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
@@ -112,39 +112,6 @@ def test_a_shape_of_an_sdf_without_size_is_left_out(kind, geometry, caplog):
     ((level, sentence),) = said(caplog)
     assert level == 'WARNING'
     assert sentence.startswith("b.sdf, line 2: link 'a': ")
-
-
-SENSORS = """<sensor name="cam1" type="camera">
-  <plugin name="p" filename="libgazebo_ros_camera.so"/></sensor>
-<sensor name="imu" type="imu"><plugin name="q" filename="libgazebo_ros_imuu.so"/></sensor>
-<sensor name="bare" type="ray"/>"""
-NAMED = (
-    "camera 'cam1' of link 'a' (line {}), libgazebo_ros_camera.so is known but not supported yet; "
-    "imu 'imu' of link 'a' (line {}), unknown library 'libgazebo_ros_imuu.so'; "
-    "did you mean 'libgazebo_ros_imu.so'?; ray 'bare' of link 'a' (line {}); see " + PAGE)
-PARTS = ("camera 'cam1' (libgazebo_ros_camera.so)", "imu 'imu' (libgazebo_ros_imuu.so)",
-         "ray 'bare'")
-
-
-def test_sensors_of_a_urdf_are_named_with_type_link_and_library(caplog):
-    spec = urdf(after=f'<gazebo reference="a">\n{SENSORS}</gazebo>')
-    assert spec.left_out == PARTS
-    assert said(caplog) == [('WARNING', "model 'bot' (bot.urdf): left out, as no <sensor> is "
-                             f'simulated yet: {NAMED.format(4, 6, 7)}')]
-
-
-def test_sensors_of_an_sdf_are_named_with_type_link_and_library(caplog):
-    spec = sdf(f'\n{SENSORS}')
-    assert spec.left_out == PARTS
-    assert said(caplog) == [('WARNING', 'b.sdf: left out, as no <sensor> is simulated yet: '
-                             + NAMED.format(3, 5, 6))]
-
-
-def test_each_model_of_a_file_tells_what_it_stands_without_itself():
-    inner = '<model name="{0}"><link name="l"><sensor name="{0}" type="ray"/></link></model>'
-    text = f'<sdf version="1.6">{inner.format("x")[:-8]}{inner.format("y")}</model></sdf>'
-    spec, _ = load_sdf(text, 'bot', find_model=ModelSearch())
-    assert sorted(spec.left_out) == ["ray 'x'", "ray 'y'"]
 
 
 def test_a_model_stands_without_what_it_includes_and_without_the_joint_to_that(caplog):

@@ -1,0 +1,79 @@
+"""Reads <sensor> elements, which URDF and SDF share."""
+
+import math
+from collections.abc import Callable
+
+from lxml import etree
+
+from ...core import IDENTITY, Pose, from_rpy, location, shortened
+from ...description import PluginSpec, SensorSpec
+from .values import parse_numbers, scalar, to_element, truth
+
+Complain = Callable[[str], object]
+
+
+def read_sensor(
+    element: etree._Element, complain: Complain, pose: Pose | None = None
+) -> SensorSpec:
+    """Return the sensor of a <sensor>; one number that is none costs no sensor.
+
+    Args:
+        complain: takes a sentence for each thing that is done differently than written.
+        pose: in the link's frame, where the caller knows it; else the element's own counts.
+    """
+    plugins = []
+    for child in element.iterfind('plugin'):
+        filename = child.get('filename', '').strip()
+        if filename:
+            plugins.append(PluginSpec(child.get('name', ''), filename, to_element(child)))
+        else:
+            complain(f'{location(child)}: a <plugin> without filename is ignored; '
+                     'filename="libgazebo_ros_….so" picks the code')
+    return SensorSpec(
+        name=element.get('name', ''),
+        type=element.get('type', '').strip(),
+        pose=_own_pose(element, complain) if pose is None else pose,
+        update_rate=_rate(element, complain),
+        always_on=_says_true(element, 'always_on'),
+        visualize=_says_true(element, 'visualize'),
+        topic=_text(element, 'topic'),
+        plugins=tuple(plugins),
+        element=to_element(element),
+    )
+
+
+def _own_pose(element: etree._Element, complain: Complain) -> Pose:
+    child = element.find('pose')
+    if child is None:
+        return IDENTITY
+    numbers = parse_numbers(child.text or '', 6)
+    if numbers is None:
+        complain(f"{location(child)}: <pose> is '{shortened(child.text, 60)}'; it takes six finite "
+                 "numbers. The sensor is at its link's origin")
+        return IDENTITY
+    return Pose(numbers[:3], from_rpy(*numbers[3:]))
+
+
+def _rate(element: etree._Element, complain: Complain) -> float:
+    child = element.find('update_rate')
+    if child is None:
+        return 0.0
+    try:
+        rate = float(scalar(child))
+    except ValueError:
+        rate = math.nan
+    if not math.isfinite(rate):
+        complain(f"{location(child)}: <update_rate> is '{shortened(scalar(child), 60)}'; it takes "
+                 'a finite number [Hz]. The sensor measures in every step')
+        return 0.0
+    return max(0.0, rate)
+
+
+def _says_true(element: etree._Element, tag: str) -> bool:
+    child = element.find(tag)
+    return child is not None and truth(child)
+
+
+def _text(element: etree._Element, tag: str) -> str:
+    child = element.find(tag)
+    return '' if child is None else scalar(child)

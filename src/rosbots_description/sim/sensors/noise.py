@@ -1,0 +1,73 @@
+"""Random numbers that repeat: they depend on seed, name and step alone, not on who reads when."""
+
+import math
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import PluginError
+from ..description import Element
+from .numbers import number
+
+
+class RandomSteps:
+    """The random numbers of one sensor or plugin, for each step anew."""
+
+    def __init__(self, seed: int, name: str) -> None:
+        self._bits = np.random.Philox(key=[seed % (1 << 64), zlib.crc32(name.encode())])
+        self._state = self._bits.state
+        self._generator = np.random.Generator(self._bits)
+
+    def at(self, step: int) -> np.random.Generator:
+        """Return the generator, at the beginning of the numbers of a step."""
+        self._state['state']['counter'][2] = step  # far more numbers lie between than any step uses
+        self._bits.state = self._state
+        return self._generator
+
+
+@dataclass(frozen=True)
+class GaussianNoise:
+    """What a <noise> of type gaussian adds to a number."""
+
+    mean: float = 0.0
+    deviation: float = 0.0
+
+    def __bool__(self) -> bool:
+        return self.mean != 0.0 or self.deviation != 0.0
+
+    def added_to(
+        self, values: NDArray[np.float64], generator: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """Return the values, each with noise of its own."""
+        return values + generator.normal(self.mean, self.deviation, np.shape(values))
+
+
+def read_noise(element: Element | None) -> GaussianNoise:
+    """Return what a <noise> element says; none without one, or with a type that is none.
+
+    Raises:
+        PluginError: a number is not finite, or the deviation is negative.
+    """
+    kind = None if element is None else element.child('type')
+    written = kind.text if kind is not None else \
+        '' if element is None else element.attributes.get('type', '')
+    if element is None or written not in ('gaussian', 'gaussian_quantized'):
+        return GaussianNoise()
+    deviation = number(element, 'stddev', 0.0)
+    if deviation < 0.0:
+        raise PluginError(f'line {element.line}: <stddev> of <noise> is {deviation:g}; it must not '
+                          'be negative')
+    return GaussianNoise(number(element, 'mean', 0.0), deviation)
+
+
+def gaussian(deviation: float, what: str) -> GaussianNoise:
+    """Return the noise that a plugin's tag asks for.
+
+    Raises:
+        PluginError: it is negative or not finite.
+    """
+    if not (math.isfinite(deviation) and deviation >= 0.0):
+        raise PluginError(f'{what} is {deviation:g}; it must be at least 0')
+    return GaussianNoise(0.0, deviation)

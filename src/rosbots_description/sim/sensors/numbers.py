@@ -1,0 +1,46 @@
+"""Numbers in the elements of a <sensor>."""
+
+import math
+
+from ..core import PluginError
+from ..description import Element
+
+
+def child_at(element: Element | None, path: str) -> Element | None:
+    """Return the first element below at a path such as 'scan/horizontal'; None if there is none."""
+    for tag in path.split('/'):
+        element = None if element is None else element.child(tag)
+    return element
+
+
+def number(element: Element | None, path: str, default: float) -> float:
+    """Return the number at a path below an element.
+
+    Raises:
+        PluginError: it is none, or not finite.
+    """
+    child = child_at(element, path)
+    if child is None:
+        return default
+    text = child.attributes.get('value') or child.text
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise PluginError(f"line {child.line}: <{child.tag}> is '{text}'; it takes a finite number")
+    return value
+
+
+def count(element: Element | None, path: str, default: int, most: int) -> int:
+    """Return the whole number at a path below an element.
+
+    Raises:
+        PluginError: it is none, below 1, or above `most`.
+    """
+    value = number(element, path, default)
+    if not 1.0 <= value <= most:
+        child = child_at(element, path)
+        raise PluginError(f'line {child.line}: <{child.tag}> is {value:g}; it takes a number from '
+                          f'1 to {most}')
+    return int(value)

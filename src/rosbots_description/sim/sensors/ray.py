@@ -1,0 +1,122 @@
+"""Ray sensors: how far it is in many directions, by the <ray> element of a `<sensor>`.
+
+Angles, order, limits and interpolation are those of Gazebo: rays begin at the least range, so that
+nothing nearer is seen; what they see are collisions, those of their own robot, too.
+"""
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import PluginError
+from ..description import Element
+from ..plugin_registry import register_sensor
+from .base import Sensor
+from .noise import read_noise
+from .numbers import child_at, count, number
+from .ray_fan import RayFan, Sweep
+from .ray_scene import RayScene
+
+MOST_SAMPLES = 1_000_000  # in all rows; a scan of them takes a second
+
+Floats = NDArray[np.float64]
+
+
+class Scan(NamedTuple):
+    """What a sweep met: rows from the lowest upward, each from angle_min to angle_max.
+
+    Attributes:
+        ranges: (n,) [m] from the sensor; inf where there is nothing up to range_max.
+        intensities: (n,) laser_retro of what was hit, else 0.
+    """
+
+    ranges: Floats
+    intensities: Floats
+    angle_min: float  # [rad] about the sensor's z
+    angle_max: float  # [rad]
+    angle_increment: float  # [rad] between neighbours of a row
+    range_min: float  # [m]
+    range_max: float  # [m]
+
+
+def read_sweep(element: Element | None, samples: int) -> Sweep:
+    """Return what <horizontal> or <vertical> says; without <samples> there are `samples`.
+
+    Raises:
+        PluginError: a number makes no sense.
+    """
+    samples = count(element, 'samples', samples, MOST_SAMPLES)
+    resolution = number(element, 'resolution', 1.0)
+    if not 1.0 <= samples * resolution <= MOST_SAMPLES:
+        raise PluginError(f'line {element.line}: <resolution> is {resolution:g}; with {samples} '
+                          f'<samples> it must give 1 to {MOST_SAMPLES} ranges')
+    return Sweep(samples, int(samples * resolution), number(element, 'min_angle', 0.0),
+                 number(element, 'max_angle', 0.0))
+
+
+@register_sensor('gpu_ray')
+@register_sensor('ray')
+class RaySensor(Sensor):
+    """Casts rays; its readings are of type `Scan`. A gpu_ray is the same here."""
+
+    def load(self) -> None:
+        """Read angles, limits and noise."""
+        ray = self.spec.element.child('ray') or self.spec.element.child('lidar')
+        if ray is None:
+            raise PluginError(f'line {self.spec.element.line}: a <sensor> of type '
+                              f"'{self.spec.type}' without <ray>")
+        self.horizontal = read_sweep(child_at(ray, 'scan/horizontal'), 640)
+        self.vertical = read_sweep(child_at(ray, 'scan/vertical'), 1)
+        self.range_min = number(ray, 'range/min', 0.0)
+        self.range_max = number(ray, 'range/max', 0.0)
+        if not 0.0 <= self.range_min < self.range_max:
+            raise PluginError(f'line {ray.line}: <range> is from {self.range_min:g} to '
+                              f'{self.range_max:g} m; it must begin at 0 or more and end beyond')
+        for total in (self.horizontal.samples * self.vertical.samples,
+                      self.horizontal.count * self.vertical.count):
+            if total > MOST_SAMPLES:
+                raise PluginError(f'line {ray.line}: {total} rays; at most {MOST_SAMPLES} are cast')
+        self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
+        self._scene, self._fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
+        self._blend = self._blending()
+        spans = max(1, self.horizontal.count - 1)
+        self._fixed = (self.horizontal.least, self.horizontal.greatest,
+                       (self.horizontal.greatest - self.horizontal.least) / spans,
+                       self.range_min, self.range_max)
+
+    def shared(self) -> Iterable[object]:
+        """Return what never changes, too."""
+        return (*super().shared(), self._scene, self._fan, self._blend)
+
+    def cast(self) -> tuple[Floats, Floats]:
+        """Return range [m] and intensity of each ray; what meets nothing has the greatest range."""
+        return self._scene.cast(self.pose, self._fan, self.range_min, self.range_max)
+
+    def measure(self) -> Scan:
+        """Return a sweep."""
+        ranges, retro = self.cast()
+        if self._blend is not None:
+            retro = sum(retro[rays] for rays, _ in self._blend) / len(self._blend)
+            ranges = sum(share * ranges[rays] for rays, share in self._blend)
+        missed = ranges >= self.range_max
+        if self.noise:
+            ranges = self.noise.added_to(ranges, self.random.at(self.world.clock.steps))
+            ranges = ranges.clip(self.range_min, self.range_max)
+        ranges[missed] = math.inf
+        return Scan(ranges, retro, *self._fixed)
+
+    def _blending(self) -> list[tuple[NDArray[np.int64], Floats]] | None:
+        """Return which rays make up each reading, with their shares; None if each has its own."""
+        rows, columns = self.vertical, self.horizontal
+        if (rows.samples, columns.samples) == (rows.count, columns.count):
+            return None
+        low, high, up = rows.neighbours()
+        left, right, along = columns.neighbours()
+        return [
+            ((row[:, None] * columns.samples + column).ravel(), np.outer(a, b).ravel())
+            for row, a in ((low, 1.0 - up), (high, up))
+            for column, b in ((left, 1.0 - along), (right, along))
+        ]

@@ -1,0 +1,123 @@
+"""The rays of one sensor: a grid of rows and columns, and which of them come near a ball."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_SLACK = 1e-6  # [rad] for rounding
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Angles of one direction: `samples` rays are cast, from which `count` are interpolated."""
+
+    samples: int
+    count: int
+    least: float  # [rad]
+    greatest: float  # [rad]
+
+    @property
+    def first(self) -> float:
+        """Return the angle of the first ray [rad]; a single one has 0, as in Gazebo."""
+        return self.least if self.samples > 1 else 0.0
+
+    @property
+    def step(self) -> float:
+        """Return the angle from ray to ray [rad]."""
+        return (self.greatest - self.least) / max(1, self.samples - 1)
+
+    @property
+    def angles(self) -> Floats:
+        """Return the angles [rad] of the rays that are cast."""
+        return self.first + np.arange(self.samples) * self.step
+
+    def within(self, low: Floats, high: Floats) -> tuple[Indices, Indices]:
+        """Return the first ray and the end of those at angles from `low` to `high` [rad]."""
+        if self.samples == 1 or self.step == 0.0:
+            met = (low <= self.first) & (high >= self.first)
+            return np.zeros(met.shape, np.int64), met * self.samples
+        ends = (low - self.first) / self.step, (high - self.first) / self.step
+        begin, end = ends if self.step > 0.0 else ends[::-1]
+        begin = np.minimum(np.maximum(np.ceil(begin), 0.0), self.samples)
+        end = np.minimum(np.maximum(np.floor(end) + 1.0, 0.0), self.samples)
+        return begin.astype(np.int64), end.astype(np.int64)
+
+    def neighbours(self) -> tuple[Indices, Indices, Floats]:
+        """Return for each reading the rays below and above it, and its way between them, 0 to 1."""
+        place = np.arange(self.count) * ((self.samples - 1) / max(1, self.count - 1))
+        below = np.floor(place).astype(np.int64)
+        return below, np.minimum(below + 1, self.samples - 1), place - below
+
+
+class Patches(NamedTuple):
+    """Parts of a fan: each is the rows and columns that come near one ball.
+
+    Attributes:
+        balls: (m,) numbers of the balls, rising.
+        rows: (m,) the first row; `rows_end` is the one behind the last.
+        columns: the same of the columns.
+    """
+
+    balls: Indices
+    rows: Indices
+    rows_end: Indices
+    columns: Indices
+    columns_end: Indices
+
+
+class RayFan:
+    """Rays from one point, row by row from the first elevation, each from the first azimuth."""
+
+    def __init__(self, rows: Sweep, columns: Sweep) -> None:
+        self.rows, self.columns = rows, columns
+        self.shape = rows.samples, columns.samples
+        yaw, pitch = columns.angles, rows.angles[:, None]
+        parts = np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
+        self.ways = np.stack(parts).reshape(3, -1)  # (3, n) unit vectors in the sensor's frame
+        ends = sorted((columns.angles[0], columns.angles[-1]))
+        # Azimuths are known up to whole turns; these are the ones that may lie in the fan.
+        turns = range(math.floor(ends[0] / math.tau - 0.5), math.ceil(ends[1] / math.tau + 0.5) + 1)
+        self._turns = np.array(turns) * math.tau
+
+    def near(self, centres: Floats, radii: Floats, most: float) -> Patches:
+        """Return which rays of a length up to `most` [m] come near balls.
+
+        Args:
+            centres: (m, 3) in the frame of the fan [m].
+            radii: (m,) [m].
+        """
+        x, y, z = centres.T
+        flat = np.hypot(x, y)
+        far = np.hypot(flat, z)
+        rows, rows_end = self.rows.within(*_span(np.arctan2(z, flat), radii, far))
+        rows_end = np.where(far - radii < most, rows_end, 0)
+        low, high = _span(np.arctan2(y, x), radii, flat)
+        columns, columns_end = self.columns.within(
+            low[:, None] + self._turns, high[:, None] + self._turns)
+        there = (columns_end > columns) & (rows_end > rows)[:, None]
+        balls, turns = np.nonzero(there)
+        return Patches(balls, rows[balls], rows_end[balls],
+                       columns[balls, turns], columns_end[balls, turns])
+
+    def rays(self, patches: Patches) -> tuple[Indices, Indices]:
+        """Return the numbers of the rays in patches, and how many each has."""
+        widths = patches.columns_end - patches.columns
+        counts = widths * (patches.rows_end - patches.rows)
+        within = np.arange(counts.sum()) - np.repeat(counts.cumsum() - counts, counts)
+        if self.shape[0] == 1:
+            return within + np.repeat(patches.columns, counts), counts
+        down, along = np.divmod(within, np.repeat(widths, counts))
+        first = patches.rows * self.shape[1] + patches.columns
+        return down * self.shape[1] + along + np.repeat(first, counts), counts
+
+
+def _span(middle: Floats, radii: Floats, far: Floats) -> tuple[Floats, Floats]:
+    """Return the least and greatest angle at which balls are seen around their middle [rad]."""
+    half = np.where(far > radii, np.arcsin(radii / np.maximum(far, radii)), math.pi)
+    return middle - half - _SLACK, middle + half + _SLACK

@@ -1,0 +1,209 @@
+"""All collisions of a world as rays see them, and rays cast among them.
+
+Each scan compares the poses of all links with those of the scan before: what has not moved stays as
+it was laid out. A ball around each shape leaves few pairs of ray and shape for the formulas.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import Pose, Quaternion, Vector, compose, rotate
+from ..description import Box, Collision, Cylinder, Plane, Sphere
+from . import ray_shapes
+from .ray_fan import Indices, Patches, RayFan
+
+if TYPE_CHECKING:
+    from ..runtime import Link, Model, World
+
+Floats = NDArray[np.float64]
+
+Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
+_FORMULAS: dict[type, Formula] = {
+    Box: ray_shapes.box, Cylinder: ray_shapes.cylinder, Sphere: ray_shapes.sphere}
+_MOST = 1 << 17  # pairs of ray and shape that are looked at together: some 30 MB
+
+_AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+Solid = Box | Cylinder | Sphere
+
+
+def rotation_matrix(orientation: Quaternion) -> Floats:
+    """Return the matrix whose columns are the axes of a frame turned by a unit quaternion."""
+    x, y, z = (rotate(orientation, axis) for axis in _AXES)
+    return np.array((x, y, z)).T
+
+
+class RayScene:
+    """The collisions of all models of a world, laid out in arrays."""
+
+    def __init__(self, world: 'World') -> None:
+        self._models: list[Model] = []
+        self._world_models = world.models  # not the world: the scene lives no longer than that
+        self._lay_out()
+
+    @classmethod
+    def of(cls, world: 'World') -> 'RayScene':
+        """Return the scene of a world, which all its sensors share."""
+        return _SCENES.setdefault(world, cls(world))
+
+    def cast(
+        self, pose: Pose, fan: RayFan, least: float, most: float
+    ) -> tuple[Floats, Floats]:
+        """Return how far rays come (n,) [m], and the laser_retro (n,) of what stops them.
+
+        Args:
+            pose: of the fan, in the world.
+            least: where rays begin on their ways [m].
+            most: where they end [m]; those that meet nothing before come so far, with 0.
+        """
+        self._update()
+        turn = rotation_matrix(pose.orientation)
+        distances = np.full(fan.shape, most)
+        retro = np.zeros(fan.shape)
+        with np.errstate(all='ignore'):  # what has diverged is not met
+            self._meet_planes(np.array(pose.position), fan.ways.T @ turn.T, least, distances, retro)
+            self._meet_solids(np.array(pose.position), turn, fan, least, distances, retro)
+        return distances.ravel(), retro.ravel()
+
+    def _meet_planes(
+        self, origin: Floats, ways: Floats, least: float, distances: Floats, retro: Floats
+    ) -> None:
+        planes = zip(self._points, self._normals, self._plane_retro, strict=True)
+        for point, normal, shine in planes:
+            met = ((point - origin) @ normal / (ways @ normal)).reshape(distances.shape)
+            self._keep_nearer(distances, retro, np.where(met >= least, met, np.inf), shine)
+
+    def _meet_solids(
+        self, origin: Floats, turn: Floats, fan: RayFan, least: float, distances: Floats,
+        retro: Floats,
+    ) -> None:
+        offsets = self._centres - origin
+        patches = fan.near(offsets @ turn, self._radii, distances.max())
+        laid_out = np.concatenate((  # (15, m): origin of the fan, half extents, fan to shape
+            np.einsum('ij,ijk->ki', -offsets, self._axes), self._halves,
+            (turn.T @ self._axes).reshape(-1, 9).T))
+        for batch in self._batches(patches):
+            rays, counts = fan.rays(batch)
+            pairs = np.repeat(laid_out[:, batch.balls], counts, axis=1)
+            way = (fan.ways[:, None, rays] * pairs[6:].reshape(3, 3, -1)).sum(axis=0)
+            met = self._meet(batch.balls, counts, least, pairs[:3], way, pairs[3:6])
+            ends = counts.cumsum().tolist()
+            for to, count, ball, row, row_end, column, column_end in zip(
+                    ends, counts.tolist(), *(part.tolist() for part in batch), strict=True):
+                part = (slice(row, row_end), slice(column, column_end))
+                near = distances[part]
+                self._keep_nearer(near, retro[part], met[to - count:to].reshape(near.shape),
+                                  self._retro[ball])
+
+    def _meet(
+        self, shapes: Indices, counts: Indices, least: float, start: Floats, way: Floats,
+        half: Floats,
+    ) -> Floats:
+        """Return where the rays of pairs meet their shapes, of which each has `counts` rays."""
+        met, begin = [], 0
+        for kind, formula in _FORMULAS.items():
+            end = counts[:np.searchsorted(shapes, self._ends[kind])].sum()
+            if end > begin:
+                some = slice(begin, end)
+                met.append(ray_shapes.first_from(
+                    least, *formula(start[:, some], way[:, some], half[:, some])))
+            begin = end
+        return np.concatenate(met)
+
+    @staticmethod
+    def _batches(patches: Patches) -> Iterator[Patches]:
+        """Yield patches, as many as are to be looked at together."""
+        sizes = (patches.rows_end - patches.rows) * (patches.columns_end - patches.columns)
+        totals, begin = sizes.cumsum(), 0
+        while begin < len(totals):
+            before = totals[begin] - sizes[begin]
+            end = max(begin + 1, int(np.searchsorted(totals, before + _MOST)))
+            yield Patches(*(part[begin:end] for part in patches))
+            begin = end
+
+    def _keep_nearer(
+        self, distances: Floats, retro: Floats, met: Floats, shine: float
+    ) -> None:
+        """Let rays end where they meet something nearer than before, in place."""
+        if self._shines:
+            retro[met < distances] = shine
+        np.minimum(distances, met, out=distances)
+
+    def _update(self) -> None:
+        """Follow what has come, gone or moved."""
+        models = list(self._world_models.values())
+        if models != self._models:
+            self._models = models
+            self._lay_out()
+        for i, link in enumerate(self._links):
+            pose = link.pose
+            if pose != self._poses[i]:
+                self._poses[i] = pose
+                self._place(link, pose)
+
+    def _lay_out(self) -> None:
+        """Make room for the shapes of all models; those of one kind lie together."""
+        found = list(_collisions(self._models))
+        self._links = list(dict.fromkeys(link for link, _ in found))
+        self._poses: list[Pose | None] = [None] * len(self._links)
+        solids: list[tuple[Link, Collision]] = []
+        self._ends: dict[type, int] = {}
+        for kind in _FORMULAS:
+            solids += [one for one in found if isinstance(one[1].geometry, kind)]
+            self._ends[kind] = len(solids)
+        planes = [one for one in found if isinstance(one[1].geometry, Plane)]
+        halves = [_half_extents(collision.geometry) for _, collision in solids]
+        self._halves = np.array(halves).reshape(-1, 3).T
+        self._radii = np.array([_radius(collision.geometry) for _, collision in solids])
+        self._centres, self._axes = np.zeros((len(solids), 3)), np.zeros((len(solids), 3, 3))
+        self._points, self._normals = np.zeros((len(planes), 3)), np.zeros((len(planes), 3))
+        self._retro = [collision.surface.laser_retro for _, collision in solids]
+        self._plane_retro = [collision.surface.laser_retro for _, collision in planes]
+        self._shines = any((*self._retro, *self._plane_retro))
+        self._carried: dict[Link, list[tuple[int, Collision]]] = {link: [] for link in self._links}
+        for some in (solids, planes):
+            for row, (link, collision) in enumerate(some):
+                self._carried[link].append((row, collision))
+
+    def _place(self, link: 'Link', pose: Pose) -> None:
+        """Lay out anew what a link carries."""
+        for row, collision in self._carried[link]:
+            position, orientation = compose(pose, collision.pose)
+            if isinstance(collision.geometry, Plane):
+                self._points[row] = position
+                self._normals[row] = rotate(orientation, collision.geometry.normal)
+            else:
+                self._centres[row] = position
+                self._axes[row] = rotation_matrix(orientation)
+
+
+def _collisions(models: 'list[Model]') -> 'Iterator[tuple[Link, Collision]]':
+    for model in models:
+        for link in model.links.values():
+            for collision in link.spec.collisions:
+                yield link, collision
+
+
+def _half_extents(shape: Solid) -> Vector:
+    match shape:
+        case Box((x, y, z)):
+            return x / 2.0, y / 2.0, z / 2.0
+        case Cylinder(radius, length):
+            return radius, radius, length / 2.0
+    return (shape.radius,) * 3
+
+
+def _radius(shape: Solid) -> float:
+    """Return the radius of the ball around a shape [m], with a little more for rounding."""
+    x, y, z = _half_extents(shape)
+    radius = x if isinstance(shape, Sphere) else \
+        math.hypot(x, z) if isinstance(shape, Cylinder) else math.hypot(x, y, z)
+    return radius * (1.0 + 1e-9) + 1e-9
+
+
+_SCENES: WeakKeyDictionary['World', RayScene] = WeakKeyDictionary()

@@ -1,0 +1,196 @@
+"""Laser scans are those that Gazebo recorded, and those that geometry has."""
+
+import math
+from contextlib import closing
+
+import numpy as np
+import pytest
+from support.sensing import RECORDED, ROBOTS, numbers, recorded_scene, recordings
+
+from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.public.world import World
+
+SCANS = recordings('laser')
+EXACT = 1e-5  # [m] of all recorded ranges; they have six digits behind the point
+ROBOT = (ROBOTS / 'laser_nonoise.urdf').read_text(encoding='utf-8')
+NOISY = ROBOT.replace('</ray>', '<noise><type>gaussian</type><mean>0.0</mean><stddev>0.01</stddev>'
+                                '</noise></ray>')
+
+
+def robot_with(**tags):
+    """Return the robot with other numbers in some elements of its sensor."""
+    text = ROBOT
+    for tag, value in tags.items():
+        before, rest = text.split(f'<{tag}>', 1)
+        text = f'{before}<{tag}>{value}</{tag}>{rest.split(f"</{tag}>", 1)[1]}'
+    return text
+
+
+@pytest.fixture
+def scene():
+    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
+        yield world
+
+
+def stamped(world, sensor):
+    """Return a list that takes the time [ms] and the reading of each update from now on."""
+    found = []
+    sensor.readings.connect(lambda scan: found.append((world.clock.now_ns // 1_000_000, scan)))
+    return found
+
+
+@pytest.mark.parametrize('name', SCANS)
+def test_a_scan_is_the_recorded_one(name):
+    world, robot = recorded_scene(SCANS[name])
+    with closing(world):
+        scan = robot.sensor('head_hokuyo_sensor').read()
+    message = SCANS[name]['message']
+    expected = numbers(message['ranges'])
+    assert np.array_equal(np.isinf(scan.ranges), np.isinf(expected))
+    met = np.isfinite(expected)
+    assert np.abs(scan.ranges[met] - expected[met]).max() < EXACT
+    assert np.array_equal(scan.intensities, numbers(message['intensities']))
+    for tag in ('angle_min', 'angle_max', 'angle_increment', 'range_min', 'range_max'):
+        assert getattr(scan, tag) == pytest.approx(message[tag], rel=1e-6)
+
+
+def test_what_moves_is_seen_where_it_is_at_the_end_of_the_step(scene):
+    robot = scene.spawn(ROBOT)
+    ball = scene.spawn('<sdf version="1.6"><model name="ball"><link name="l"><gravity>0</gravity>'
+                       '<collision name="c"><geometry><sphere><radius>.1</radius></sphere>'
+                       '</geometry></collision></link></model></sdf>', x=2.12, y=0.2, z=0.35)
+    sensor = robot.sensor('head_hokuyo_sensor')
+    for _ in range(3):
+        ball.set_pose(Pose((ball.pose.position[0] - 0.3, 0.2, 0.35)))
+        scene.run(1)
+        (x, y, z), (bx, by, bz) = sensor.pose.position, ball.pose.position
+        distance = math.dist((x, y, z), (bx, by, bz)) - 0.1
+        assert sensor.read().ranges.min() == pytest.approx(distance, abs=1e-4)  # near its middle
+
+
+def test_what_comes_is_seen_and_what_goes_is_not(scene):
+    sensor = scene.spawn(ROBOT).sensor('head_hokuyo_sensor')
+    before = sensor.read().ranges
+    scene.spawn('<sdf version="1.6"><model name="wall"><static>1</static><link name="l"><collision '
+                'name="c"><geometry><box><size>.1 9 2</size></box></geometry></collision></link>'
+                '</model></sdf>', x=1.0)
+    assert np.isfinite(sensor.read().ranges).sum() > 500
+    scene.delete('wall')
+    assert np.array_equal(sensor.read().ranges, before)
+
+
+@pytest.mark.parametrize(('rate', 'times'), [
+    (40, [25, 50, 75, 100]), (30, [34, 67, 100, 134]), (0, [1, 2, 3, 4]), (-5, [1, 2, 3, 4]),
+    (2000, [1, 2, 3, 4]), (7, [143, 286, 429, 572]),
+])
+def test_readings_come_at_the_rate_on_average_and_at_the_end_of_steps(scene, rate, times):
+    sensor = scene.spawn(robot_with(update_rate=rate, samples=3)).sensor('head_hokuyo_sensor')
+    found = stamped(scene, sensor)
+    scene.run(600)
+    assert [time for time, _ in found[:4]] == times
+
+
+def test_each_sensor_keeps_its_own_rate_whoever_is_there_and_reads(scene):
+    sensors = [scene.spawn(robot_with(update_rate=rate, samples=3), f'r{rate}', x=rate)
+               .sensor('head_hokuyo_sensor') for rate in (40, 30, 7)]
+    found = [stamped(scene, sensor) for sensor in sensors[1:]]
+    scene.run(500)
+    late = stamped(scene, sensors[0])
+    scene.run(500)
+    assert [len(one) for one in (late, *found)] == [20, 30, 7]
+    assert late[0][0] == 525  # in the rhythm that there would be without having slept
+
+
+def test_after_a_reset_of_time_it_goes_on_at_once(scene):
+    found = stamped(scene, scene.spawn(ROBOT).sensor('head_hokuyo_sensor'))
+    scene.run(110)
+    scene.reset_simulation()
+    del found[:]
+    scene.run(60)
+    assert [time for time, _ in found] == [25, 50]
+
+
+def test_nobody_computes_a_scan_that_nobody_reads(scene):
+    sensor = scene.spawn(ROBOT).sensor('head_hokuyo_sensor')
+    read = []
+    sensor.readings.connect(read.append)
+    sensor.readings.disconnect(read.append)
+    sensor.measure = pytest.fail
+    scene.run(100)
+    assert read == []
+
+
+def test_noise_is_of_its_size_and_stays_within_the_limits(scene):
+    scans = stamped(scene, scene.spawn(NOISY).sensor('head_hokuyo_sensor'))
+    scene.run(1000)
+    clean = scene.models['lbot'].sensor('head_hokuyo_sensor').cast()[0]
+    ranges = np.array([scan.ranges for _, scan in scans])
+    met = clean < 29.0
+    noise = ranges[:, met] - clean[met]
+    assert noise.std() == pytest.approx(0.01, rel=0.02)
+    assert abs(noise.mean()) < 4 * 0.01 / math.sqrt(noise.size)
+    rays = np.corrcoef(noise[:, :100].T)
+    assert np.abs(rays - np.eye(100)).max() < 0.75  # of 40 scans; the deviation is 1 / sqrt(40)
+    assert np.isposinf(ranges[:, ~met]).all()
+
+
+def test_noise_repeats_with_the_seed_whenever_somebody_begins_to_read():
+    def scan_at(seed, begin):
+        with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
+            world.seed = seed
+            sensor = world.spawn(NOISY).sensor('head_hokuyo_sensor')
+            world.run(begin)
+            found = stamped(world, sensor)
+            world.run(200 - begin)
+            return found[-1][1].ranges.tobytes()
+
+    assert scan_at(1, 0) == scan_at(1, 120)
+    assert scan_at(1, 0) != scan_at(2, 0)
+
+
+def test_two_sensors_have_different_noise_and_a_reset_repeats_it(scene):
+    sensors = [scene.spawn(NOISY, f'r{i}').sensor('head_hokuyo_sensor') for i in range(2)]
+    found = [stamped(scene, sensor) for sensor in sensors]
+    scene.run(50)
+    assert not np.array_equal(found[0][0][1].ranges, found[1][0][1].ranges)
+    first = found[0][0][1].ranges
+    scene.reset_simulation()
+    scene.run(25)
+    assert np.array_equal(found[0][-1][1].ranges, first)
+
+
+def test_a_saved_state_goes_on_with_the_same_scans(scene):
+    sensor = scene.spawn(NOISY).sensor('head_hokuyo_sensor')
+    found = stamped(scene, sensor)
+    scene.run(30)
+    state = scene.save_state()
+    scene.run(50)
+    expected = [(time, scan.ranges.tobytes()) for time, scan in found[-2:]]
+    scene.restore(state)
+    scene.run(50)
+    assert [(time, scan.ranges.tobytes()) for time, scan in found[-2:]] == expected
+
+
+def test_the_plugin_hands_scans_on_only_while_somebody_reads_them(scene):
+    robot = scene.spawn(ROBOT)
+    plugin = robot.plugin('laser')
+    assert plugin.params.values == {'frameName': 'laser_link', 'topicName': '/scan'}
+    assert not plugin.sensor.readings.wanted
+    read = []
+    plugin.outputs['scan'].connect(read.append)
+    scene.run(50)
+    plugin.outputs['scan'].disconnect(read.append)
+    assert len(read) == 2
+    assert not plugin.sensor.readings.wanted
+
+
+def test_a_million_rays_fit_and_a_deleted_robot_hurts_nobody(scene):
+    many = scene.spawn(robot_with(samples=1_000_000)).sensor('head_hokuyo_sensor')
+    few = scene.spawn(ROBOT, 'few', x=0.0, y=0.0).sensor('head_hokuyo_sensor')
+    dense, sparse = many.read().ranges, few.read().ranges
+    assert dense[0] == sparse[0]
+    assert dense[-1] == sparse[-1]
+    stamped(scene, few)
+    scene.delete('few')
+    scene.delete('lbot')
+    scene.run(50)

@@ -1,0 +1,103 @@
+"""Sensors of a model are loaded with it; what is not simulated of them is named once."""
+
+import pytest
+from support.fake_engine import FakeEngine
+
+from rosbots_description.sim import sensors  # noqa: F401  registers
+from rosbots_description.sim.core.errors import NotFoundError
+from rosbots_description.sim.core.transforms import IDENTITY
+from rosbots_description.sim.formats.sdf.sdf import load_sdf
+from rosbots_description.sim.plugin_registry.gazebo_libraries import PAGE
+from rosbots_description.sim.resources.search_path import ModelSearch
+from rosbots_description.sim.runtime.world import World
+
+RAY = ('<ray><scan><horizontal><samples>{samples}</samples></horizontal></scan>'
+       '<range><min>{least}</min><max>{most}</max></range>{more}</ray>')
+
+
+def ray(samples=3, least=0.1, most=5, more=''):
+    return RAY.format(samples=samples, least=least, most=most, more=more)
+
+
+def load(inside, caplog=None):
+    text = f'<sdf version="1.6"><model name="m"><link name="a">{inside}</link></model></sdf>'
+    spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())
+    return World(make_engine=FakeEngine).spawn(spec, 'bot', IDENTITY)
+
+
+def sensor(inside, kind='ray', name='s'):
+    return f'<sensor name="{name}" type="{kind}">{inside}</sensor>'
+
+
+def said(caplog):
+    return [(record.levelname, record.getMessage()) for record in caplog.records]
+
+
+def test_one_without_a_plugin_is_kept_without_a_word(caplog):
+    model = load(sensor(ray()))
+    assert model.sensor('s') is model.sensor('a::s') is model.sensors[0]
+    assert (model.left_out, caplog.records) == ([], [])
+
+
+def test_one_of_a_type_that_is_not_simulated_is_kept_and_named(caplog):
+    model = load(sensor('', 'sonar'))
+    assert said(caplog) == [('WARNING', "model 'bot', sonar 's' of link 'a': sensors of this type "
+                             f'are not simulated yet; see {PAGE}')]
+    assert model.left_out == ["sonar 's'"]
+    assert not model.sensor('s').measures
+
+
+@pytest.mark.parametrize(('library', 'level', 'remark'), [
+    ('libgazebo_ros_triggered_camera.so', 'WARNING',
+     'libgazebo_ros_triggered_camera.so is known but not supported yet'),
+    ('libgazebo_ros_laserr.so', 'ERROR', "unknown library 'libgazebo_ros_laserr.so'; "
+     "did you mean 'libgazebo_ros_laser.so'?"),
+    ('libgazebo_ros_diff_drive.so', 'ERROR',
+     'libgazebo_ros_diff_drive.so works only in a <gazebo> or <model>, not where it stands'),
+])
+def test_a_plugin_in_one_that_is_not_here_is_named(library, level, remark, caplog):
+    model = load(sensor(f'{ray()}<plugin name="p" filename="{library}"/>'))
+    assert said(caplog) == [(level, f"model 'bot', ray 's' of link 'a': {remark}; see {PAGE}")]
+    assert model.left_out == [f"ray 's' ({library})"]
+
+
+@pytest.mark.parametrize(('inside', 'sentence'), [
+    (ray(samples=0), '<samples> is 0; it takes a number from 1 to 1000000'),
+    (ray(samples=1e7), '<samples> is 1e+07; it takes a number from 1 to 1000000'),
+    (ray(samples='many'), "<samples> is 'many'; it takes a finite number"),
+    (ray(samples='nan'), "<samples> is 'nan'; it takes a finite number"),
+    (ray(least=2, most=1), '<range> is from 2 to 1 m; it must begin at 0 or more and end beyond'),
+    (ray(least=-1), '<range> is from -1 to 5 m; it must begin at 0 or more and end beyond'),
+    (ray(most='inf'), "<max> is 'inf'; it takes a finite number"),
+    (ray(more='<noise><type>gaussian</type><stddev>nan</stddev></noise>'),
+     "<stddev> is 'nan'; it takes a finite number"),
+    (ray(more='<noise><type>gaussian</type><stddev>-1</stddev></noise>'),
+     '<stddev> of <noise> is -1; it must not be negative'),
+    ('', "a <sensor> of type 'ray' without <ray>"),
+    (ray() + '<update_rate>1e-300</update_rate>',
+     '<update_rate> is 1e-300 Hz; it must be at least 0.001, or 0 for every step'),
+])
+def test_one_that_makes_no_sense_costs_no_model(inside, sentence, caplog):
+    model = load(sensor(inside))
+    ((level, text),) = said(caplog)
+    assert level == 'ERROR'
+    assert text.startswith("model 'bot', ray 's' of link 'a': ")
+    assert text.endswith(f'{sentence}; the model lives on without it')
+    assert model.left_out == ["ray 's'"]
+    with pytest.raises(NotFoundError, match="has no sensor 's'; its sensors: none"):
+        model.sensor('s')
+
+
+@pytest.mark.parametrize('rate', ['nan', 'often', ''])
+def test_a_rate_that_is_none_means_every_step(rate, caplog):
+    model = load(sensor(f'{ray()}<update_rate>{rate}</update_rate>'))
+    assert model.sensor('s').spec.update_rate == 0.0
+    assert f"<update_rate> is '{rate}'; it takes a finite number [Hz]" in caplog.text
+
+
+def test_what_belongs_into_a_sensor_does_not_run_in_a_model(caplog):
+    text = ('<sdf version="1.6"><model name="m"><link name="a"/>'
+            '<plugin name="p" filename="libgazebo_ros_laser.so"/></model></sdf>')
+    spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())
+    World(make_engine=FakeEngine).spawn(spec, 'bot', IDENTITY)
+    assert 'libgazebo_ros_laser.so works only in a <sensor>, not where it stands' in caplog.text

@@ -1,0 +1,105 @@
+"""Rays meet shapes where an independent definition of their surface says."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rosbots_description.sim.sensors import ray_shapes
+from rosbots_description.sim.sensors.ray_fan import RayFan, Sweep
+
+HALF = {'sphere': (0.7, 0.7, 0.7), 'box': (0.5, 0.8, 0.3), 'cylinder': (0.6, 0.6, 0.9)}
+EXACT = 1e-12  # [m]
+
+
+def outside(kind, points):
+    """Return how far points (3, n) are outside a shape; below 0 inside [m, nearly]."""
+    x, y, z = points
+    hx, hy, hz = HALF[kind]
+    match kind:
+        case 'sphere':
+            return np.sqrt(x * x + y * y + z * z) - hx
+        case 'box':
+            return np.maximum.reduce([np.abs(x) - hx, np.abs(y) - hy, np.abs(z) - hz])
+    return np.maximum(np.hypot(x, y) - hx, np.abs(z) - hz)
+
+
+def meet(kind, starts, ways, least=0.0):
+    starts, ways = np.array(starts, float).T, np.array(ways, float).T
+    half = np.repeat(np.array([HALF[kind]]).T, starts.shape[1], axis=1)
+    return ray_shapes.first_from(least, *getattr(ray_shapes, kind)(starts, ways, half))
+
+
+def many_rays(count=20_000):
+    random = np.random.default_rng(1)
+    ways = random.normal(size=(count, 3))
+    return random.uniform(-2.0, 2.0, (count, 3)), ways / np.linalg.norm(ways, axis=1)[:, None]
+
+
+@pytest.mark.parametrize('kind', HALF)
+def test_what_is_met_lies_on_the_surface_and_nothing_lies_before_it(kind):
+    starts, ways = many_rays()
+    met = meet(kind, starts, ways)
+    hit = np.isfinite(met)
+    assert hit.sum() > 1000
+    points = (starts + ways * np.where(hit, met, 0.0)[:, None]).T
+    assert np.abs(outside(kind, points[:, hit])).max() < EXACT
+    inside = outside(kind, starts.T) < 0.0
+    for share in np.linspace(0.0, 1.0, 41)[1:-1]:
+        on_the_way = (starts + ways * (np.where(hit, met, 6.0) * share)[:, None]).T
+        beyond = outside(kind, on_the_way)
+        assert (beyond[~inside] > -EXACT).all()
+        assert (beyond[inside] < EXACT).all()
+
+
+@pytest.mark.parametrize(('kind', 'start', 'way', 'expected'), [
+    ('box', (-2, 0, 0), (1, 0, 0), 1.5), ('box', (-2, 0.799, 0), (1, 0, 0), 1.5),
+    ('box', (-2, 0.81, 0), (1, 0, 0), math.inf), ('box', (2, 0, 0), (1, 0, 0), math.inf),
+    ('box', (0, 0, 0), (0, 0, 1), 0.3),
+    ('cylinder', (0.1, 0, 3), (0, 0, -1), 2.1), ('cylinder', (0.61, 0, 3), (0, 0, -1), math.inf),
+    ('cylinder', (-2, 0, 0.899), (1, 0, 0), 1.4), ('cylinder', (-2, 0, 0.91), (1, 0, 0), math.inf),
+    ('cylinder', (0, 0, 0), (0, 0, 1), 0.9), ('cylinder', (0, 0, 0), (0, -1, 0), 0.6),
+    ('sphere', (0, -3, 0), (0, 1, 0), 2.3), ('sphere', (0, -3, 0.71), (0, 1, 0), math.inf),
+    ('sphere', (0, 0, 0), (0, 1, 0), 0.7),
+])
+def test_rays_along_axes_and_edges(kind, start, way, expected):
+    assert meet(kind, [start], [way])[0] == pytest.approx(expected, abs=EXACT)
+
+
+@pytest.mark.parametrize(('least', 'expected'), [
+    (1.0, 1.5), (1.5, 1.5), (1.6, 2.5), (2.5, 2.5), (2.6, math.inf),
+])
+def test_a_ray_that_begins_inside_meets_the_far_side(least, expected):
+    assert meet('box', [(-2, 0, 0)], [(1, 0, 0)], least)[0] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize('columns', [
+    Sweep(720, 720, -1.5708, 1.5708), Sweep(360, 360, -math.pi, math.pi), Sweep(90, 90, 3.0, -3.0),
+    Sweep(400, 400, 0.0, 2 * math.pi), Sweep(500, 500, -7.0, 8.0), Sweep(1, 1, 0.5, 1.0),
+    Sweep(5, 5, 0.3, 0.3),
+])
+@pytest.mark.parametrize('rows', [
+    Sweep(1, 1, 0.0, 0.0), Sweep(16, 16, -0.26, 0.26), Sweep(9, 9, 1.6, -1.6),
+])
+def test_no_ray_that_meets_a_ball_is_left_out(rows, columns):
+    fan = RayFan(rows, columns)
+    random = np.random.default_rng(2)
+    centres, radii = random.uniform(-5.0, 5.0, (60, 3)), random.uniform(0.01, 3.0, 60)
+    patches = fan.near(centres, radii, 4.0)
+    rays, counts = fan.rays(patches)
+    kept = set(zip(np.repeat(patches.balls, counts).tolist(), rays.tolist(), strict=True))
+    along = centres @ fan.ways
+    apart = (centres ** 2).sum(axis=1)[:, None] - along ** 2
+    inside = (centres ** 2).sum(axis=1) < radii ** 2
+    reach = along - np.sqrt(np.maximum(radii[:, None] ** 2 - apart, 0.0))
+    meets = (apart < radii[:, None] ** 2) & ((along > 0.0) & (reach < 4.0) | inside[:, None])
+    needed = set(zip(*(part.tolist() for part in np.nonzero(meets)), strict=True))
+    assert needed
+    assert needed <= kept
+    assert rays.size == 0 or rays.max() < fan.ways.shape[1]
+
+
+def test_a_narrow_ball_leaves_few_rays():
+    fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(720, 720, -1.5708, 1.5708))
+    rays, _ = fan.rays(fan.near(np.array([[5.0, 0.0, 0.0], [0.0, 0.0, 5.0]]), np.ones(2), 9.0))
+    assert len(rays) == pytest.approx(2 * math.asin(0.2) / math.pi * 720, abs=2)
