@@ -3,14 +3,16 @@
 Publishes:
     <ns>/<topicName> (sensor_msgs/LaserScan): laser and gpu_laser; rows of more than one, if there
         are any, from the lowest upward.
+    <ns>/<topicName> (sensor_msgs/PointCloud): block_laser, with one channel without a name.
+    <ns>/<topicName> (sensor_msgs/Range): range.
 Parameters:
     tf_prefix, searched from the plugin's namespace upward.
 """
 
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import LaserScan, PointCloud, Range
 
-from ...sim.sensors import LaserPlugin, Scan
-from ..messages import LaserScanLayout
+from ...sim.sensors import BlockLaserPlugin, Distance, LaserPlugin, RangePlugin, Scan
+from ..messages import LaserScanLayout, PointCloudLayout
 from .adapter import Adapter
 from .declarations import Pack, Publishes
 from .registry import connects
@@ -26,4 +28,20 @@ def scan_pack(adapter: Adapter) -> Pack:
     return pack
 
 
+def range_message(distance: Distance) -> Range:
+    """Return the message of a range."""
+    kind = Range.INFRARED if distance.is_infrared else Range.ULTRASOUND
+    return Range(radiation_type=kind, field_of_view=distance.field_of_view,
+                 min_range=distance.range_min, max_range=distance.range_max, range=distance.range)
+
+
+def points_pack(adapter: Adapter) -> Pack:
+    """Return what lays point clouds out."""
+    layout = PointCloudLayout(adapter.frame(adapter.plugin.params.values['frameName']))
+    return lambda number, now_ns, points: layout.pack(number, now_ns, *points)
+
+
 connects(LaserPlugin, Publishes('scan', '<topicName>', LaserScan, pack=scan_pack))
+connects(RangePlugin, Publishes(
+    'range', '<topicName>', Range, convert=range_message, frame='<frameName>'))
+connects(BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, pack=points_pack))

@@ -10,11 +10,18 @@ from .conversions import (
     read_vector,
     stamp,
 )
-from .layouts import JointStatesLayout, LaserScanLayout, OdometryLayout, TransformLayout, floats
+from .layouts import (
+    JointStatesLayout,
+    LaserScanLayout,
+    OdometryLayout,
+    PointCloudLayout,
+    TransformLayout,
+    floats,
+)
 from .validity import RequestError, require_finite
 
 __all__ = [
-    'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'RequestError', 'TransformLayout',
-    'fill_pose', 'fill_transform', 'fill_twist', 'floats', 'read_pose', 'read_transform',
-    'read_twist', 'read_vector', 'require_finite', 'stamp',
+    'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'PointCloudLayout', 'RequestError',
+    'TransformLayout', 'fill_pose', 'fill_transform', 'fill_twist', 'floats', 'read_pose',
+    'read_transform', 'read_twist', 'read_vector', 'require_finite', 'stamp',
 ]

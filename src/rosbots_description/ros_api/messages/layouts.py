@@ -113,6 +113,31 @@ class LaserScanLayout:
         return head + floats(ranges) + floats(intensities)
 
 
+class PointCloudLayout:
+    """sensor_msgs/PointCloud of a frame, with intensities in a channel without a name."""
+
+    def __init__(self, frame: str) -> None:
+        """Note the name of the frame."""
+        self._frame = _text(frame)
+        self._layout = struct.Struct(f'<4I{len(self._frame)}sI')
+
+    def pack(
+        self, seq: int, now_ns: int, positions: NDArray[np.float64],
+        intensities: NDArray[np.float64],
+    ) -> bytes:
+        """Return the message with the number `seq`, stamped `now_ns` [ns].
+
+        Args:
+            positions: (n, 3) [m] in the frame.
+            intensities: (n,).
+        """
+        tail = (positions.astype('<f4').tobytes() + struct.pack('<I', 1) + _text('')
+                + floats(intensities))
+        size = self._layout.size - _SIZE + len(tail)
+        return self._layout.pack(
+            size, seq, *divmod(now_ns, NANOSECONDS), self._frame, len(positions)) + tail
+
+
 def floats(values: NDArray[np.float64]) -> bytes:
     """Return a list of float32, behind its length."""
     return struct.pack('<I', len(values)) + values.astype('<f4').tobytes()

@@ -1,8 +1,12 @@
 """What `<sensor>` tags load: sensors, and the plugins in them; importing registers them."""
 
-from . import laser, ray  # noqa: F401
 from .base import Sensor, SensorPlugin
+from .block_laser import BlockLaserPlugin, Points
 from .laser import LaserPlugin
+from .range import Distance, RangePlugin
 from .ray import Scan
 
-__all__ = ['LaserPlugin', 'Scan', 'Sensor', 'SensorPlugin']
+__all__ = [
+    'BlockLaserPlugin', 'Distance', 'LaserPlugin', 'Points', 'RangePlugin', 'Scan', 'Sensor',
+    'SensorPlugin',
+]

@@ -146,6 +146,8 @@ class SensorPlugin(ModelPlugin):
     def __init__(self, sensor: Sensor, spec: PluginSpec) -> None:
         super().__init__(sensor.world, sensor.model, spec)
         self.sensor = sensor
+        self._taking = False
+        self.random = RandomSteps(self.world.seed, f'{sensor.scoped_name}::{spec.name}')
 
     def start(self) -> None:
         """Load and begin.
@@ -162,8 +164,12 @@ class SensorPlugin(ModelPlugin):
         """Count the times of readings from now on."""
         self._times = DueTimes(self.rate, f'<{self.rate_tag}>')
         self._times.begin(self.world.clock.now_ns)
-        self._next_ns = 0
+        self._wake()
         self.reset()
+
+    def shared(self) -> Iterable[object]:
+        """Return what makes random numbers, too."""
+        return (*super().shared(), self.random)
 
     def take(self, reading: Any) -> None:
         """Send what is made of a reading of the sensor."""
@@ -174,6 +180,13 @@ class SensorPlugin(ModelPlugin):
         self.sensor.readings.disconnect(self._take)
         if self.is_read:
             self.sensor.readings.connect(self._take)
+            if not self._taking:
+                self._wake()
+        self._taking = self.is_read
+
+    def _wake(self) -> None:
+        """Go on in the rhythm that there would be without having slept."""
+        self._next_ns = self._times.after(self.world.clock.now_ns)
 
     def _take(self, reading: Any) -> None:
         now_ns = self.world.clock.now_ns

@@ -60,7 +60,13 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
 @register_sensor('gpu_ray')
 @register_sensor('ray')
 class RaySensor(Sensor):
-    """Casts rays; its readings are of type `Scan`. A gpu_ray is the same here."""
+    """Casts rays; its readings are of type `Scan`. A gpu_ray is the same here.
+
+    `rays` are ranges [m] and intensities of the newest reading as they were cast: without noise and
+    interpolation, and at range_max where nothing was met.
+    """
+
+    rays: tuple[Floats, Floats]
 
     def load(self) -> None:
         """Read angles, limits and noise."""
@@ -80,8 +86,9 @@ class RaySensor(Sensor):
             if total > MOST_SAMPLES:
                 raise PluginError(f'line {ray.line}: {total} rays; at most {MOST_SAMPLES} are cast')
         self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
-        self._scene, self._fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
-        self._blend = self._blending()
+        self._scene, self.fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
+        self.blend = self.fan.blend()
+        self._is_whole = self.fan.shape == (self.vertical.count, self.horizontal.count)
         spans = max(1, self.horizontal.count - 1)
         self._fixed = (self.horizontal.least, self.horizontal.greatest,
                        (self.horizontal.greatest - self.horizontal.least) / spans,
@@ -89,34 +96,20 @@ class RaySensor(Sensor):
 
     def shared(self) -> Iterable[object]:
         """Return what never changes, too."""
-        return (*super().shared(), self._scene, self._fan, self._blend)
+        return (*super().shared(), self._scene, self.fan, self.blend)
 
     def cast(self) -> tuple[Floats, Floats]:
         """Return range [m] and intensity of each ray; what meets nothing has the greatest range."""
-        return self._scene.cast(self.pose, self._fan, self.range_min, self.range_max)
+        return self._scene.cast(self.pose, self.fan, self.range_min, self.range_max)
 
     def measure(self) -> Scan:
         """Return a sweep."""
-        ranges, retro = self.cast()
-        if self._blend is not None:
-            retro = sum(retro[rays] for rays, _ in self._blend) / len(self._blend)
-            ranges = sum(share * ranges[rays] for rays, share in self._blend)
+        ranges, retro = self.rays = self.cast()
+        if not self._is_whole:
+            ranges, retro = self.blend.ranges(ranges), self.blend.intensities(retro)
         missed = ranges >= self.range_max
         if self.noise:
             ranges = self.noise.added_to(ranges, self.random.at(self.world.clock.steps))
             ranges = ranges.clip(self.range_min, self.range_max)
-        ranges[missed] = math.inf
+        ranges = np.where(missed, math.inf, ranges)
         return Scan(ranges, retro, *self._fixed)
-
-    def _blending(self) -> list[tuple[NDArray[np.int64], Floats]] | None:
-        """Return which rays make up each reading, with their shares; None if each has its own."""
-        rows, columns = self.vertical, self.horizontal
-        if (rows.samples, columns.samples) == (rows.count, columns.count):
-            return None
-        low, high, up = rows.neighbours()
-        left, right, along = columns.neighbours()
-        return [
-            ((row[:, None] * columns.samples + column).ravel(), np.outer(a, b).ravel())
-            for row, a in ((low, 1.0 - up), (high, up))
-            for column, b in ((left, 1.0 - along), (right, along))
-        ]

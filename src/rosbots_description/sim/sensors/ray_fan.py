@@ -117,6 +117,39 @@ class RayFan:
         return down * self.shape[1] + along + np.repeat(first, counts), counts
 
 
+    def blend(self) -> 'Blend':
+        """Return how readings, of which there may be more or fewer, are made of rays."""
+        low, high, up = self.rows.neighbours()
+        left, right, along = self.columns.neighbours()
+        corners = tuple(
+            ((row[:, None] * self.shape[1] + column).ravel(), np.outer(a, b).ravel())
+            for row, a in ((low, 1.0 - up), (high, up))
+            for column, b in ((left, 1.0 - along), (right, along)))
+        return Blend(corners, (low + high) / 2.0, (left + right) / 2.0)
+
+
+class Blend(NamedTuple):
+    """Which four rays make up each reading.
+
+    Attributes:
+        corners: four pairs of the numbers of rays (n,) and their shares (n,).
+        rows: (r,) where the readings lie in the middle of their rays, counted in rows.
+        columns: (c,) the same in columns.
+    """
+
+    corners: tuple[tuple[Indices, Floats], ...]
+    rows: Floats
+    columns: Floats
+
+    def ranges(self, cast: Floats) -> Floats:
+        """Return readings, interpolated."""
+        return sum(share * cast[rays] for rays, share in self.corners)
+
+    def intensities(self, cast: Floats) -> Floats:
+        """Return readings, each the mean of its rays."""
+        return sum(cast[rays] for rays, _ in self.corners) / len(self.corners)
+
+
 def _span(middle: Floats, radii: Floats, far: Floats) -> tuple[Floats, Floats]:
     """Return the least and greatest angle at which balls are seen around their middle [rad]."""
     half = np.where(far > radii, np.arcsin(radii / np.maximum(far, radii)), math.pi)

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from genpy import Time
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Point32, TransformStamped
 from nav_msgs.msg import Odometry as OdometryMessage
 from rospy.msg import serialize_message
-from sensor_msgs.msg import JointState, LaserScan
+from sensor_msgs.msg import ChannelFloat32, JointState, LaserScan, PointCloud
 from tf2_msgs.msg import TFMessage
 
 from rosbots_description.ros_api.messages.conversions import fill_pose, fill_twist
@@ -18,6 +18,7 @@ from rosbots_description.ros_api.messages.layouts import (
     JointStatesLayout,
     LaserScanLayout,
     OdometryLayout,
+    PointCloudLayout,
     TransformLayout,
 )
 from rosbots_description.ros_api.transport.sending import next_number
@@ -67,6 +68,17 @@ def test_a_laser_scan(ranges):
     packed = LaserScanLayout('läser').pack(
         SEQ, NOW_NS, (-0.5, 0.5, 0.25), (0.125, 30.0), np.array(ranges),
         np.array(message.intensities))
+    assert packed == on_the_wire(message)
+
+
+@pytest.mark.parametrize('points', [[(1.5, math.inf, 0.1), (0.0, -2.0, 3.0)], []])
+def test_a_point_cloud(points):
+    shine = [750.0, 0.0][:len(points)]
+    message = PointCloud(points=[Point32(*point) for point in points],
+                         channels=[ChannelFloat32('', shine)])
+    message.header.frame_id, message.header.stamp = 'laser', STAMP
+    packed = PointCloudLayout('laser').pack(
+        SEQ, NOW_NS, np.array(points).reshape(-1, 3), np.array(shine))
     assert packed == on_the_wire(message)
 
 

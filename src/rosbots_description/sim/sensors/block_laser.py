@@ -1,0 +1,59 @@
+"""Points that a laser meets: the plugin libgazebo_ros_block_laser.so of gazebo_ros_pkgs 2.9.2.
+
+A reading lies in the middle between its neighbouring rays, by half a ray beside where it was measured;
+where nothing was met it is a point at the greatest range. Both as in Gazebo.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..plugin_registry import register_in_sensor
+from .base import SensorPlugin
+from .noise import gaussian
+from .ray import Floats, RaySensor, Scan
+from .ray_fan import Sweep
+
+
+class Points(NamedTuple):
+    """What rays met, in the sensor's frame: rows from the lowest upward."""
+
+    positions: Floats  # (n, 3) [m]
+    intensities: Floats  # (n,)
+
+
+@register_in_sensor('libgazebo_ros_block_laser.so')
+class BlockLaserPlugin(SensorPlugin):
+    """Makes points of rays. Output: `points`."""
+
+    sensor_class = RaySensor
+    prefix = 'Block laser plugin (ns = {}) '
+
+    def load(self) -> None:
+        """Read the tags; two of them mean nothing, as upstream."""
+        read = self.params.read
+        self.params.ignore('hokuyoMinIntensity', 'updateRate')
+        read('frameName', '/world')
+        read('topicName', '/world')
+        self.noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
+        self.points = self.output('points', bool(self.params.values['topicName']))
+        fan = self.sensor.fan
+        pitch = _angles(fan.rows, self.sensor.blend.rows)[:, None]
+        yaw = _angles(fan.columns, self.sensor.blend.columns)
+        ways = np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
+        self._ways = np.stack(ways, axis=-1).reshape(-1, 3)
+
+    def take(self, _reading: Scan) -> None:
+        """Send the points of a sweep."""
+        cast, retro = self.sensor.rays
+        ranges = self.sensor.blend.ranges(cast)[:, None]
+        positions = ranges * self._ways
+        if self.noise:
+            noise = self.random.at(self.world.clock.steps)
+            noisy = self.noise.added_to(positions, noise)
+            positions = np.where(ranges < self.sensor.range_max, noisy, positions)
+        self.points.send(Points(positions, self.sensor.blend.intensities(retro)))
+
+
+def _angles(sweep: Sweep, places: Floats) -> Floats:
+    return sweep.first + places * sweep.step

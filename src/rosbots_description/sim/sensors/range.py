@@ -1,0 +1,45 @@
+"""Range finders: the plugin libgazebo_ros_range.so of gazebo_ros_pkgs 2.9.2."""
+
+from typing import NamedTuple
+
+from ..plugin_registry import register_in_sensor
+from .base import SensorPlugin
+from .noise import gaussian
+from .ray import RaySensor, Scan
+
+
+class Distance(NamedTuple):
+    """How near the nearest thing is in a cone; range_max where there is nothing."""
+
+    range: float  # [m]
+    range_min: float  # [m]
+    range_max: float  # [m]
+    field_of_view: float  # [rad]
+    is_infrared: bool  # else ultrasound
+
+
+@register_in_sensor('libgazebo_ros_range.so')
+class RangePlugin(SensorPlugin):
+    """Takes the least of all rays. Output: `range`."""
+
+    sensor_class = RaySensor
+    prefix = 'range plugin (ns = {}) '
+
+    def load(self) -> None:
+        """Read the tags."""
+        read = self.params.read
+        read('topicName', '/range')
+        read('frameName', '/world')
+        is_infrared = read('radiation', 'ultrasound') != 'ultrasound'
+        self._fixed = self.sensor.range_min, self.sensor.range_max, read('fov', 0.05), is_infrared
+        self.noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
+        self.rate = self.params.rate('updateRate', 0.0)
+        self.range = self.output('range', bool(self.params.values['topicName']))
+
+    def take(self, _reading: Scan) -> None:
+        """Send the least range, with noise if something was met."""
+        least, most = float(self.sensor.rays[0].min()), self.sensor.range_max
+        if least < most and self.noise:
+            noise = self.random.at(self.world.clock.steps)
+            least = min(most, float(self.noise.added_to(least, noise)))
+        self.range.send(Distance(least, *self._fixed))

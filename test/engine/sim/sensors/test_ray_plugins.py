@@ -1,0 +1,69 @@
+"""Range finders and block lasers give out what Gazebo's gave out."""
+
+from contextlib import closing
+
+import numpy as np
+import pytest
+from support.sensing import RECORDED, ROBOTS, recorded_scene, recordings
+
+from rosbots_description.ros_api.adapters.lasers import range_message
+from rosbots_description.sim.public.world import World
+
+RECORDINGS = recordings('ray_plugins')
+EXACT = 1e-5  # [m]
+WALL = ('<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
+        '<collision name="c"><geometry><box><size>.1 9 2</size></box></geometry>'
+        '</collision></link></model></sdf>')
+
+
+def reading_of(robot, library, output):
+    """Return what a plugin makes of a reading where the robot stands, before physics moves it."""
+    plugin = robot.plugin(library)
+    plugin.outputs[output].keep()
+    plugin.take(plugin.sensor.read())
+    return plugin.outputs[output].newest
+
+
+def readings_of(world, robot, library, output, steps):
+    """Return times [ms] and readings that a plugin sends in so many steps."""
+    found = []
+    robot.plugin(library).outputs[output].connect(
+        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+    world.run(steps)
+    return found
+
+
+def test_a_block_laser_gives_out_the_recorded_points():
+    recording = RECORDINGS['laser_block']
+    world, robot = recorded_scene(recording)
+    with closing(world):
+        points = reading_of(robot, 'block_laser', 'points')
+    assert np.abs(points.positions - np.array(recording['points'])).max() < EXACT
+    assert np.array_equal(points.intensities, recording['intensities'])
+
+
+@pytest.mark.parametrize('name', ['range', 'range_miss', 'range_noise_ir'])
+def test_a_range_finder_gives_out_the_recorded_message(name):
+    world, robot = recorded_scene(RECORDINGS[name])
+    with closing(world):
+        message = range_message(reading_of(robot, 'range', 'range'))
+    for field, expected in RECORDINGS[name]['message'].items():
+        assert getattr(message, field) == pytest.approx(expected, abs=EXACT)
+
+
+def test_a_range_finder_keeps_its_rate_on_average_beside_that_of_its_sensor():
+    world, robot = recorded_scene(RECORDINGS['range_noise_ir'])  # 20 Hz in a sensor of 50 Hz
+    with closing(world):
+        times = [time for time, _ in readings_of(world, robot, 'range', 'range', 1000)]
+    assert len(times) == 20
+    assert set(np.diff(times)) == {40, 60}
+
+
+def test_the_noise_of_a_range_finder_ends_at_its_greatest_range():
+    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
+        robot = world.spawn(ROBOTS / 'range_noise_ir.urdf', 'robot')
+        world.spawn(WALL, x=2.15, name='wall')  # 1.98 m before the laser
+        ranges = [one.range for _, one in readings_of(world, robot, 'range', 'range', 5000)]
+    assert max(ranges) == 2.0
+    assert 1.92 < min(ranges) < 1.97
+    assert len(set(ranges)) > 50
