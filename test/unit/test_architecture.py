@@ -47,7 +47,7 @@ ARROWS = {
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',
-    'ros_api/messages': 'sim/core sim/runtime',
+    'ros_api/messages': 'sim/core sim/runtime sim/sensors',
     'ros_api/server':
         'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
     'ros_api/services':

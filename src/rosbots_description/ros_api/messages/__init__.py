@@ -11,6 +11,7 @@ from .conversions import (
     stamp,
 )
 from .layouts import (
+    ImuLayout,
     JointStatesLayout,
     LaserScanLayout,
     OdometryLayout,
@@ -21,7 +22,7 @@ from .layouts import (
 from .validity import RequestError, require_finite
 
 __all__ = [
-    'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'PointCloudLayout', 'RequestError',
-    'TransformLayout', 'fill_pose', 'fill_transform', 'fill_twist', 'floats', 'read_pose',
-    'read_transform', 'read_twist', 'read_vector', 'require_finite', 'stamp',
+    'ImuLayout', 'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'PointCloudLayout',
+    'RequestError', 'TransformLayout', 'fill_pose', 'fill_transform', 'fill_twist', 'floats',
+    'read_pose', 'read_transform', 'read_twist', 'read_vector', 'require_finite', 'stamp',
 ]

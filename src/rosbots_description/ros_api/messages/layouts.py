@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...sim.core import NANOSECONDS, Pose
 from ...sim.runtime import JointStates, Odometry
+from ...sim.sensors import Inertia
 
 _SIZE = 4  # of the number at the beginning, which does not count itself [bytes]
 _COVARIANCE = struct.Struct('<36d')  # row-major 6x6: x, y, z, then rotations about x, y, z
@@ -136,6 +137,26 @@ class PointCloudLayout:
         size = self._layout.size - _SIZE + len(tail)
         return self._layout.pack(
             size, seq, *divmod(now_ns, NANOSECONDS), self._frame, len(positions)) + tail
+
+
+class ImuLayout:
+    """sensor_msgs/Imu of a frame."""
+
+    def __init__(self, frame: str) -> None:
+        """Note the name of the frame."""
+        self._frame = _text(frame)
+        self._layout = struct.Struct(f'<4I{len(self._frame)}s4d9d3d9d3d9d')
+        self._size = self._layout.size - _SIZE
+
+    def pack(self, seq: int, now_ns: int, reading: Inertia) -> bytes:
+        """Return the message with the number `seq`, stamped `now_ns` [ns]."""
+        variance = reading.deviation * reading.deviation
+        covariance = (variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance)
+        return self._layout.pack(
+            self._size, seq, *divmod(now_ns, NANOSECONDS), self._frame,
+            *reading.orientation, *covariance, *reading.angular_velocity, *covariance,
+            *reading.linear_acceleration, *covariance,
+        )
 
 
 def floats(values: NDArray[np.float64]) -> bytes:

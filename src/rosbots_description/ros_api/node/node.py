@@ -4,6 +4,7 @@ Parameters:
     ~enable_ros_network (bool, true): false leaves only /clock, the time parameter and plugins.
     ~enable_performance_metrics (bool, false): true adds the topic ~performance_metrics.
     ~extensions (bool, true): false leaves out all topics and services that Gazebo does not have.
+    ~strict (bool, false): true brings back flaws of Gazebo that a client may rely on.
     ~pub_clock_frequency (int, 0) [Hz]: how often /clock is published; 0: at every step.
     /use_sim_time is set to true if nobody has set it.
 """
@@ -144,6 +145,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
     """Offer everything, in the order in which Gazebo does."""
     networked = rospy.get_param('~enable_ros_network', True)
     extensions = networked and rospy.get_param('~extensions', True)
+    server.world.strict = rospy.get_param('~strict', False)
     logger.info('Finished loading Gazebo ROS API Plugin.')
     advertise_clock(server)
     if networked:

@@ -1,11 +1,11 @@
 """Model plugins, chosen by the library name that a description gives; importing registers them."""
 
-from .base import ModelPlugin
+from .base import ModelPlugin, PeriodicPlugin
 from .drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from .force import Force, HandOfGod, WheelSlip
 from .state import P3D, JointPoseTrajectory, JointStatePublisher
 
 __all__ = [
     'P3D', 'DiffDrive', 'Force', 'HandOfGod', 'JointPoseTrajectory', 'JointStatePublisher',
-    'ModelPlugin', 'PlanarMove', 'SkidSteerDrive', 'TricycleDrive', 'WheelSlip',
+    'ModelPlugin', 'PeriodicPlugin', 'PlanarMove', 'SkidSteerDrive', 'TricycleDrive', 'WheelSlip',
 ]

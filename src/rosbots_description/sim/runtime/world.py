@@ -82,6 +82,7 @@ class World:
         self.listeners: list[Listener] = []
         self.paused = False
         self._holders: set[object] = set()  # those who hold physics
+        self.strict = False  # with the flaws of Gazebo that a client may rely on
         self.seed = 0  # of the noise of sensors that come; set it before they do
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)

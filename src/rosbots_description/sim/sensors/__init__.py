@@ -2,11 +2,13 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
+from .imu import ImuSensorPlugin, Inertia
 from .laser import LaserPlugin
+from .link_imu import LinkImu
 from .range import Distance, RangePlugin
 from .ray import Scan
 
 __all__ = [
-    'BlockLaserPlugin', 'Distance', 'LaserPlugin', 'Points', 'RangePlugin', 'Scan', 'Sensor',
-    'SensorPlugin',
+    'BlockLaserPlugin', 'Distance', 'ImuSensorPlugin', 'Inertia', 'LaserPlugin', 'LinkImu',
+    'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin',
 ]

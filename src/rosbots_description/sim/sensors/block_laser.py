@@ -1,7 +1,7 @@
 """Points that a laser meets: the plugin libgazebo_ros_block_laser.so of gazebo_ros_pkgs 2.9.2.
 
-A reading lies in the middle between its neighbouring rays, by half a ray beside where it was measured;
-where nothing was met it is a point at the greatest range. Both as in Gazebo.
+A point lies in the middle between its neighbouring rays, half a ray beside where it was measured;
+where nothing was met it is at the greatest range. Both as in Gazebo.
 """
 
 from typing import NamedTuple

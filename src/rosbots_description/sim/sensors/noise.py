@@ -2,6 +2,7 @@
 
 import math
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,3 +72,12 @@ def gaussian(deviation: float, what: str) -> GaussianNoise:
     if not (math.isfinite(deviation) and deviation >= 0.0):
         raise PluginError(f'{what} is {deviation:g}; it must be at least 0')
     return GaussianNoise(0.0, deviation)
+
+
+def noisy(
+    values: Sequence[float], noises: Sequence[GaussianNoise], random: RandomSteps, step: int
+) -> tuple[float, ...]:
+    """Return the values, each with its own noise, of the step."""
+    standard = random.at(step).standard_normal(len(values)).tolist()
+    return tuple(value + noise.mean + noise.deviation * one
+                 for value, noise, one in zip(values, noises, standard, strict=True))

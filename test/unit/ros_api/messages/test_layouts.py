@@ -10,11 +10,12 @@ from genpy import Time
 from geometry_msgs.msg import Point32, TransformStamped
 from nav_msgs.msg import Odometry as OdometryMessage
 from rospy.msg import serialize_message
-from sensor_msgs.msg import ChannelFloat32, JointState, LaserScan, PointCloud
+from sensor_msgs.msg import ChannelFloat32, Imu, JointState, LaserScan, PointCloud
 from tf2_msgs.msg import TFMessage
 
 from rosbots_description.ros_api.messages.conversions import fill_pose, fill_twist
 from rosbots_description.ros_api.messages.layouts import (
+    ImuLayout,
     JointStatesLayout,
     LaserScanLayout,
     OdometryLayout,
@@ -24,6 +25,7 @@ from rosbots_description.ros_api.messages.layouts import (
 from rosbots_description.ros_api.transport.sending import next_number
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.runtime.outputs import JointStates, Odometry
+from rosbots_description.sim.sensors import Inertia
 
 SEQ, NOW_NS = 258, 12_000_000_345
 STAMP = Time(12, 345)
@@ -80,6 +82,18 @@ def test_a_point_cloud(points):
     packed = PointCloudLayout('laser').pack(
         SEQ, NOW_NS, np.array(points).reshape(-1, 3), np.array(shine))
     assert packed == on_the_wire(message)
+
+
+def test_an_imu():
+    message = Imu()
+    message.header.frame_id, message.header.stamp = 'imu_link', STAMP
+    for field, values in (('orientation', POSE.orientation), ('angular_velocity', TWIST.angular),
+                          ('linear_acceleration', TWIST.linear)):
+        for axis, value in zip('xyzw', values, strict=False):
+            setattr(getattr(message, field), axis, value)
+        getattr(message, f'{field}_covariance')[::4] = [0.25] * 3
+    reading = Inertia(POSE.orientation, TWIST.angular, TWIST.linear, 0.5)
+    assert ImuLayout('imu_link').pack(SEQ, NOW_NS, reading) == on_the_wire(message)
 
 
 @pytest.mark.parametrize('names', [('right', 'left'), ('rädchen',), ()])

@@ -1,0 +1,149 @@
+"""Inertial measurement units: the sensor, and the plugin libgazebo_ros_imu_sensor.so.
+
+Tags, defaults and namespaces of the plugin are those of gazebo_ros_pkgs 2.9.2, as are its oddities:
+1 Hz without <updateRateHZ>, and noise on the quaternion, too, which then is no unit quaternion.
+"""
+
+import logging
+from typing import NamedTuple
+
+from ..core import (
+    NANOSECONDS,
+    PluginError,
+    Quaternion,
+    Twist,
+    Vector,
+    add,
+    conjugate,
+    cross,
+    from_rpy,
+    multiply,
+    rotate,
+    subtract,
+)
+from ..plugin_registry import register_in_sensor, register_sensor
+from .base import Sensor, SensorPlugin
+from .noise import gaussian, noisy, read_noise
+from .numbers import child_at, vector
+
+logger = logging.getLogger(__name__)
+
+_AXES = 'x', 'y', 'z'
+
+
+class Inertia(NamedTuple):
+    """What an IMU measures, in its own axes, with the standard deviation that it claims."""
+
+    orientation: Quaternion  # in the world, or in the attitude it began with
+    angular_velocity: Vector  # [rad/s]
+    linear_acceleration: Vector  # [m/s^2]
+    deviation: float = 0.0  # of each of these numbers, in their units
+
+
+@register_sensor('imu')
+class ImuSensor(Sensor):
+    """Measures orientation, angular velocity and proper acceleration where it is on its link.
+
+    The acceleration is the mean since the reading before, so that its sum is the velocity. `read`
+    takes the velocity as constant while nobody else reads.
+    """
+
+    def load(self) -> None:
+        """Read the noise."""
+        imu = self.spec.element.child('imu')
+        self._noises = [
+            *(read_noise(child_at(imu, f'angular_velocity/{axis}/noise')) for axis in _AXES),
+            *(read_noise(child_at(imu, f'linear_acceleration/{axis}/noise')) for axis in _AXES),
+        ]
+        self._before: tuple[int, Vector] | None = None  # time [ns] and velocity, to compare with
+
+    def reset(self) -> None:
+        """Compare with the velocity before the next step."""
+        self._before = None
+
+    def count_readers(self) -> None:
+        """Forget the velocity while nobody reads."""
+        super().count_readers()
+        if not self.readings.wanted:
+            self._before = None
+
+    def before_step(self) -> None:
+        """Take the velocity before physics if there is none to compare with."""
+        super().before_step()
+        if self._before is None:
+            clock = self.world.clock
+            self._before = clock.now_ns - clock.step_ns, self._state()[1].linear
+
+    def after_step(self) -> None:
+        """Give a reading, and remember the velocity that it was made of."""
+        super().after_step()
+        self._before = self.world.clock.now_ns, self._state()[1].linear
+
+    def measure(self) -> Inertia:
+        """Return a reading."""
+        orientation, (linear, angular) = self._state()
+        acceleration = mean_acceleration(self._before, self.world.clock.now_ns, linear)
+        proper = subtract(acceleration, self.world.physics.gravity)
+        back = conjugate(orientation)
+        measured = (*rotate(back, angular), *rotate(back, proper))
+        if any(self._noises):
+            measured = noisy(measured, self._noises, self.random, self.world.clock.steps)
+        return Inertia(orientation, measured[:3], measured[3:])
+
+    def _state(self) -> tuple[Quaternion, Twist]:
+        """Return orientation in the world, and the twist of where the sensor is."""
+        pose, (linear, angular) = self.link.state()
+        arm = rotate(pose.orientation, self.spec.pose.position)
+        orientation = multiply(pose.orientation, self.spec.pose.orientation)
+        return orientation, Twist(add(linear, cross(angular, arm)), angular)
+
+
+def mean_acceleration(
+    before: tuple[int, Vector] | None, now_ns: int, velocity: Vector
+) -> Vector:
+    """Return the mean acceleration [m/s^2] from a time [ns] with a velocity [m/s] on until now."""
+    if before is None or now_ns <= before[0]:
+        return (0.0, 0.0, 0.0)
+    seconds = (now_ns - before[0]) / NANOSECONDS
+    x, y, z = subtract(velocity, before[1])
+    return (x / seconds, y / seconds, z / seconds)
+
+
+@register_in_sensor('libgazebo_ros_imu_sensor.so')
+class ImuSensorPlugin(SensorPlugin):
+    """Passes readings on, at a rate of its own. Output: `imu`."""
+
+    sensor_class = ImuSensor
+    absent_namespace = '/{}'
+    rate_tag = 'updateRateHZ'
+    missing = staticmethod('missing <{}>, set to default: {}'.format)
+
+    def load(self) -> None:
+        """Read the tags; <bodyName> and <xyzOffset> mean nothing, as upstream."""
+        read = self.params.read
+        self.params.ignore('bodyName', 'xyzOffset')
+        read('topicName', 'imu_data')
+        if not self.params.text('frameName'):
+            raise PluginError('missing <frameName>, cannot proceed')
+        read('frameName', '')
+        self.rate = self.params.rate('updateRateHZ', 1.0)
+        self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
+        self._turn = from_rpy(*vector(read('rpyOffset', '0 0 0'), '<rpyOffset>'))
+        self._reference = None
+        if self.params.text('initialOrientationAsReference') is not None and \
+                read('initialOrientationAsReference', False):
+            self._reference = conjugate(self.sensor.pose.orientation)
+            logger.warning('%s<initialOrientationAsReference> set to true, this behavior is '
+                           'deprecated as it does not comply with REP 145.', self.log_prefix)
+        self.imu = self.output('imu')
+
+    def take(self, reading: Inertia) -> None:
+        """Send a reading."""
+        orientation = reading.orientation
+        if self._reference is not None:
+            orientation = multiply(self._reference, orientation)
+        numbers = (*multiply(self._turn, orientation), *reading.angular_velocity,
+                   *reading.linear_acceleration)
+        if self._noise:
+            numbers = noisy(numbers, [self._noise] * 10, self.random, self.world.clock.steps)
+        self.imu.send(Inertia(numbers[:4], numbers[4:7], numbers[7:], self._noise.deviation))

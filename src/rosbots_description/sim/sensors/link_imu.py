@@ -1,0 +1,88 @@
+"""The IMU that is a plugin of a model: libgazebo_ros_imu.so of gazebo_ros_pkgs 2.9.2.
+
+Its acceleration is that of the link, without gravity. Upstream turns velocity and acceleration from
+the world's axes by the attitude itself, not by its inverse; so does this in a strict world.
+"""
+
+from ..core import (
+    NotFoundError,
+    PluginError,
+    Pose,
+    Twist,
+    Vector,
+    add,
+    compose,
+    conjugate,
+    cross,
+    from_rpy,
+    rotate,
+    subtract,
+)
+from ..plugin_registry import register
+from ..plugins import PeriodicPlugin
+from .imu import Inertia, mean_acceleration
+from .noise import RandomSteps, gaussian, noisy
+from .numbers import vector
+
+
+@register('libgazebo_ros_imu.so')
+class LinkImu(PeriodicPlugin):
+    """Tells attitude, angular velocity and acceleration of <bodyName>. Output: `imu`."""
+
+    prefix = 'imu plugin '
+    later = False
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    _before: tuple[int, Vector] | None = None  # time [ns] and velocity, to compare with
+
+    def load(self) -> None:
+        """Read the tags; find the link."""
+        read, params = self.params.read, self.params
+        name = params.text('bodyName')
+        if not name:
+            raise PluginError('imu plugin missing <bodyName>, cannot proceed')
+        try:
+            self._link = self.model.link(name)
+        except NotFoundError as error:
+            raise PluginError(f'imu plugin bodyName: {name} does not exist: {error}') from None
+        read('topicName', '/default_imu')
+        read('serviceName', '/default_imu')
+        read('frameName', name)
+        position = vector(read('xyzOffset', '0 0 0'), '<xyzOffset>')
+        attitude = vector(read('rpyOffset', '0 0 0'), '<rpyOffset>')
+        self._mount = Pose(position, from_rpy(*attitude))
+        self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
+        self.set_rate(params.rate('updateRate', 0.0))
+        self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
+        self.imu = self.output('imu')
+
+    def reset(self) -> None:
+        """Compare with the velocity before the next step."""
+        self._before = None
+
+    wake = reset
+
+    def before_step(self) -> None:
+        """Take the velocity before physics if there is none to compare with."""
+        if self._before is None and self.is_read:
+            clock = self.world.clock
+            self._before = clock.now_ns - clock.step_ns, self._state()[1].linear
+        super().before_step()
+
+    def report(self) -> None:
+        """Tell attitude, and the mean acceleration since the last time."""
+        now_ns, (pose, (linear, angular)) = self.world.clock.now_ns, self._state()
+        acceleration = mean_acceleration(self._before, now_ns, linear)
+        self._before = now_ns, linear
+        turn = pose.orientation if self.world.strict else conjugate(pose.orientation)
+        numbers = (*rotate(turn, angular), *rotate(turn, acceleration))
+        if self._noise:
+            numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
+        self.imu.send(
+            Inertia(pose.orientation, numbers[:3], numbers[3:], self._noise.deviation))
+
+    def _state(self) -> tuple[Pose, Twist]:
+        """Return pose and twist of what is measured, in the world."""
+        pose, (linear, angular) = self._link.state()
+        mounted = compose(pose, self._mount)
+        arm = subtract(mounted.position, pose.position)
+        return mounted, Twist(add(linear, cross(angular, arm)), angular)

@@ -1,0 +1,172 @@
+"""IMUs measure what mechanics has, and what Gazebo recorded."""
+
+import math
+from contextlib import closing
+
+import numpy as np
+import pytest
+from support.sensing import ROBOTS, recordings
+
+from rosbots_description.sim.core.errors import NotFoundError
+from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, rotate
+from rosbots_description.sim.public.world import World
+
+RECORDED = recordings('imu')
+GRAVITY = 9.8  # [m/s^2]
+# What standing on PyBullet's ground differs by from standing still [rad/s, m/s^2].
+STILL = 1e-4
+
+
+@pytest.fixture
+def world():
+    with closing(World.empty()) as made:
+        yield made
+
+
+def spawn(world, robot, yaw=0.0, edit=str):
+    """Return the model, and a list that takes times [ms] and readings from now on."""
+    text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
+    model = world.spawn(edit(text), 'ibot', yaw=yaw)
+    (plugin,) = model.plugins
+    found = []
+    plugin.outputs['imu'].connect(
+        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+    return model, found
+
+
+def numbers(reading):
+    return np.array((*reading.orientation, *reading.angular_velocity,
+                     *reading.linear_acceleration))
+
+
+def fall(model):
+    """Let it fall and turn as it did in the recording."""
+    model.set_pose(Pose((0.0, 0.0, 20.0), from_rpy(0.0, 0.2, 0.0)))
+    model.set_twist(Twist((0.5, 0.0, 0.0), (0.0, 0.0, 1.0)))
+
+
+@pytest.mark.parametrize('robot', RECORDED)
+def test_at_rest_it_reads_what_was_recorded(world, robot):
+    recording = RECORDED[robot]
+    _, found = spawn(world, robot, recording['yaw'])
+    world.run(500)
+    assert numbers(found[-1][1]) == pytest.approx(np.array(recording['rest']), abs=STILL)
+
+
+@pytest.mark.parametrize('robot', [name for name in RECORDED if RECORDED[name]['fall']])
+def test_falling_and_turning_it_reads_what_was_recorded(world, robot):
+    world.strict = True  # imu_model is recorded with its flaw
+    model, found = spawn(world, robot, RECORDED[robot]['yaw'])
+    world.run(500)
+    del found[:]
+    fall(model)
+    world.run(150)
+    readings = np.array([numbers(reading) for _, reading in found[1:]])  # in the first it jumps
+    for row in np.array(RECORDED[robot]['fall']):
+        attitudes = np.abs(readings[:, :4] - row[:4]).max(axis=1)
+        nearest = readings[attitudes.argmin()]
+        assert attitudes.min() < 0.006  # of two readings 20 ms apart
+        assert nearest[4:7] == pytest.approx(row[4:7], abs=0.003)
+        assert nearest[7:] == pytest.approx(row[7:], abs=0.006 if robot == 'imu_model' else 0.001)
+
+
+def test_what_it_reads_adds_up_to_the_velocity_where_it_is(world):
+    model, found = spawn(world, 'imu_sensor')
+    world.run(5)
+    fall(model)
+    world.run(5)
+    sensor = model.sensors[0]
+
+    def velocity():
+        pose, (linear, angular) = model.links['base_footprint'].state()
+        return np.array(linear) + np.cross(angular, rotate(pose.orientation,
+                                                           sensor.spec.pose.position))
+
+    del found[:]
+    before = velocity()
+    gained = np.zeros(3)
+    for _ in range(50):
+        world.run(10)
+        middle = np.array(rotate(found[-1][1].orientation, found[-1][1].linear_acceleration))
+        gained += (middle - (0.0, 0.0, GRAVITY)) * 0.01
+    assert gained == pytest.approx(velocity() - before, abs=1e-9)
+
+
+def test_the_plugin_of_a_model_has_the_right_axes_unless_the_world_is_strict(world):
+    model, found = spawn(world, 'imu_model')
+    world.run(20)
+    fall(model)
+    world.run(40)
+    pitched = found[-1][1]
+    assert pitched.angular_velocity == pytest.approx(
+        (-math.sin(0.2), 0.0, math.cos(0.2)), abs=0.005)
+    assert pitched.linear_acceleration == pytest.approx(
+        (GRAVITY * math.sin(0.2), 0.0, -GRAVITY * math.cos(0.2)), abs=0.05)
+
+
+@pytest.mark.parametrize(('robot', 'deviations', 'claimed'), [
+    ('imu_sensor_noise', [0.05] * 10, 0.05),
+    ('imu_sensor_sdfnoise', [0.0] * 4 + [2e-4] * 3 + [0.017] * 3, 0.0),
+    ('imu_model_noise', [0.0] * 4 + [0.05] * 6, 0.05),
+])
+def test_noise_is_on_the_numbers_that_gazebo_puts_it_on(world, robot, deviations, claimed):
+    _, found = spawn(world, robot)
+    world.run(8000)
+    readings = np.array([numbers(reading) for time, reading in found if time > 1000])
+    assert readings.std(axis=0) == pytest.approx(np.array(deviations), rel=0.12, abs=1e-6)
+    assert {reading.deviation for _, reading in found} == {claimed}
+
+
+@pytest.mark.parametrize(('robot', 'times'), [
+    ('imu_sensor', [10, 20, 30]), ('imu_sensor_norate', [1000, 2000, 3000]),
+    ('imu_sensor_sdfnoise', [5, 10, 15]), ('imu_model', [20, 40, 60]),
+])
+def test_messages_come_at_the_rate_of_the_plugin(world, robot, times):
+    _, found = spawn(world, robot)
+    world.run(times[-1])
+    assert [time for time, _ in found] == times
+
+
+def test_without_a_rate_the_plugin_of_a_model_works_in_every_step_and_has_its_defaults(world):
+    def bare(text):
+        plugin = '<plugin name="p" filename="libgazebo_ros_imu.so"><bodyName>base_footprint' \
+            '</bodyName></plugin>'
+        return f'{text.split("<plugin")[0]}{plugin}</gazebo></robot>'
+
+    model, found = spawn(world, 'imu_model', edit=bare)
+    world.run(3)
+    assert [time for time, _ in found] == [1, 2, 3]
+    values = model.plugins[0].params.values
+    assert (values['topicName'], values['serviceName'], values['frameName']) == (
+        '/default_imu', '/default_imu', 'base_footprint')
+
+
+@pytest.mark.parametrize(('robot', 'old', 'new', 'sentence'), [
+    ('imu_sensor', '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
+    ('imu_sensor', '<rpyOffset>0 0 0', '<rpyOffset>0 0', "<rpyOffset> is '0 0'; it takes three"),
+    ('imu_sensor', '<gaussianNoise>0<', '<gaussianNoise>nan<', "<gaussianNoise> is 'nan'; it"),
+    ('imu_sensor', '<gaussianNoise>0<', '<gaussianNoise>-1<', '<gaussianNoise> is -1; it must be'),
+    ('imu_model', '<bodyName>base_footprint</bodyName>', '', 'missing <bodyName>, cannot proceed'),
+    ('imu_model', '>base_footprint</body', '>nobody</body', 'bodyName: nobody does not exist'),
+])
+def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
+        world, robot, old, new, sentence, caplog):
+    text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
+    assert old in text
+    model = world.spawn(text.replace(old, new), 'ibot')
+    assert sentence in caplog.text
+    assert 'the model lives on without it' in caplog.text
+    with pytest.raises(NotFoundError):
+        model.plugin('imu')
+    world.run(20)
+
+
+def test_a_reading_does_not_depend_on_who_read_before(world):
+    model, found = spawn(world, 'imu_sensor_noise')
+    world.run(30)
+    expected = [numbers(reading).tobytes() for _, reading in found]
+    world.reset_simulation()
+    del found[:]
+    world.run(30)
+    assert [numbers(reading).tobytes() for _, reading in found] == expected
+    assert model.sensors[0].read().linear_acceleration[2] == pytest.approx(GRAVITY, abs=0.01)
