@@ -84,7 +84,7 @@ def test_a_world_that_is_not_there_ends_with_one_sentence(capsys):
 
 
 REQUIRED = [line for line in REQUIREMENTS.read_text().splitlines()
-            if line.startswith(('pybullet', 'pycollada'))]
+            if line.startswith(('embreex', 'pybullet', 'pycollada'))]
 
 
 @pytest.mark.parametrize('requirement', REQUIRED)

@@ -31,5 +31,5 @@ class CompiledModel:
 
 def bare(spec: ModelSpec) -> ModelSpec:
     """Return what of a model moves and touches."""
-    links = tuple(replace(link, visuals=(), sensors=()) for link in spec.links)
+    links = tuple(replace(link, visuals=(), sensors=(), parts=()) for link in spec.links)
     return ModelSpec('', links, spec.joints, static=spec.static)

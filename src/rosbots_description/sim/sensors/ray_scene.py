@@ -4,6 +4,7 @@ Each scan compares the poses of all links with those of the scan before: what ha
 it was laid out. A ball around each shape leaves few pairs of ray and shape for the formulas.
 """
 
+import logging
 import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
@@ -12,13 +13,16 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Pose, Quaternion, Vector, compose, rotate
-from ..description import Box, Collision, Cylinder, Plane, Sphere
+from ..core import ModelError, Pose, Quaternion, Vector, compose, rotate
+from ..description import Box, Collision, Cylinder, Mesh, Plane, Sphere
 from . import ray_shapes
 from .ray_fan import Indices, Patches, RayFan
+from .ray_mesh import RayMesh
 
 if TYPE_CHECKING:
     from ..runtime import Link, Model, World
+
+logger = logging.getLogger(__name__)
 
 Floats = NDArray[np.float64]
 
@@ -43,6 +47,7 @@ class RayScene:
 
     def __init__(self, world: 'World') -> None:
         self._models: list[Model] = []
+        self._known_meshes: dict[Mesh, RayMesh | None] = {}
         self._world_models = world.models  # not the world: the scene lives no longer than that
         self._lay_out()
 
@@ -113,6 +118,11 @@ class RayScene:
                 met.append(ray_shapes.first_from(
                     least, *formula(start[:, some], way[:, some], half[:, some])))
             begin = end
+        for mesh, count in zip(shapes.tolist(), counts.tolist(), strict=True):
+            if mesh >= self._ends[Sphere]:
+                some = slice(begin, begin + count)
+                begin += count
+                met.append(self._meshes[mesh].meet(start[:, some], way[:, some], least))
         return np.concatenate(met)
 
     @staticmethod
@@ -156,10 +166,18 @@ class RayScene:
         for kind in _FORMULAS:
             solids += [one for one in found if isinstance(one[1].geometry, kind)]
             self._ends[kind] = len(solids)
-        planes = [one for one in found if isinstance(one[1].geometry, Plane)]
         halves = [_half_extents(collision.geometry) for _, collision in solids]
-        self._halves = np.array(halves).reshape(-1, 3).T
-        self._radii = np.array([_radius(collision.geometry) for _, collision in solids])
+        radii = [_radius(collision.geometry) for _, collision in solids]
+        self._meshes: dict[int, RayMesh] = {}  # by row
+        for link, collision in found:
+            mesh = self._read_mesh(collision.geometry)
+            if mesh is not None:
+                self._meshes[len(solids)] = mesh
+                solids.append((link, collision))
+                halves.append((0.0, 0.0, 0.0))
+                radii.append(mesh.radius)
+        planes = [one for one in found if isinstance(one[1].geometry, Plane)]
+        self._halves, self._radii = np.array(halves).reshape(-1, 3).T, np.array(radii)
         self._centres, self._axes = np.zeros((len(solids), 3)), np.zeros((len(solids), 3, 3))
         self._points, self._normals = np.zeros((len(planes), 3)), np.zeros((len(planes), 3))
         self._retro = [collision.surface.laser_retro for _, collision in solids]
@@ -180,6 +198,18 @@ class RayScene:
             else:
                 self._centres[row] = position
                 self._axes[row] = rotation_matrix(orientation)
+                if row in self._meshes:
+                    self._centres[row] += self._axes[row] @ self._meshes[row].centre
+
+    def _read_mesh(self, shape: object) -> RayMesh | None:
+        """Return what rays see of a shape that is a mesh; one read before is not read again."""
+        if isinstance(shape, Mesh) and shape not in self._known_meshes:
+            try:
+                self._known_meshes[shape] = RayMesh(shape)
+            except ModelError as error:
+                logger.error('rays do not see a mesh: %s', error)
+                self._known_meshes[shape] = None
+        return self._known_meshes.get(shape) if isinstance(shape, Mesh) else None
 
 
 def _collisions(models: 'list[Model]') -> 'Iterator[tuple[Link, Collision]]':

@@ -1,0 +1,57 @@
+"""Rays among the triangles of a mesh, in Embree: 0.1 ms for 720 rays among 20 000 triangles.
+
+Embree computes in single precision, so each ray begins where it comes into the ball around the mesh,
+whose middle is the origin.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import Vector
+from ..description import Mesh
+from ..meshes import read_mesh
+
+Floats = NDArray[np.float64]
+
+
+class RayMesh:
+    """A mesh as rays see it, from both sides of its triangles.
+
+    Attributes:
+        centre: the middle of its bounding box, in the mesh's own frame [m].
+        radius: of the ball around it [m].
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        """Read a mesh; its file was good when the model came.
+
+        Raises:
+            ModelError: it is not there any more, or broken.
+        """
+        # Loading Embree takes 20 ms, and few worlds need it.
+        from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415
+        from embreex.rtcore_scene import EmbreeScene  # noqa: PLC0415
+
+        vertices, faces = read_mesh(mesh.path).triangles()
+        corners = (vertices * np.array(mesh.scale))[faces].reshape(-1, 3)
+        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
+        corners = corners - middle
+        x, y, z = middle.tolist()
+        self.centre: Vector = (x, y, z)
+        self.radius = float(np.linalg.norm(corners, axis=1).max())
+        self._scene = EmbreeScene()
+        TriangleMesh(self._scene, corners.reshape(-1, 3, 3).astype(np.float32))
+
+    def meet(self, start: Floats, way: Floats, least: float) -> Floats:
+        """Return where rays first meet a triangle, as `ray_shapes.first_from`.
+
+        Args:
+            start: (3, p) from the middle of the mesh, in its axes [m].
+            way: (3, p) unit vectors.
+        """
+        skipped = np.maximum(least, -(start * way).sum(axis=0) - self.radius)
+        begin = np.ascontiguousarray((start + way * skipped).T, dtype=np.float32)
+        met = self._scene.run(
+            begin, np.ascontiguousarray(way.T, dtype=np.float32), query='DISTANCE')
+        reach = 2.0 * self.radius + 1.0
+        return np.where(met < reach, skipped + met, np.inf)
