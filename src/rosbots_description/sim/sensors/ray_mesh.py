@@ -1,7 +1,7 @@
 """Rays among the triangles of a mesh, in Embree: 0.1 ms for 720 rays among 20 000 triangles.
 
-Embree computes in single precision, so each ray begins where it comes into the ball around the mesh,
-whose middle is the origin.
+Embree computes in single precision, so each ray begins where it comes into the ball around the mesh
+and the ball's middle is the origin.
 """
 
 import numpy as np

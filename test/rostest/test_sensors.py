@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Sensors on the wire: names, types, frames, stamps; resets, and robots that go while one reads."""
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import rospy
+import rostest
+from sensor_msgs.msg import Imu, LaserScan, PointCloud, Range
+from simulator import SimulatorTest, pose, topics_of, wait_until
+from std_srvs.srv import Empty
+
+ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'sensors' / 'robots'
+
+
+def spacing(messages):
+    """Return the times between the stamps of messages [ms], without repetition."""
+    stamps = [message.header.stamp.to_nsec() // 1_000_000 for message in messages]
+    return set(np.diff(stamps).tolist())
+
+
+class SensorTest(SimulatorTest):
+
+    def bring(self, robot, topics, namespace='/'):
+        """Spawn a robot of the recordings, and see which topics come with it."""
+        before = topics_of()
+        text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
+        self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
+        self.assertEqual(topics_of() - before, topics)
+
+    def read(self, topic, message_class, count):
+        messages = self.collect(topic, message_class)
+        wait_until(lambda: len(messages) >= count, f'messages on {topic}')
+        return messages
+
+    def test_a_laser_scans_with_its_frame_at_its_rate(self):
+        self.bring('laser_nonoise', {'/scan'})
+        scans = self.read('/scan', LaserScan, 10)
+        scan = scans[-1]
+        self.assertEqual(scan.header.frame_id, 'laser_link')
+        self.assertEqual((len(scan.ranges), len(scan.intensities)), (720, 720))
+        self.assertEqual({scan.ranges[0], scan.ranges[-1]}, {math.inf})
+        self.assertEqual((scan.time_increment, scan.scan_time), (0.0, 0.0))
+        self.assertAlmostEqual(scan.angle_increment, 2 * 1.5708 / 719, 6)
+        self.assertEqual(spacing(scans), {25})
+
+    def test_a_laser_goes_on_at_once_after_time_is_reset(self):
+        self.bring('laser_nonoise', {'/scan'})
+        scans = self.read('/scan', LaserScan, 40)
+        self.reset_simulation()
+        before = len(scans)
+        wait_until(lambda: len(scans) >= before + 3, 'scans go on')
+        self.assertLess(scans[-1].header.stamp.to_sec(), 1.0)
+
+    def test_a_robot_may_go_while_its_sensors_are_read(self):
+        self.bring('laser_nonoise', {'/scan'})
+        self.read('/scan', LaserScan, 2)
+        self.assertTrue(self.delete('bot').success)
+        self.assertNotIn('/scan', topics_of())
+        self.bring('laser_nonoise', {'/scan'})
+        self.read('/scan', LaserScan, 2)
+
+    def test_a_range_finder_and_points(self):
+        self.bring('range', {'/sonar'})
+        messages = self.read('/sonar', Range, 3)
+        self.assertEqual(spacing(messages), {100})
+        self.assertEqual(messages[0].header.frame_id, 'laser_link')
+        self.assertAlmostEqual(messages[0].range, 2.508, 3)  # the ground
+        self.delete('bot')
+        self.bring('laser_block', {'/cloud'})
+        cloud = self.read('/cloud', PointCloud, 2)[-1]
+        self.assertEqual((len(cloud.points), len(cloud.channels[0].values)), (360, 360))
+        self.assertEqual(cloud.channels[0].name, '')
+
+    def test_an_imu_sensor_at_rest(self):
+        self.bring('imu_sensor', {'/nsx/imu/data'}, namespace='/nsx')
+        messages = self.read('/nsx/imu/data', Imu, 100)
+        self.assertEqual(spacing(messages), {10})
+        self.assertEqual(messages[-1].header.frame_id, 'imu_link')
+        self.assertAlmostEqual(messages[-1].linear_acceleration.z, 9.8, 2)
+        self.assertEqual(set(messages[-1].orientation_covariance), {0.0})
+
+    def test_the_imu_of_a_model_with_its_service(self):
+        self.bring('imu_model', {'/imu'})
+        message = self.read('/imu', Imu, 5)[-1]
+        self.assertEqual(message.header.frame_id, 'base_footprint')
+        self.assertAlmostEqual(message.linear_acceleration.z, 0.0, 2)
+        rospy.wait_for_service('/imu_service', 5.0)
+        rospy.ServiceProxy('/imu_service', Empty)()
+        self.delete('bot')
+        self.bring('imu_model', {'/imu'})
+        rospy.ServiceProxy('/imu_service', Empty)()
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_sensors', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'sensors', SensorTest, sys.argv)
