@@ -135,6 +135,12 @@ class Server:
         self._drivers.append(rospy.Publisher(f'/robot{number}/{COMMANDS}', Twist, queue_size=1))
         return took
 
+    def bring(self, name: str, text: str) -> None:
+        """Spawn a model from a URDF at the origin."""
+        answer = self._spawn(name, text, '/', Pose(orientation=Quaternion(w=1.0)), '')
+        if not answer.success:
+            raise RuntimeError(answer.status_message)
+
     def settle(self, seconds: float) -> None:
         """Let simulated time [s] pass."""
         end, deadline = self.simulated() + seconds, time.monotonic() + PATIENCE

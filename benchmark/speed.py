@@ -22,7 +22,7 @@ from pathlib import Path
 from article import OUTPUT
 from loops import Loop
 from plot import plot_speed
-from reader import PER_SECOND, Reader
+from reader import PER_SECOND, Reader, robot_topics
 from server import Server, in_a_process_of_its_own
 
 WINDOW = 0.5  # [s, wall]
@@ -130,7 +130,7 @@ def _speed(server: Server) -> float:
 
 def _speed_read(server: Server, robots: int) -> tuple[float, float]:
     """Return the steps per second with a reader, and the share of the messages that reached it."""
-    with Reader(robots) as reader:
+    with Reader(*robot_topics(robots)) as reader:
         before, simulated = reader.messages(), server.simulated()
         speed = _speed(server)
         simulated = server.simulated() - simulated

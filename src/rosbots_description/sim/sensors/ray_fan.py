@@ -105,16 +105,20 @@ class RayFan:
         return Patches(balls, rows[balls], rows_end[balls],
                        columns[balls, turns], columns_end[balls, turns])
 
-    def rays(self, patches: Patches) -> tuple[Indices, Indices]:
-        """Return the numbers of the rays in patches, and how many each has."""
+    def rays(self, patches: Patches) -> tuple[Indices, Indices, Indices]:
+        """Return the rays in patches: number of the patch, number of the ray, and counts of rays.
+
+        The first two have a place for each ray in each patch, the third one for each patch.
+        """
         widths = patches.columns_end - patches.columns
         counts = widths * (patches.rows_end - patches.rows)
-        within = np.arange(counts.sum()) - np.repeat(counts.cumsum() - counts, counts)
+        which = np.repeat(np.arange(len(counts)), counts)
+        before = counts.cumsum() - counts
         if self.shape[0] == 1:
-            return within + np.repeat(patches.columns, counts), counts
-        down, along = np.divmod(within, np.repeat(widths, counts))
+            return which, np.arange(len(which)) + (patches.columns - before)[which], counts
+        down, along = np.divmod(np.arange(len(which)) - before[which], widths[which])
         first = patches.rows * self.shape[1] + patches.columns
-        return down * self.shape[1] + along + np.repeat(first, counts), counts
+        return which, down * self.shape[1] + along + first[which], counts
 
 
     def blend(self) -> 'Blend':

@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
 _FORMULAS: dict[type, Formula] = {
     Box: ray_shapes.box, Cylinder: ray_shapes.cylinder, Sphere: ray_shapes.sphere}
-_MOST = 1 << 17  # pairs of ray and shape that are looked at together: some 30 MB
+_MOST = 1 << 18  # pairs of ray and shape that are looked at together: some 30 MB at most
 
 _AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -68,20 +68,21 @@ class RayScene:
         """
         self._update()
         turn = rotation_matrix(pose.orientation)
-        distances = np.full(fan.shape, most)
-        retro = np.zeros(fan.shape)
+        rays = fan.ways.shape[1]
+        distances, retro = np.full(rays, most), np.zeros(rays)
         with np.errstate(all='ignore'):  # what has diverged is not met
-            self._meet_planes(np.array(pose.position), fan.ways.T @ turn.T, least, distances, retro)
+            self._meet_planes(np.array(pose.position), turn @ fan.ways, least, distances, retro)
             self._meet_solids(np.array(pose.position), turn, fan, least, distances, retro)
-        return distances.ravel(), retro.ravel()
+        return distances, retro
 
     def _meet_planes(
         self, origin: Floats, ways: Floats, least: float, distances: Floats, retro: Floats
     ) -> None:
-        planes = zip(self._points, self._normals, self._plane_retro, strict=True)
-        for point, normal, shine in planes:
-            met = ((point - origin) @ normal / (ways @ normal)).reshape(distances.shape)
-            self._keep_nearer(distances, retro, np.where(met >= least, met, np.inf), shine)
+        if len(self._points):
+            heights = ((self._points - origin) * self._normals).sum(axis=1)
+            met = heights[:, None] / (self._normals @ ways)
+            self._keep_nearest(
+                distances, retro, np.where(met >= least, met, np.inf), self._plane_retro)
 
     def _meet_solids(
         self, origin: Floats, turn: Floats, fan: RayFan, least: float, distances: Floats,
@@ -92,18 +93,18 @@ class RayScene:
         laid_out = np.concatenate((  # (15, m): origin of the fan, half extents, fan to shape
             np.einsum('ij,ijk->ki', -offsets, self._axes), self._halves,
             (turn.T @ self._axes).reshape(-1, 9).T))
-        for batch in self._batches(patches):
-            rays, counts = fan.rays(batch)
-            pairs = np.repeat(laid_out[:, batch.balls], counts, axis=1)
-            way = (fan.ways[:, None, rays] * pairs[6:].reshape(3, 3, -1)).sum(axis=0)
-            met = self._meet(batch.balls, counts, least, pairs[:3], way, pairs[3:6])
-            ends = counts.cumsum().tolist()
-            for to, count, ball, row, row_end, column, column_end in zip(
-                    ends, counts.tolist(), *(part.tolist() for part in batch), strict=True):
-                part = (slice(row, row_end), slice(column, column_end))
-                near = distances[part]
-                self._keep_nearer(near, retro[part], met[to - count:to].reshape(near.shape),
-                                  self._retro[ball])
+        at_once = max(1, _MOST // len(distances))
+        for begin in range(0, len(patches.balls), at_once):
+            batch = Patches(*(part[begin:begin + at_once] for part in patches))
+            which, ray, counts = fan.rays(batch)
+            # take leaves the pairs of a row side by side, which an index does not.
+            pairs = laid_out.take(batch.balls[which], axis=1)
+            along = fan.ways.take(ray, axis=1)[:, None]
+            way = (along * pairs[6:].reshape(3, 3, -1)).sum(axis=0)
+            met = np.full((len(counts), len(distances)), np.inf)
+            met.ravel()[which * len(distances) + ray] = self._meet(
+                batch.balls, counts, least, pairs[:3], way, pairs[3:6])
+            self._keep_nearest(distances, retro, met, self._retro[batch.balls])
 
     def _meet(
         self, shapes: Indices, counts: Indices, least: float, start: Floats, way: Floats,
@@ -125,24 +126,20 @@ class RayScene:
                 met.append(self._meshes[mesh].meet(start[:, some], way[:, some], least))
         return np.concatenate(met)
 
-    @staticmethod
-    def _batches(patches: Patches) -> Iterator[Patches]:
-        """Yield patches, as many as are to be looked at together."""
-        sizes = (patches.rows_end - patches.rows) * (patches.columns_end - patches.columns)
-        totals, begin = sizes.cumsum(), 0
-        while begin < len(totals):
-            before = totals[begin] - sizes[begin]
-            end = max(begin + 1, int(np.searchsorted(totals, before + _MOST)))
-            yield Patches(*(part[begin:end] for part in patches))
-            begin = end
-
-    def _keep_nearer(
-        self, distances: Floats, retro: Floats, met: Floats, shine: float
+    def _keep_nearest(
+        self, distances: Floats, retro: Floats, met: Floats, shine: Floats
     ) -> None:
-        """Let rays end where they meet something nearer than before, in place."""
+        """Let rays (n,) end where they meet the nearest of shapes, in place.
+
+        Args:
+            met: (shapes, n) where they meet which.
+            shine: (shapes,) their laser_retro.
+        """
+        nearest = met.min(axis=0)
         if self._shines:
-            retro[met < distances] = shine
-        np.minimum(distances, met, out=distances)
+            closer = np.flatnonzero(nearest < distances)
+            retro[closer] = shine[met.argmin(axis=0)[closer]]
+        np.minimum(distances, nearest, out=distances)
 
     def _update(self) -> None:
         """Follow what has come, gone or moved."""
@@ -180,9 +177,9 @@ class RayScene:
         self._halves, self._radii = np.array(halves).reshape(-1, 3).T, np.array(radii)
         self._centres, self._axes = np.zeros((len(solids), 3)), np.zeros((len(solids), 3, 3))
         self._points, self._normals = np.zeros((len(planes), 3)), np.zeros((len(planes), 3))
-        self._retro = [collision.surface.laser_retro for _, collision in solids]
-        self._plane_retro = [collision.surface.laser_retro for _, collision in planes]
-        self._shines = any((*self._retro, *self._plane_retro))
+        self._retro = np.array([collision.surface.laser_retro for _, collision in solids])
+        self._plane_retro = np.array([collision.surface.laser_retro for _, collision in planes])
+        self._shines = bool(self._retro.any() or self._plane_retro.any())
         self._carried: dict[Link, list[tuple[int, Collision]]] = {link: [] for link in self._links}
         for some in (solids, planes):
             for row, (link, collision) in enumerate(some):
