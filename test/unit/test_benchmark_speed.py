@@ -12,7 +12,8 @@ def speed(monkeypatch):
     """Return the module, without what starts servers."""
     monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
     for name, members in (('server', ('Server', 'in_a_process_of_its_own')),
-                          ('reader', ('PER_SECOND', 'Reader', 'robot_topics')), ('loops', ('Loop',))):
+                          ('reader', ('PER_SECOND', 'Reader', 'robot_topics')),
+                          ('loops', ('Loop',))):
         module = ModuleType(name)
         vars(module).update(dict.fromkeys(members))
         monkeypatch.setitem(sys.modules, name, module)

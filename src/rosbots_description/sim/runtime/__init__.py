@@ -1,7 +1,7 @@
 """The world as it runs: models, what happens at which step, and what comes out."""
 
 from .empty_world import add_empty_world
-from .model import Joint, Link, Model
+from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin_life import Plugin, SensorLife
 from .population import populate
@@ -10,7 +10,7 @@ from .world import WORLD_FRAMES, Entity, World
 from .world_state import SavedState
 
 __all__ = [
-    'NEVER', 'WORLD_FRAMES', 'Entity', 'FrameTransform', 'Hook', 'Joint', 'JointStates', 'Link',
-    'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState', 'SensorLife', 'World',
-    'add_empty_world', 'populate',
+    'NEVER', 'WORLD_FRAMES', 'CollisionFrame', 'Entity', 'FrameTransform', 'Hook', 'Joint',
+    'JointStates', 'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState',
+    'SensorLife', 'World', 'add_empty_world', 'populate',
 ]

@@ -2,6 +2,7 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
+from .contact import BumperPlugin, Touch, TouchingPoint
 from .imu import ImuSensorPlugin, Inertia
 from .laser import LaserPlugin
 from .link_imu import LinkImu
@@ -9,6 +10,6 @@ from .range import Distance, RangePlugin
 from .ray import Scan
 
 __all__ = [
-    'BlockLaserPlugin', 'Distance', 'ImuSensorPlugin', 'Inertia', 'LaserPlugin', 'LinkImu',
-    'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin',
+    'BlockLaserPlugin', 'BumperPlugin', 'Distance', 'ImuSensorPlugin', 'Inertia', 'LaserPlugin',
+    'LinkImu', 'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin', 'Touch', 'TouchingPoint',
 ]

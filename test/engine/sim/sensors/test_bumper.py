@@ -1,0 +1,137 @@
+"""Contact sensors tell what Gazebo's were recorded to tell: names, counts, forces, axes."""
+
+import math
+from contextlib import closing
+
+import numpy as np
+import pytest
+from support.sensing import RECORDED, ROBOTS
+
+from rosbots_description.ros_api.adapters.contacts import contacts_message
+from rosbots_description.sim.public.world import World
+
+OWN = 'bbot::base_footprint::base_footprint_fixed_joint_lump__base_link_collision'
+GROUND, WALL = 'ground_plane::link::collision', 'wall_1::link::c'
+CLOSE = 0.02  # share of a force that the solver may leave out
+BOX = ('<sdf version="1.6"><model name="top"><link name="link"><inertial><mass>2</mass></inertial>'
+       '<collision name="c"><geometry><box><size>.2 .2 .2</size></box></geometry></collision>'
+       '</link></model></sdf>')
+
+
+@pytest.fixture
+def world():
+    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as made:
+        yield made
+
+
+def spawn(world, robot='bumper', settle=500, **place):
+    """Return the model, and a list that takes times [ms] and readings, once it stands."""
+    model = world.spawn(ROBOTS / f'{robot}.urdf', 'bbot', **place)
+    world.run(settle)
+    found = []
+    model.plugin('bumper').outputs['contacts'].connect(
+        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+    return model, found
+
+
+def total(touches, field='force'):
+    return np.sum([getattr(point, field) for touch in touches for point in touch.points], axis=0)
+
+
+def weight_of(model):
+    return 9.8 * sum(link.spec.inertial.mass for link in model.links.values())
+
+
+def test_standing_each_step_has_a_state_and_the_forces_are_the_weight(world):
+    model, found = spawn(world)
+    world.run(200)
+    assert [time for time, _ in found] == list(range(520, 701, 20))
+    for time, touches in found:
+        assert len(touches) == 20
+        assert {(touch.first, touch.second) for touch in touches} == {(OWN, GROUND)}
+        assert [touch.time_ns // 1_000_000 for touch in touches] == [*range(time - 19, time + 1)]
+    for touch in found[-1][1]:
+        assert total([touch]) == pytest.approx((0.0, 0.0, weight_of(model)), abs=CLOSE * 49.0)
+        assert total([touch], 'torque') == pytest.approx((0.0, 0.0, 0.0), abs=0.1)
+        for point in touch.points:
+            assert point.normal == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
+            assert abs(point.depth) < 1e-3
+
+
+def test_a_message_has_the_words_and_sums_of_gazebos(world):
+    _, found = spawn(world)
+    world.run(20)
+    message = contacts_message(found[0][1])
+    first = message.states[0]
+    assert first.info == (f'Debug:  i:(0/20)     my geom:{OWN}   other geom:{GROUND}'
+                          '         time:0.501000000\n')
+    assert (first.collision1_name, first.collision2_name) == (OWN, GROUND)
+    assert len(first.wrenches) == len(first.contact_positions) == len(first.depths)
+    assert first.total_wrench.force.z == pytest.approx(
+        sum(wrench.force.z for wrench in first.wrenches))
+
+
+def test_without_a_rate_each_step_is_a_message(world):
+    _, found = spawn(world, 'bumper_norate')
+    world.run(3)
+    assert [(time, len(touches)) for time, touches in found] == [(501, 1), (502, 1), (503, 1)]
+
+
+def test_what_does_not_touch_is_sent_too(world):
+    model, found = spawn(world, settle=0, z=0.3)
+    world.run(400)
+    counts = [len(touches) for _, touches in found]
+    assert counts[:12] == [0] * 12
+    assert counts[-1] == 20
+
+
+@pytest.mark.parametrize(('yaw', 'push'), [
+    (0.0, (-1.0, 0.0)), (math.pi, (1.0, 0.0)), (math.pi / 2, (0.0, 1.0)),
+])
+def test_a_wall_pushes_back_in_the_axes_of_the_link(world, yaw, push):
+    x = 7.9 - (0.15 if yaw == math.pi / 2 else 0.2)  # its front is at the wall
+    model, found = spawn(world, x=x, yaw=yaw)
+    world.apply_wrench(model.links['base_footprint'], (80.0, 0.0, 0.0))
+    world.run(500)
+    touches = [touch for _, reading in found[-10:] for touch in reading]
+    assert {touch.first for touch in touches} == {OWN}
+    force = total(touches) / 200  # steps; how wall and ground share it is the solver's choice
+    assert force == pytest.approx((80.0 * push[0], 80.0 * push[1], weight_of(model)), rel=CLOSE,
+                                  abs=1.0)
+    of_wall = [touch for touch in touches if touch.second == WALL]
+    assert total(of_wall)[:2] @ np.array(push) > 25.0 * 200
+    for point in of_wall[-1].points:
+        assert point.normal == pytest.approx((-1.0, 0.0, 0.0), abs=1e-3)
+
+
+def test_the_body_that_came_later_is_the_first_of_the_two(world):
+    _, found = spawn(world)
+    world.spawn(BOX, z=0.3)
+    world.run(1000)
+    touches = found[-1][1]
+    assert {(touch.first, touch.second) for touch in touches} == {
+        ('top::link::c', OWN), (OWN, GROUND)}
+    on_top = [touch for touch in touches if touch.first != OWN]
+    assert total(on_top)[2] / len(on_top) == pytest.approx(2 * 9.8, rel=CLOSE)
+    assert on_top[0].points[0].normal == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
+
+
+def test_the_other_collision_of_a_reduced_link_is_told_apart(world):
+    _, found = spawn(world, 'bumper_front')
+    world.run(40)
+    assert [touches for _, touches in found] == [(), ()]
+
+
+def test_a_collision_that_is_not_there_is_named_and_nothing_is_touched(world, caplog):
+    _, found = spawn(world, 'bumper_plainname')
+    assert ("contact 'bump_sensor' of link 'base_footprint': it names base_link_collision as "
+            "<collision>; the collisions of 'base_footprint' are: base_footprint_fixed_joint_lump__"
+            'base_link_collision') in caplog.text
+    world.run(40)
+    assert [touches for _, touches in found] == [(), ()]
+
+
+def test_defaults_are_those_of_gazebo(world):
+    model, _ = spawn(world, 'bumper_defaults')
+    assert model.plugin('bumper').params.values == {
+        'bumperTopicName': 'bumper_states', 'frameName': 'world'}
