@@ -12,18 +12,18 @@ from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 
 from ...sim.core import NANOSECONDS, Vector
-from ...sim.sensors import BumperPlugin, Touch
+from ...sim.sensors import BumperPlugin, ContactPair
 from .declarations import Publishes
 from .registry import connects
 
 
-def contacts_message(touches: Sequence[Touch]) -> ContactsState:
+def contacts_message(touches: Sequence[ContactPair]) -> ContactsState:
     """Return the message of what was touched since the one before."""
     return ContactsState(states=[_state(touch, f'{i}/{len(touches)}')
                                  for i, touch in enumerate(touches)])
 
 
-def _state(touch: Touch, place: str) -> ContactState:
+def _state(touch: ContactPair, place: str) -> ContactState:
     points = touch.points
     info = (f'Debug:  i:({place})     my geom:{touch.first}   other geom:{touch.second}'
             f'         time:{touch.time_ns / NANOSECONDS:.9f}\n')

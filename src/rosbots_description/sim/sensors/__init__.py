@@ -2,7 +2,7 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
-from .contact import BumperPlugin, Touch, TouchingPoint
+from .contact import BumperPlugin, ContactPair, ContactPoint
 from .imu import ImuSensorPlugin, Inertia
 from .laser import LaserPlugin
 from .link_imu import LinkImu
@@ -10,6 +10,7 @@ from .range import Distance, RangePlugin
 from .ray import Scan
 
 __all__ = [
-    'BlockLaserPlugin', 'BumperPlugin', 'Distance', 'ImuSensorPlugin', 'Inertia', 'LaserPlugin',
-    'LinkImu', 'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin', 'Touch', 'TouchingPoint',
+    'BlockLaserPlugin', 'BumperPlugin', 'ContactPair', 'ContactPoint', 'Distance',
+    'ImuSensorPlugin', 'Inertia', 'LaserPlugin', 'LinkImu', 'Points', 'RangePlugin', 'Scan',
+    'Sensor', 'SensorPlugin',
 ]

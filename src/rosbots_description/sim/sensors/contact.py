@@ -17,7 +17,7 @@ from .base import Sensor, SensorPlugin
 logger = logging.getLogger(__name__)
 
 
-class TouchingPoint(NamedTuple):
+class ContactPoint(NamedTuple):
     """Where two collisions touch."""
 
     force: Vector  # on the body of the first one, in the axes of its link [N]
@@ -27,13 +27,13 @@ class TouchingPoint(NamedTuple):
     depth: float  # of the overlap [m]
 
 
-class Touch(NamedTuple):
+class ContactPair(NamedTuple):
     """What two collisions, by their scoped names, do to each other in one step."""
 
     first: str
     second: str
     time_ns: int  # at the end of the step
-    points: tuple[TouchingPoint, ...]
+    points: tuple[ContactPoint, ...]
 
 
 @register_sensor('contact')
@@ -53,7 +53,7 @@ class ContactSensor(Sensor):
                 else 'names no <collision>'
             logger.warning("model '%s', %s: it %s; the collisions of '%s' are: %s", self.model.name,
                            self.called, said, self.link.name, ', '.join(known) or 'none')
-        self._touches: list[Touch] = []
+        self._touches: list[ContactPair] = []
         self._next_ns = 0
 
     def reset(self) -> None:
@@ -79,9 +79,9 @@ class ContactSensor(Sensor):
             self.reset()
             self.readings.send(reading)
 
-    def measure(self) -> tuple[Touch, ...]:
+    def measure(self) -> tuple[ContactPair, ...]:
         """Return what was touched in the last step."""
-        pairs: dict[tuple[CollisionFrame, CollisionFrame], list[TouchingPoint]] = {}
+        pairs: dict[tuple[CollisionFrame, CollisionFrame], list[ContactPoint]] = {}
         for contact in self.world.engine.contacts(self.model.body, self.link.name):
             if contact.one.collision not in self._names:
                 continue
@@ -94,7 +94,7 @@ class ContactSensor(Sensor):
             pairs.setdefault((first, second), []).append(
                 _point(first, contact.position, normal, force, contact.depth))
         now_ns = self.world.clock.now_ns
-        return tuple(Touch(first.scoped_name, second.scoped_name, now_ns, tuple(points))
+        return tuple(ContactPair(first.scoped_name, second.scoped_name, now_ns, tuple(points))
                      for (first, second), points in pairs.items())
 
     def _collision(self, body: object, link: str, collision: str) -> CollisionFrame:
@@ -108,7 +108,7 @@ class ContactSensor(Sensor):
 
 def _point(
     body: CollisionFrame, position: Vector, normal: Vector, force: Vector, depth: float
-) -> TouchingPoint:
+) -> ContactPoint:
     """Return a point with what acts there on the link that carries `body`."""
     pose, inertial = body.link.pose, body.link.spec.inertial
     centre = pose.position
@@ -116,7 +116,7 @@ def _point(
         centre = add(centre, rotate(pose.orientation, inertial.pose.position))
     back = conjugate(pose.orientation)
     torque = cross(subtract(position, centre), force)
-    return TouchingPoint(rotate(back, force), rotate(back, torque), position, normal, depth)
+    return ContactPoint(rotate(back, force), rotate(back, torque), position, normal, depth)
 
 
 @register_in_sensor('libgazebo_ros_bumper.so')
@@ -133,6 +133,6 @@ class BumperPlugin(SensorPlugin):
         self.params.read('frameName', 'world')
         self.contacts = self.output('contacts')
 
-    def take(self, reading: Iterable[Touch]) -> None:
+    def take(self, reading: Iterable[ContactPair]) -> None:
         """Send what was touched."""
         self.contacts.send(reading)
