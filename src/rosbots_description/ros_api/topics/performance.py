@@ -3,14 +3,17 @@
 Publishes:
     ~performance_metrics (gazebo_msgs/PerformanceMetrics): while subscribed, every `PERIOD` of wall
         time; only if the parameter ~enable_performance_metrics is true. Gazebo has this topic from
-        11.2 on. Sensors have no place of their own in the step here, so none are listed.
+        11.2 on. Sensors that nobody reads have the rate 0, for they do nothing.
 """
 
 import time
+from collections.abc import Iterable
 
 import rospy
-from gazebo_msgs.msg import PerformanceMetrics
+from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
 
+from ...sim.core import NANOSECONDS
+from ...sim.runtime import SensorLife
 from ..messages import stamp
 from ..server import Server
 
@@ -31,16 +34,43 @@ class Pace:
         return gained / passed if passed > 0.0 else 0.0
 
 
+class SensorPaces:
+    """Rates of sensors between two looks."""
+
+    def __init__(self) -> None:
+        self._before: dict[SensorLife, tuple[int, int]] = {}  # count and time of the last [ns]
+
+    def look(self, sensors: Iterable[SensorLife], passed: float) -> list[SensorPerformanceMetric]:
+        """Return the rates of sensors since the last look, which is so long ago [s, wall]."""
+        now = {sensor: (sensor.count, sensor.last_ns) for sensor in sensors}
+        before, self._before = self._before, now
+        found = []
+        for sensor, (count, last_ns) in now.items():
+            old_count, old_ns = before.get(sensor, (count, last_ns))
+            gained, span = count - old_count, (last_ns - old_ns) / NANOSECONDS
+            found.append(SensorPerformanceMetric(
+                sensor.scoped_name, gained / span if span > 0.0 else 0.0,
+                gained / passed if passed > 0.0 else 0.0, -1.0))
+        return found
+
+
 def advertise_performance(server: Server) -> None:
     """Offer the topic, if the parameter asks for it."""
     if not rospy.get_param('~enable_performance_metrics', False):
         return
     publisher = rospy.Publisher('~performance_metrics', PerformanceMetrics, queue_size=10)
     clock = server.world.clock
-    pace = Pace(clock.now, time.monotonic())
+    begin = time.monotonic()
+    pace, paces = Pace(clock.now, begin), SensorPaces()
 
     def publish() -> None:
-        message = PerformanceMetrics(real_time_factor=pace.look(clock.now, time.monotonic()))
+        nonlocal begin
+        now = time.monotonic()
+        message = PerformanceMetrics(real_time_factor=pace.look(clock.now, now))
+        models = server.world.models.values()
+        message.sensors = paces.look(
+            (sensor for model in models for sensor in model.sensors), now - begin)
+        begin = now
         message.header.stamp = stamp(clock.now_ns)
         if publisher.get_num_connections() > 0:
             publisher.publish(message)

@@ -57,3 +57,5 @@ class SensorLife(ModelPart):
     name: str
     scoped_name: str  # with those of its model and link
     measures: bool  # False: it is of a type that is not simulated
+    count = 0  # of the readings that it has given
+    last_ns = 0  # when it gave the last one [ns]

@@ -112,7 +112,13 @@ class Sensor(SensorLife):
 
     def after_step(self) -> None:
         """Give a reading to those who want it."""
-        self.readings.send(self.measure())
+        self.give(self.measure())
+
+    def give(self, reading: Any) -> None:
+        """Send a reading, and count it."""
+        self.count += 1
+        self.last_ns = self.world.clock.now_ns
+        self.readings.send(reading)
 
     def count_readers(self) -> None:
         """Be due when the next reading is, or never while nobody reads."""

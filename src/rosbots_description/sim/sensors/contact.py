@@ -77,7 +77,7 @@ class ContactSensor(Sensor):
         if now_ns >= self._next_ns:
             reading = tuple(self._touches)
             self.reset()
-            self.readings.send(reading)
+            self.give(reading)
 
     def measure(self) -> tuple[ContactPair, ...]:
         """Return what was touched in the last step."""
