@@ -1,0 +1,64 @@
+"""Force and torque in a joint: the plugin libgazebo_ros_ft_sensor.so of gazebo_ros_pkgs 2.9.2.
+
+It tells what the child does to the parent, in the axes of the child and about the joint. Gazebo
+wants <provideFeedback> for that; here a joint is measured while somebody reads.
+"""
+
+from typing import NamedTuple
+
+from ..core import PluginError, Vector
+from ..plugin_registry import register
+from ..plugins import PeriodicPlugin
+from .noise import RandomSteps, gaussian, noisy
+
+
+class JointWrench(NamedTuple):
+    """What the child of a joint does to its parent, in the axes of the child."""
+
+    force: Vector  # [N]
+    torque: Vector  # about the origin of the joint [N m]
+
+
+@register('libgazebo_ros_ft_sensor.so')
+class JointWrenchPlugin(PeriodicPlugin):
+    """Tells the wrench in <jointName>. Output: `wrench`. `frame` is the child's name."""
+
+    prefix = 'ft_sensor plugin '
+    later = False
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    _measured: object = None  # the body in which the engine measures it
+
+    def load(self) -> None:
+        """Read the tags; find the joint."""
+        for tag in ('jointName', 'topicName'):
+            if not self.params.text(tag):
+                raise PluginError(f'ft_sensor plugin missing <{tag}>, cannot proceed')
+        self.params.read('topicName', '')
+        self._joint = self.joint(self.params.read('jointName', ''), 'measured')
+        self.frame = self.params.values['frame'] = self._joint.spec.child
+        self._noise = gaussian(self.params.read('gaussianNoise', 0.0), '<gaussianNoise>')
+        self.set_rate(self.params.rate('updateRate', 0.0))
+        self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
+        self.wrench = self.output('wrench')
+
+    def before_step(self) -> None:
+        """Have the joint measured in the step; its body may be new."""
+        if self._measured is not self.model.body:
+            self._measured = self.model.body
+            self.world.engine.measure_reaction(self.model.body, self._joint.name)
+        super().before_step()
+
+    def readers_changed(self) -> None:
+        """End measuring when nobody reads."""
+        super().readers_changed()
+        if self._measured is not None and not self.is_read:
+            self.world.engine.measure_reaction(self.model.body, self._joint.name, wanted=False)
+            self._measured = None
+
+    def report(self) -> None:
+        """Tell the wrench."""
+        force, torque = self.world.engine.joint_reaction(self.model.body, self._joint.name)
+        numbers = tuple(-number for number in (*force, *torque))
+        if self._noise:
+            numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
+        self.wrench.send(JointWrench(numbers[:3], numbers[3:]))

@@ -1,0 +1,92 @@
+"""Joints pass on the weights and efforts that they were recorded to pass on."""
+
+import math
+from contextlib import closing
+
+import pytest
+from support.sensing import ROBOTS
+
+from rosbots_description.ros_api.adapters.wrenches import wrench_message
+from rosbots_description.sim.public.world import World
+
+ARM = (ROBOTS / 'arm_ft.urdf').read_text(encoding='utf-8')
+# Of Gazebo, hanging at rest: force and torque of each joint [N, N m].
+HANGING = {'ft_elbow': ((0.0, 0.0, 4.9), (0.0, 0.0, 0.0)),
+           'ft_shoulder': ((0.0, 0.0, 14.7), (0.245, 0.0, 0.0))}
+CLOSE = 1e-3
+
+
+@pytest.fixture
+def world():
+    with closing(World.empty()) as made:
+        yield made
+
+
+def spawn(world, arm=ARM):
+    """Return the arm, hanging, and by topic a list that takes times [ms] and readings."""
+    model = world.spawn(arm, 'arm')
+    model.joint('shoulder').set_position(math.pi)
+    found = {}
+    for plugin in model.plugins:
+        if 'wrench' in plugin.outputs:
+            readings = found.setdefault(plugin.params.values['topicName'], [])
+            plugin.outputs['wrench'].connect(
+                lambda reading, to=readings: to.append((world.clock.now_ns // 1_000_000, reading)))
+    return model, found
+
+
+@pytest.mark.parametrize('topic', HANGING)
+def test_hanging_at_rest_joints_bear_what_hangs_on_them(world, topic):
+    _, found = spawn(world)
+    world.run(200)
+    assert [time for time, _ in found[topic]] == list(range(10, 201, 10))
+    force, torque = HANGING[topic]
+    message = wrench_message(found[topic][-1][1]).wrench
+    assert (message.force.x, message.force.y, message.force.z) == pytest.approx(force, abs=CLOSE)
+    assert (message.torque.x, message.torque.y, message.torque.z) == pytest.approx(
+        torque, abs=CLOSE)
+
+
+def test_an_effort_on_a_joint_is_in_its_torque(world):
+    model, found = spawn(world)
+    # 0.118 rad is where 0.1 N m holds the fore-arm against gravity.
+    world.apply_effort(model.joint('elbow'), 0.1)
+    world.run(8000)
+    _, reading = found['ft_elbow'][-1]
+    assert reading.torque[1] == pytest.approx(-0.1, abs=0.003)
+    assert math.hypot(*reading.force) == pytest.approx(4.9, abs=0.01)
+
+
+def test_the_frame_is_that_of_the_child_and_nothing_is_measured_unread(world):
+    model = world.spawn(ARM, 'arm')
+    plugin = model.plugin('ft')
+    assert plugin.params.values['frame'] == 'fore'
+    read = []
+    plugin.outputs['wrench'].connect(read.append)
+    world.run(20)
+    plugin.outputs['wrench'].disconnect(read.append)
+    assert len(read) == 2
+    assert world.engine.joint_reaction(model.body, 'elbow').force == pytest.approx((0, 0, 0))
+
+
+def test_after_a_reset_of_time_it_measures_on(world):
+    model, found = spawn(world)
+    world.run(50)
+    world.reset_simulation()
+    model.joint('shoulder').set_position(math.pi)
+    found['ft_elbow'].clear()
+    world.run(100)
+    assert found['ft_elbow'][-1][0] == 100
+    assert found['ft_elbow'][-1][1].force[2] == pytest.approx(4.9, abs=CLOSE)
+
+
+@pytest.mark.parametrize(('old', 'new', 'sentence'), [
+    ('<jointName>elbow</jointName>', '', 'missing <jointName>, cannot proceed'),
+    ('<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
+    ('<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
+])
+def test_one_that_makes_no_sense_is_left_out_with_a_sentence(world, old, new, sentence, caplog):
+    assert old in ARM
+    world.spawn(ARM.replace(old, new), 'arm')
+    assert sentence in caplog.text
+    world.run(10)
