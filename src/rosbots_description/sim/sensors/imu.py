@@ -9,13 +9,10 @@ from typing import NamedTuple
 
 from ..core import (
     NANOSECONDS,
-    PluginError,
     Quaternion,
     Twist,
     Vector,
-    add,
     conjugate,
-    cross,
     from_rpy,
     multiply,
     rotate,
@@ -24,7 +21,7 @@ from ..core import (
 from ..plugin_registry import register_in_sensor, register_sensor
 from .base import Sensor, SensorPlugin
 from .noise import gaussian, noisy, read_noise
-from .numbers import child_at, vector
+from .numbers import child_at
 
 logger = logging.getLogger(__name__)
 
@@ -92,10 +89,8 @@ class ImuSensor(Sensor):
 
     def _state(self) -> tuple[Quaternion, Twist]:
         """Return orientation in the world, and the twist of where the sensor is."""
-        pose, (linear, angular) = self.link.state()
-        arm = rotate(pose.orientation, self.spec.pose.position)
-        orientation = multiply(pose.orientation, self.spec.pose.orientation)
-        return orientation, Twist(add(linear, cross(angular, arm)), angular)
+        pose, twist = self.link.state_at(self.spec.pose)
+        return pose.orientation, twist
 
 
 def mean_acceleration(
@@ -123,12 +118,10 @@ class ImuSensorPlugin(SensorPlugin):
         read = self.params.read
         self.params.ignore('bodyName', 'xyzOffset')
         read('topicName', 'imu_data')
-        if not self.params.text('frameName'):
-            raise PluginError('missing <frameName>, cannot proceed')
-        read('frameName', '')
+        self.params.required('frameName')
         self.rate = self.params.rate('updateRateHZ', 1.0)
         self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
-        self._turn = from_rpy(*vector(read('rpyOffset', '0 0 0'), '<rpyOffset>'))
+        self._turn = from_rpy(*self.params.vector('rpyOffset'))
         self._reference = None
         if self.params.text('initialOrientationAsReference') is not None and \
                 read('initialOrientationAsReference', False):

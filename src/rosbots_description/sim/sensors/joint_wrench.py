@@ -6,7 +6,7 @@ wants <provideFeedback> for that; here a joint is measured while somebody reads.
 
 from typing import NamedTuple
 
-from ..core import PluginError, Vector
+from ..core import Vector
 from ..plugin_registry import register
 from ..plugins import PeriodicPlugin
 from .noise import RandomSteps, gaussian, noisy
@@ -30,11 +30,8 @@ class JointWrenchPlugin(PeriodicPlugin):
 
     def load(self) -> None:
         """Read the tags; find the joint."""
-        for tag in ('jointName', 'topicName'):
-            if not self.params.text(tag):
-                raise PluginError(f'ft_sensor plugin missing <{tag}>, cannot proceed')
-        self.params.read('topicName', '')
-        self._joint = self.joint(self.params.read('jointName', ''), 'measured')
+        self._joint = self.joint(self.params.required('jointName'), 'measured')
+        self.params.required('topicName')
         self.frame = self.params.values['frame'] = self._joint.spec.child
         self._noise = gaussian(self.params.read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.set_rate(self.params.rate('updateRate', 0.0))

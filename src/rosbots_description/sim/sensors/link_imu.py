@@ -4,25 +4,13 @@ Its acceleration is that of the link, without gravity. Upstream turns velocity a
 the world's axes by the attitude itself, not by its inverse; so does this in a strict world.
 """
 
-from ..core import (
-    NotFoundError,
-    PluginError,
-    Pose,
-    Twist,
-    Vector,
-    add,
-    compose,
-    conjugate,
-    cross,
-    from_rpy,
-    rotate,
-    subtract,
-)
+import logging
+
+from ..core import Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
 from ..plugin_registry import register
 from ..plugins import PeriodicPlugin
 from .imu import Inertia, mean_acceleration
 from .noise import RandomSteps, gaussian, noisy
-from .numbers import vector
 
 
 @register('libgazebo_ros_imu.so')
@@ -32,24 +20,19 @@ class LinkImu(PeriodicPlugin):
     prefix = 'imu plugin '
     later = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
     _before: tuple[int, Vector] | None = None  # time [ns] and velocity, to compare with
 
     def load(self) -> None:
         """Read the tags; find the link."""
         read, params = self.params.read, self.params
-        name = params.text('bodyName')
-        if not name:
-            raise PluginError('imu plugin missing <bodyName>, cannot proceed')
-        try:
-            self._link = self.model.link(name)
-        except NotFoundError as error:
-            raise PluginError(f'imu plugin bodyName: {name} does not exist: {error}') from None
+        self._link, self._mount = self.link('bodyName')
         read('topicName', '/default_imu')
         read('serviceName', '/default_imu')
-        read('frameName', name)
-        position = vector(read('xyzOffset', '0 0 0'), '<xyzOffset>')
-        attitude = vector(read('rpyOffset', '0 0 0'), '<rpyOffset>')
-        self._mount = Pose(position, from_rpy(*attitude))
+        if read('frameName', self._link.name) in self.model.spec.reduced:
+            params.values['frameName'] = self._link.name
+        params.ignore('xyzOffset')
+        self._turn = from_rpy(*params.vector('rpyOffset'))
         self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.set_rate(params.rate('updateRate', 0.0))
         self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
@@ -82,7 +65,5 @@ class LinkImu(PeriodicPlugin):
 
     def _state(self) -> tuple[Pose, Twist]:
         """Return pose and twist of what is measured, in the world."""
-        pose, (linear, angular) = self._link.state()
-        mounted = compose(pose, self._mount)
-        arm = subtract(mounted.position, pose.position)
-        return mounted, Twist(add(linear, cross(angular, arm)), angular)
+        (position, orientation), twist = self._link.state_at(self._mount)
+        return Pose(position, multiply(self._turn, orientation)), twist

@@ -2,7 +2,7 @@
 
 import math
 
-from ..core import PluginError, Vector
+from ..core import PluginError
 from ..description import Element
 
 
@@ -44,18 +44,3 @@ def count(element: Element | None, path: str, default: int, most: int) -> int:
         raise PluginError(f'line {child.line}: <{child.tag}> is {value:g}; it takes a number from '
                           f'1 to {most}')
     return int(value)
-
-
-def vector(text: str, what: str) -> Vector:
-    """Return the three numbers of a text.
-
-    Raises:
-        PluginError: they are not three, or not finite; `what` has the text, e.g. '<rpyOffset>'.
-    """
-    try:
-        x, y, z = map(float, text.split())
-    except ValueError:
-        x = y = z = math.nan
-    if not all(map(math.isfinite, (x, y, z))):
-        raise PluginError(f"{what} is '{text}'; it takes three finite numbers")
-    return (x, y, z)

@@ -104,6 +104,17 @@ def test_the_plugin_of_a_model_has_the_right_axes_unless_the_world_is_strict(wor
         (GRAVITY * math.sin(0.2), 0.0, -GRAVITY * math.cos(0.2)), abs=0.05)
 
 
+def test_a_body_behind_a_fixed_joint_has_its_true_attitude_under_its_parents_name(world):
+    model, found = spawn(world, 'imu_model_lumped')
+    world.run(20)
+    assert found[-1][1].orientation == pytest.approx(from_rpy(0.2, -0.3, 0.5), abs=STILL)
+    assert model.plugins[0].params.values['frameName'] == 'base_footprint'  # as recorded
+    fall(model)
+    world.run(40)
+    attitude = found[-1][1].orientation
+    assert rotate(attitude, found[-1][1].angular_velocity) == pytest.approx((0, 0, 1), abs=0.006)
+
+
 @pytest.mark.parametrize(('robot', 'deviations', 'claimed'), [
     ('imu_sensor_noise', [0.05] * 10, 0.05),
     ('imu_sensor_sdfnoise', [0.0] * 4 + [2e-4] * 3 + [0.017] * 3, 0.0),
