@@ -95,7 +95,8 @@ class ModelPluginsTest(SimulatorTest):
             self.assertAlmostEqual(found, expected, delta=1e-3)
 
     def test_a_trajectory_is_played_point_by_point(self):
-        self.bring('arm_ft', {'/joint_states', '/set_joint_trajectory'})
+        self.bring('arm_ft', {'/joint_states', '/set_joint_trajectory', '/ft_elbow',
+                              '/ft_shoulder'})
         states = self.collect('/joint_states', JointState)
         play = self.sender('/set_joint_trajectory', JointTrajectory)
         for frame in ('', 'nope'):  # which is an error in the log

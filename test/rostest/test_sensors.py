@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import rospy
 import rostest
+from gazebo_msgs.msg import ContactsState
+from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import Imu, LaserScan, PointCloud, Range
 from simulator import SimulatorTest, pose, topics_of, wait_until
 from std_srvs.srv import Empty
@@ -92,6 +94,21 @@ class SensorTest(SimulatorTest):
         self.delete('bot')
         self.bring('imu_model', {'/imu'})
         rospy.ServiceProxy('/imu_service', Empty)()
+
+    def test_a_bumper_tells_its_weight(self):
+        self.bring('bumper', {'/bumper'})
+        messages = self.read('/bumper', ContactsState, 20)
+        message = messages[-1]
+        self.assertEqual(message.header.frame_id, 'base_link')
+        self.assertEqual(spacing(messages), {20})
+        self.assertEqual(len(message.states), 20)
+        self.assertAlmostEqual(message.states[-1].total_wrench.force.z / 49.0, 1.0, 1)
+
+    def test_a_joint_tells_what_hangs_on_it(self):
+        self.spawn('arm', (ROBOTS.parents[1] / 'robots' / 'arm_ft.urdf').read_text())
+        messages = self.read('/ft_elbow', WrenchStamped, 5)
+        self.assertEqual(messages[-1].header.frame_id, 'fore')
+        self.assertEqual(spacing(messages), {10})
 
 
 if __name__ == '__main__':

@@ -4,12 +4,12 @@ import math
 from contextlib import closing
 
 import pytest
-from support.sensing import ROBOTS
+from support.sensing import RECORDED
 
 from rosbots_description.ros_api.adapters.wrenches import wrench_message
 from rosbots_description.sim.public.world import World
 
-ARM = (ROBOTS / 'arm_ft.urdf').read_text(encoding='utf-8')
+ARM = (RECORDED / 'robots' / 'arm_ft.urdf').read_text(encoding='utf-8')
 # Of Gazebo, hanging at rest: force and torque of each joint [N, N m].
 HANGING = {'ft_elbow': ((0.0, 0.0, 4.9), (0.0, 0.0, 0.0)),
            'ft_shoulder': ((0.0, 0.0, 14.7), (0.245, 0.0, 0.0))}
