@@ -264,14 +264,14 @@ def test_a_model_lives_on_without_a_plugin_nobody_knows(caplog):
 
 
 def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
-    plugin = PluginSpec('imu', 'libgazebo_ros_imu.so', Element('plugin'))
+    plugin = PluginSpec('imu', 'libgazebo_ros_elevator.so', Element('plugin'))
     with empty_world() as world:
         model = world.spawn(
             replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose())
-        assert model.left_out == ["plugin 'libgazebo_ros_imu.so'"]
+        assert model.left_out == ["plugin 'libgazebo_ros_elevator.so'"]
     ((level, sentence),) = [(r.levelname, r.getMessage()) for r in caplog.records]
     assert (level, sentence) == (
-        'WARNING', "model 'b', plugin 'imu': libgazebo_ros_imu.so is known but not supported yet; "
+        'WARNING', "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported yet; "
         'see doc/gazebo_compatibility.md')
 
 
