@@ -7,11 +7,12 @@ Parameters:
 """
 
 from collections.abc import Sequence
+from functools import reduce
 
 from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 
-from ...sim.core import NANOSECONDS, Vector
+from ...sim.core import NANOSECONDS, Vector, add
 from ...sim.sensors import BumperPlugin, ContactPair
 from .declarations import Publishes
 from .registry import connects
@@ -30,8 +31,8 @@ def _state(touch: ContactPair, place: str) -> ContactState:
     return ContactState(
         info, touch.first, touch.second,
         [_wrench(point.force, point.torque) for point in points],
-        _wrench(*(tuple(map(sum, zip(*vectors, strict=True))) for vectors in (
-            [point.force for point in points], [point.torque for point in points]))),
+        _wrench(reduce(add, (point.force for point in points)),
+                reduce(add, (point.torque for point in points))),
         [Vector3(*point.position) for point in points],
         [Vector3(*point.normal) for point in points],
         [point.depth for point in points],

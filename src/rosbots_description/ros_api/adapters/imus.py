@@ -24,7 +24,7 @@ logger = logging.getLogger(__name__)
 
 def imu_pack(adapter: Adapter) -> Pack:
     """Return what lays readings out."""
-    return ImuLayout(adapter.plugin.params.values['frameName']).pack
+    return ImuLayout(adapter.text('<frameName>')).pack
 
 
 def calibration(adapter: Adapter, name: str) -> Callable[[], None]:

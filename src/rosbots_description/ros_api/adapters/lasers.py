@@ -20,7 +20,7 @@ from .registry import connects
 
 def scan_pack(adapter: Adapter) -> Pack:
     """Return what lays scans out."""
-    layout = LaserScanLayout(adapter.frame(adapter.plugin.params.values['frameName']))
+    layout = LaserScanLayout(adapter.frame(adapter.text('<frameName>')))
 
     def pack(number: int, now_ns: int, scan: Scan) -> bytes:
         return layout.pack(number, now_ns, scan[2:5], scan[5:], scan.ranges, scan.intensities)
@@ -37,7 +37,7 @@ def range_message(distance: Distance) -> Range:
 
 def points_pack(adapter: Adapter) -> Pack:
     """Return what lays point clouds out."""
-    layout = PointCloudLayout(adapter.frame(adapter.plugin.params.values['frameName']))
+    layout = PointCloudLayout(adapter.frame(adapter.text('<frameName>')))
     return lambda number, now_ns, points: layout.pack(number, now_ns, *points)
 
 

@@ -1,6 +1,6 @@
 """A sensor as plain values: what a <sensor> says of itself, whatever it measures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose
 from .element import Element, PluginSpec
@@ -18,4 +18,4 @@ class SensorSpec:
     visualize: bool = False
     topic: str = ''
     plugins: tuple[PluginSpec, ...] = ()
-    element: Element = Element('sensor')
+    element: Element = field(default_factory=lambda: Element('sensor'))

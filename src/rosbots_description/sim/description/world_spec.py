@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose, Vector
-from .model_spec import Colour, ModelSpec, PluginSpec
+from .element import PluginSpec
+from .model_spec import Colour, ModelSpec
 from .physics_settings import PhysicsSettings
 
 POINT, DIRECTIONAL, SPOT = 'point', 'directional', 'spot'

@@ -306,7 +306,7 @@ class Model:
         """Return plugins and sensors, as they were loaded."""
         return [*self.plugins, *self.sensors]
 
-    def sensor(self, name: str) -> Any:
+    def sensor(self, name: str) -> Any:  # noqa: ANN401  each type has its own attributes
         """Return the sensor of that name, or `LINK::NAME`; the first, if there are several.
 
         Raises:

@@ -1,7 +1,7 @@
 """What every sensor is: a place on a link, a rate, readings; and the plugins that pass them on."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ..core import NANOSECONDS, SLOWEST_RATE, PluginError, Pose, compose
 from ..description import PluginSpec, SensorSpec
@@ -12,6 +12,8 @@ from .noise import RandomSteps
 
 if TYPE_CHECKING:
     from ..runtime import Link, World
+
+Reading = TypeVar('Reading')
 
 
 class DueTimes:
@@ -60,7 +62,7 @@ class Sensor(SensorLife):
         self.name = spec.name
         self.scoped_name = f'{link.scoped_name}::{spec.name}'
         self.called = f"{spec.type or 'sensor'} '{spec.name}' of link '{link.name}'"
-        self.readings: Output = Output(self.count_readers)
+        self.readings: Output[Any] = Output(self.count_readers)
         self.random = RandomSteps(world.seed, self.scoped_name)
 
     @property
@@ -81,11 +83,11 @@ class Sensor(SensorLife):
             PluginError: a number makes no sense.
         """
 
-    def measure(self) -> Any:
+    def measure(self) -> object:
         """Return a reading of the world as it is now, at the end of a step."""
         raise NotImplementedError
 
-    def read(self) -> Any:
+    def read(self) -> Any:  # noqa: ANN401  each type of sensor has its own readings
         """Return a reading of the world as it is now, whatever the rate.
 
         Raises:
@@ -114,7 +116,7 @@ class Sensor(SensorLife):
         """Give a reading to those who want it."""
         self.give(self.measure())
 
-    def give(self, reading: Any) -> None:
+    def give(self, reading: object) -> None:
         """Send a reading, and count it."""
         self.count += 1
         self.last_ns = self.world.clock.now_ns
@@ -137,7 +139,7 @@ class KeptSensor(Sensor):
     measures = False
 
 
-class SensorPlugin(ModelPlugin):
+class SensorPlugin(ModelPlugin, Generic[Reading]):
     """A plugin in a <sensor>: it takes the sensor's readings while somebody reads its outputs.
 
     A subclass is registered by `register_in_sensor(library)`, names in `sensor_class` what it can
@@ -177,7 +179,7 @@ class SensorPlugin(ModelPlugin):
         """Return what makes random numbers, too."""
         return (*super().shared(), self.random)
 
-    def take(self, reading: Any) -> None:
+    def take(self, reading: Reading) -> None:
         """Send what is made of a reading of the sensor."""
         raise NotImplementedError
 
@@ -194,7 +196,7 @@ class SensorPlugin(ModelPlugin):
         """Go on in the rhythm that there would be without having slept."""
         self._next_ns = self._times.after(self.world.clock.now_ns)
 
-    def _take(self, reading: Any) -> None:
+    def _take(self, reading: Reading) -> None:
         now_ns = self.world.clock.now_ns
         if now_ns >= self._next_ns:
             self._next_ns = self._times.after(now_ns)

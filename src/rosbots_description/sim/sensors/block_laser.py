@@ -23,10 +23,11 @@ class Points(NamedTuple):
 
 
 @register_in_sensor('libgazebo_ros_block_laser.so')
-class BlockLaserPlugin(SensorPlugin):
+class BlockLaserPlugin(SensorPlugin[Scan]):
     """Makes points of rays. Output: `points`."""
 
     sensor_class = RaySensor
+    sensor: RaySensor
     prefix = 'Block laser plugin (ns = {}) '
 
     def load(self) -> None:

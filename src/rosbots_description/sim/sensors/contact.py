@@ -6,7 +6,6 @@ those of the world.
 """
 
 import logging
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from ..core import Vector, add, conjugate, cross, rotate, subtract
@@ -120,7 +119,7 @@ def _point(
 
 
 @register_in_sensor('libgazebo_ros_bumper.so')
-class BumperPlugin(SensorPlugin):
+class BumperPlugin(SensorPlugin[tuple[ContactPair, ...]]):
     """Passes touches on, also where there are none. Output: `contacts`."""
 
     sensor_class = ContactSensor
@@ -133,6 +132,6 @@ class BumperPlugin(SensorPlugin):
         self.params.read('frameName', 'world')
         self.contacts = self.output('contacts')
 
-    def take(self, reading: Iterable[ContactPair]) -> None:
+    def take(self, reading: tuple[ContactPair, ...]) -> None:
         """Send what was touched."""
         self.contacts.send(reading)

@@ -5,6 +5,7 @@ Tags, defaults and namespaces of the plugin are those of gazebo_ros_pkgs 2.9.2, 
 """
 
 import logging
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..core import (
@@ -82,10 +83,11 @@ class ImuSensor(Sensor):
         acceleration = mean_acceleration(self._before, self.world.clock.now_ns, linear)
         proper = subtract(acceleration, self.world.physics.gravity)
         back = conjugate(orientation)
-        measured = (*rotate(back, angular), *rotate(back, proper))
+        measured: Sequence[float] = (*rotate(back, angular), *rotate(back, proper))
         if any(self._noises):
             measured = noisy(measured, self._noises, self.random, self.world.clock.steps)
-        return Inertia(orientation, measured[:3], measured[3:])
+        wx, wy, wz, ax, ay, az = measured
+        return Inertia(orientation, (wx, wy, wz), (ax, ay, az))
 
     def _state(self) -> tuple[Quaternion, Twist]:
         """Return orientation in the world, and the twist of where the sensor is."""
@@ -105,7 +107,7 @@ def mean_acceleration(
 
 
 @register_in_sensor('libgazebo_ros_imu_sensor.so')
-class ImuSensorPlugin(SensorPlugin):
+class ImuSensorPlugin(SensorPlugin[Inertia]):
     """Passes readings on, at a rate of its own. Output: `imu`."""
 
     sensor_class = ImuSensor
@@ -135,8 +137,10 @@ class ImuSensorPlugin(SensorPlugin):
         orientation = reading.orientation
         if self._reference is not None:
             orientation = multiply(self._reference, orientation)
-        numbers = (*multiply(self._turn, orientation), *reading.angular_velocity,
-                   *reading.linear_acceleration)
+        numbers: Sequence[float] = (*multiply(self._turn, orientation), *reading.angular_velocity,
+                                    *reading.linear_acceleration)
         if self._noise:
             numbers = noisy(numbers, [self._noise] * 10, self.random, self.world.clock.steps)
-        self.imu.send(Inertia(numbers[:4], numbers[4:7], numbers[7:], self._noise.deviation))
+        x, y, z, w, wx, wy, wz, ax, ay, az = numbers
+        self.imu.send(
+            Inertia((x, y, z, w), (wx, wy, wz), (ax, ay, az), self._noise.deviation))

@@ -4,6 +4,7 @@ It tells what the child does to the parent, in the axes of the child and about t
 wants <provideFeedback> for that; here a joint is measured while somebody reads.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..core import Vector
@@ -55,7 +56,8 @@ class JointWrenchPlugin(PeriodicPlugin):
     def report(self) -> None:
         """Tell the wrench."""
         force, torque = self.world.engine.joint_reaction(self.model.body, self._joint.name)
-        numbers = tuple(-number for number in (*force, *torque))
+        numbers: Sequence[float] = [-number for number in (*force, *torque)]
         if self._noise:
             numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
-        self.wrench.send(JointWrench(numbers[:3], numbers[3:]))
+        fx, fy, fz, tx, ty, tz = numbers
+        self.wrench.send(JointWrench((fx, fy, fz), (tx, ty, tz)))

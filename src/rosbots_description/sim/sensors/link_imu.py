@@ -5,6 +5,7 @@ the world's axes by the attitude itself, not by its inverse; so does this in a s
 """
 
 import logging
+from collections.abc import Sequence
 
 from ..core import Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
 from ..plugin_registry import register
@@ -57,11 +58,12 @@ class LinkImu(PeriodicPlugin):
         acceleration = mean_acceleration(self._before, now_ns, linear)
         self._before = now_ns, linear
         turn = pose.orientation if self.world.strict else conjugate(pose.orientation)
-        numbers = (*rotate(turn, angular), *rotate(turn, acceleration))
+        numbers: Sequence[float] = (*rotate(turn, angular), *rotate(turn, acceleration))
         if self._noise:
             numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
-        self.imu.send(
-            Inertia(pose.orientation, numbers[:3], numbers[3:], self._noise.deviation))
+        wx, wy, wz, ax, ay, az = numbers
+        self.imu.send(Inertia(
+            pose.orientation, (wx, wy, wz), (ax, ay, az), self._noise.deviation))
 
     def _state(self) -> tuple[Pose, Twist]:
         """Return pose and twist of what is measured, in the world."""

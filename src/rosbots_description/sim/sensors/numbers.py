@@ -38,9 +38,8 @@ def count(element: Element | None, path: str, default: int, most: int) -> int:
     Raises:
         PluginError: it is none, below 1, or above `most`.
     """
-    value = number(element, path, default)
-    if not 1.0 <= value <= most:
-        child = child_at(element, path)
+    value, child = number(element, path, default), child_at(element, path)
+    if child is not None and not 1.0 <= value <= most:
         raise PluginError(f'line {child.line}: <{child.tag}> is {value:g}; it takes a number from '
                           f'1 to {most}')
     return int(value)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ..plugin_registry import register_in_sensor
 from .base import SensorPlugin
-from .noise import gaussian
+from .noise import gaussian, noisy
 from .ray import RaySensor, Scan
 
 
@@ -19,10 +19,11 @@ class Distance(NamedTuple):
 
 
 @register_in_sensor('libgazebo_ros_range.so')
-class RangePlugin(SensorPlugin):
+class RangePlugin(SensorPlugin[Scan]):
     """Takes the least of all rays. Output: `range`."""
 
     sensor_class = RaySensor
+    sensor: RaySensor
     prefix = 'range plugin (ns = {}) '
 
     def load(self) -> None:
@@ -40,6 +41,6 @@ class RangePlugin(SensorPlugin):
         """Send the least range, with noise if something was met."""
         least, most = float(self.sensor.rays[0].min()), self.sensor.range_max
         if least < most and self.noise:
-            noise = self.random.at(self.world.clock.steps)
-            least = min(most, float(self.noise.added_to(least, noise)))
+            (least,) = noisy((least,), (self.noise,), self.random, self.world.clock.steps)
+            least = min(most, least)
         self.range.send(Distance(least, *self._fixed))

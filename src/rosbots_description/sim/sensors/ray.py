@@ -51,7 +51,8 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
     samples = count(element, 'samples', samples, MOST_SAMPLES)
     resolution = number(element, 'resolution', 1.0)
     if not 1.0 <= samples * resolution <= MOST_SAMPLES:
-        raise PluginError(f'line {element.line}: <resolution> is {resolution:g}; with {samples} '
+        line = 0 if element is None else element.line
+        raise PluginError(f'line {line}: <resolution> is {resolution:g}; with {samples} '
                           f'<samples> it must give 1 to {MOST_SAMPLES} ranges')
     return Sweep(samples, int(samples * resolution), number(element, 'min_angle', 0.0),
                  number(element, 'max_angle', 0.0))

@@ -147,11 +147,13 @@ class Blend(NamedTuple):
 
     def ranges(self, cast: Floats) -> Floats:
         """Return readings, interpolated."""
-        return sum(share * cast[rays] for rays, share in self.corners)
+        found: Floats = np.sum([share * cast[rays] for rays, share in self.corners], axis=0)
+        return found
 
     def intensities(self, cast: Floats) -> Floats:
         """Return readings, each the mean of its rays."""
-        return sum(cast[rays] for rays, _ in self.corners) / len(self.corners)
+        found: Floats = np.mean([cast[rays] for rays, _ in self.corners], axis=0)
+        return found
 
 
 def _span(middle: Floats, radii: Floats, far: Floats) -> tuple[Floats, Floats]:

@@ -29,8 +29,8 @@ class RayMesh:
             ModelError: it is not there any more, or broken.
         """
         # Loading Embree takes 20 ms, and few worlds need it.
-        from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415
-        from embreex.rtcore_scene import EmbreeScene  # noqa: PLC0415
+        from embreex.mesh_construction import TriangleMesh
+        from embreex.rtcore_scene import EmbreeScene
 
         vertices, faces = read_mesh(mesh.path).triangles()
         corners = (vertices * np.array(mesh.scale))[faces].reshape(-1, 3)

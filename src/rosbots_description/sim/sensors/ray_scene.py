@@ -13,8 +13,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ModelError, Pose, Quaternion, Vector, compose, rotate
-from ..description import Box, Collision, Cylinder, Mesh, Plane, Sphere
+from ..core import ZERO, ModelError, Pose, Quaternion, Vector, compose, rotate
+from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import ray_shapes
 from .ray_fan import Indices, Patches, RayFan
 from .ray_mesh import RayMesh
@@ -33,7 +33,6 @@ _MOST = 1 << 18  # pairs of ray and shape that are looked at together: some 30 M
 
 _AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
-Solid = Box | Cylinder | Sphere
 
 
 def rotation_matrix(orientation: Quaternion) -> Floats:
@@ -216,16 +215,18 @@ def _collisions(models: 'list[Model]') -> 'Iterator[tuple[Link, Collision]]':
                 yield link, collision
 
 
-def _half_extents(shape: Solid) -> Vector:
+def _half_extents(shape: Geometry) -> Vector:
     match shape:
         case Box((x, y, z)):
             return x / 2.0, y / 2.0, z / 2.0
         case Cylinder(radius, length):
             return radius, radius, length / 2.0
-    return (shape.radius,) * 3
+        case Sphere(radius):
+            return radius, radius, radius
+    return ZERO  # a mesh has a ball of its own, and a plane none
 
 
-def _radius(shape: Solid) -> float:
+def _radius(shape: Geometry) -> float:
     """Return the radius of the ball around a shape [m], with a little more for rounding."""
     x, y, z = _half_extents(shape)
     radius = x if isinstance(shape, Sphere) else \

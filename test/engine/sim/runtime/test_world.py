@@ -271,8 +271,8 @@ def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
         assert model.left_out == ["plugin 'libgazebo_ros_elevator.so'"]
     ((level, sentence),) = [(r.levelname, r.getMessage()) for r in caplog.records]
     assert (level, sentence) == (
-        'WARNING', "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported yet; "
-        'see doc/gazebo_compatibility.md')
+        'WARNING', "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported "
+        'yet; see doc/gazebo_compatibility.md')
 
 
 def test_a_model_lives_on_without_a_plugin_that_fails(caplog):

@@ -78,7 +78,7 @@ def test_without_a_rate_each_step_is_a_message(world):
 
 
 def test_what_does_not_touch_is_sent_too(world):
-    model, found = spawn(world, settle=0, z=0.3)
+    _, found = spawn(world, settle=0, z=0.3)
     world.run(400)
     counts = [len(touches) for _, touches in found]
     assert counts[:12] == [0] * 12

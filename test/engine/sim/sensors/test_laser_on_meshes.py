@@ -5,10 +5,9 @@ from contextlib import closing
 
 import numpy as np
 import pytest
-import trimesh
 from support.sensing import ROBOTS
 
-from rosbots_description.sim.core.transforms import Pose, from_rpy
+from rosbots_description.sim.core.transforms import Pose, compose, from_rpy, rotate
 from rosbots_description.sim.public.world import World
 
 EXACT = 1e-4  # [m]
@@ -19,20 +18,50 @@ ROOM = '''<sdf version="1.6"><model name="m"><static>{static}</static><pose>{pos
 </model></sdf>'''
 
 
+def box(x, y, z):
+    """Return the triangles (12, 3, 3) of a cuboid."""
+    sides = []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            corners = np.array([(side, a, b) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            corners = np.roll(corners, axis, axis=1) * (x / 2.0, y / 2.0, z / 2.0)
+            sides += [corners[[0, 1, 2]], corners[[0, 2, 3]]]
+    return np.array(sides)
+
+
+def ring(inner, outer, height, sections):
+    """Return the triangles of the walls of a hollow cylinder about z, which is open at its ends."""
+    angles = np.linspace(0.0, 2.0 * math.pi, sections + 1)
+    walls = []
+    for radius in (inner, outer):
+        circle = np.stack([radius * np.cos(angles), radius * np.sin(angles), 0.0 * angles], axis=1)
+        up = np.array((0.0, 0.0, height / 2.0))
+        low, high = circle - up, circle + up
+        for i in range(sections):
+            walls += [(low[i], low[i + 1], high[i + 1]), (low[i], high[i + 1], high[i])]
+    return np.array(walls)
+
+
+# None of them has its middle at the origin.
+ASIDE = np.array((0.7, -0.2, 0.1))  # [m]
+MESHES = {'box': box(2.0, 3.0, 1.0) + ASIDE, 'ring': ring(2.0, 2.5, 1.5, 200) + ASIDE}
+
+
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory):
-    """Return a folder with meshes, none of them with its middle at the origin."""
+    """Return a folder with the meshes."""
     made = tmp_path_factory.mktemp('meshes')
-    for name, mesh in (('box', trimesh.creation.box((2.0, 3.0, 1.0))),
-                       ('ring', trimesh.creation.annulus(2.0, 2.5, 1.5, sections=200))):
-        mesh.apply_translation((0.7, -0.2, 0.1))
-        mesh.export(made / f'{name}.stl')
+    for name, triangles in MESHES.items():
+        corners = ''.join('v {:.17g} {:.17g} {:.17g}\n'.format(*corner)
+                          for corner in triangles.reshape(-1, 3))
+        faces = ''.join(f'f {i} {i + 1} {i + 2}\n' for i in range(1, 3 * len(triangles), 3))
+        (made / f'{name}.obj').write_text(corners + faces)
     return made
 
 
-def reference(mesh, origins, ways):
+def reference(triangles, origins, ways):
     """Return distances to the nearest of all triangles, in double precision."""
-    a, b, c = (mesh.triangles[:, i][None] for i in range(3))
+    a, b, c = (triangles[:, i][None] for i in range(3))
     ways, origins = ways[:, None], origins[:, None]
     with np.errstate(all='ignore'):
         p = np.cross(ways, c - a)
@@ -50,20 +79,17 @@ def reference(mesh, origins, ways):
 def test_a_mesh_is_met_where_its_triangles_are(folder, name, scale, pose):
     with closing(World()) as world:
         robot = world.spawn(ROBOT)
-        model = world.spawn(ROOM.format(static=1, pose=pose, uri=folder / f'{name}.stl',
+        model = world.spawn(ROOM.format(static=1, pose=pose, uri=folder / f'{name}.obj',
                                         scale=scale))
         sensor = robot.sensor('head_hokuyo_sensor')
         scan = sensor.read()
         frame = model.links['l'].collisions['c'].pose
         place = sensor.pose
-    mesh = trimesh.load(folder / f'{name}.stl')
-    mesh.apply_scale((1.0, 1.0, float(scale)))
-    turn = trimesh.transformations.quaternion_matrix(np.roll(frame.orientation, 1))
-    turn[:3, 3] = frame.position
-    mesh.apply_transform(turn)
-    turn = trimesh.transformations.quaternion_matrix(np.roll(place.orientation, 1))[:3, :3]
-    ways = sensor.fan.ways.T @ turn.T
-    expected = reference(mesh, np.repeat([place.position], len(ways), axis=0), ways)
+    corners = (MESHES[name] * (1.0, 1.0, float(scale))).reshape(-1, 3)
+    placed = [compose(frame, Pose(tuple(corner))).position for corner in corners.tolist()]
+    ways = np.array([rotate(place.orientation, way) for way in sensor.fan.ways.T.tolist()])
+    expected = reference(np.array(placed).reshape(-1, 3, 3),
+                         np.repeat([place.position], len(ways), axis=0), ways)
     assert np.isfinite(expected).sum() > 20
     edges = np.isinf(expected) != np.isinf(scan.ranges)
     assert edges.sum() <= 2  # where a ray grazes
@@ -75,7 +101,7 @@ def test_a_mesh_is_met_where_its_triangles_are(folder, name, scale, pose):
 def test_a_mesh_that_moves_is_met_where_it_is(folder):
     with closing(World()) as world:
         sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')
-        model = world.spawn(ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.stl',
+        model = world.spawn(ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.obj',
                                         scale=1))
         for x in (3.0, 500.0, 20.0):
             model.set_pose(Pose((x, 0.0, 0.0), from_rpy(0.0, 0.0, -0.2)))

@@ -225,7 +225,6 @@ def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
 def _read_link_block(
     block: etree._Element, link: LinkTags, tags: GazeboTags, unread: list[str]
 ) -> None:
-    name = block.get('reference', '')
     for child in block:
         tag = child.tag
         if tag in _KEPT:

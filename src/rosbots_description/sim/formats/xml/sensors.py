@@ -46,12 +46,14 @@ def _own_pose(element: etree._Element, complain: Complain) -> Pose:
     child = element.find('pose')
     if child is None:
         return IDENTITY
-    numbers = parse_numbers(child.text or '', 6)
+    text = child.text or ''
+    numbers = parse_numbers(text, 6)
     if numbers is None:
-        complain(f"{location(child)}: <pose> is '{shortened(child.text, 60)}'; it takes six finite "
+        complain(f"{location(child)}: <pose> is '{shortened(text, 60)}'; it takes six finite "
                  "numbers. The sensor is at its link's origin")
         return IDENTITY
-    return Pose(numbers[:3], from_rpy(*numbers[3:]))
+    x, y, z, *angles = numbers
+    return Pose((x, y, z), from_rpy(*angles))
 
 
 def _rate(element: etree._Element, complain: Complain) -> float:
