@@ -37,10 +37,13 @@ ARROWS = {
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
-    'sim/sensors':
-        'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins',
     'sim/rendering':
-        'sim/core sim/description sim/resources sim/meshes sim/physics/bullet sim/runtime',
+        'sim/core sim/description sim/resources sim/meshes sim/physics/bullet sim/runtime '
+        'sim/rendering/gl',
+    'sim/rendering/gl': '',
+    'sim/sensors':
+        'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
+        'sim/rendering',
     'sim/public':
         'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/plugins '
         'sim/sensors',
@@ -55,7 +58,8 @@ ARROWS = {
         'ros_api/server ros_api/messages ros_api/transport',
     'ros_api/topics':
         'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
-    'ros_api/reconfigure': 'sim/plugins ros_api/server ros_api/transport ros_api/services',
+    'ros_api/reconfigure':
+        'sim/plugins sim/sensors ros_api/server ros_api/transport ros_api/services',
     'ros_api/adapters':
         'sim/core sim/runtime sim/plugins sim/sensors '
         'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',

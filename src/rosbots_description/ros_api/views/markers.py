@@ -14,6 +14,8 @@ FRAME = 'world'
 # Two triangles, counter-clockwise seen from above.
 _UNIT_SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 NOTICE_HEIGHT, NOTICE_SIZE = 1.5, 0.4  # [m] of a notice: its middle, and a capital letter
+# Ground is shown in a darker grey than it has, so that what stands on it is seen.
+GROUND, GROUND_COLOUR = 'Gazebo/Grey', (0.5, 0.5, 0.5, 1.0)
 PLANE_DEPTH = 0.001  # [m] how deep a plane is drawn, so that a grid at its height stays visible
 
 
@@ -25,7 +27,9 @@ def visual_marker(namespace: str, number: int, visual: Visual) -> Marker:
     if isinstance(visual.geometry, Mesh) and visual.material is None:
         marker.mesh_use_embedded_materials = True  # a colour of zeros leaves them untinted
     else:
-        marker.color = ColorRGBA(*(visual.material or Material()).rgba)
+        material = visual.material or Material()
+        is_ground = isinstance(visual.geometry, Plane) and material.script == GROUND
+        marker.color = ColorRGBA(*(GROUND_COLOUR if is_ground else material.rgba))
     # RViz lights from the eye, which leaves wide ground dark; points with colours of their own are
     # drawn as they are.
     marker.colors = [marker.color] * len(marker.points)

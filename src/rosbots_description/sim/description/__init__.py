@@ -2,7 +2,7 @@
 
 from .built_in import GROUND_PLANE, SUN
 from .element import Element, PluginSpec
-from .materials import gazebo_material
+from .materials import gazebo_material, material_of_colours
 from .model_spec import (
     FIXED,
     PRISMATIC,
@@ -20,6 +20,7 @@ from .model_spec import (
     Mesh,
     ModelSpec,
     Plane,
+    Reflection,
     Sphere,
     Surface,
     Visual,
@@ -40,6 +41,7 @@ __all__ = [
     'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN',
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
-    'PhysicsSettings', 'Plane', 'PluginSpec', 'SceneSpec', 'SensorSpec', 'Sphere', 'Surface',
-    'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
+    'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneSpec', 'SensorSpec', 'Sphere',
+    'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
+    'material_of_colours',
 ]

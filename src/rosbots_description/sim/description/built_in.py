@@ -1,7 +1,8 @@
 """The models every world can count on: ground_plane and sun, built in."""
 
 from ..core import Pose
-from .model_spec import Collision, LinkSpec, Material, ModelSpec, Plane, Surface, Visual
+from .materials import gazebo_material
+from .model_spec import Collision, LinkSpec, ModelSpec, Plane, Surface, Visual
 from .world_spec import DIRECTIONAL, LightSpec
 
 GROUND_PLANE = ModelSpec(
@@ -11,9 +12,7 @@ GROUND_PLANE = ModelSpec(
         LinkSpec(
             name='link',
             collisions=(Collision('collision', Plane(), surface=Surface(mu=100.0, mu2=50.0)),),
-            visuals=(
-                Visual('visual', Plane(), material=Material((0.5, 0.5, 0.5, 1.0), 'Gazebo/Grey')),
-            ),
+            visuals=(Visual('visual', Plane(), material=gazebo_material('Gazebo/Grey')),),
         ),
     ),
 )

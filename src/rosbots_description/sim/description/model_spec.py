@@ -95,11 +95,38 @@ class Collision:
 
 
 @dataclass(frozen=True)
+class Reflection:
+    """How a surface answers to light; defaults are those of Gazebo's renderer: white.
+
+    Colours are red, green, blue in 0..1. What is not `lit` shows its diffuse colour whatever the
+    light; of what has `both_sides` the inside is seen, too.
+    """
+
+    ambient: Vector = (1.0, 1.0, 1.0)
+    diffuse: Vector = (1.0, 1.0, 1.0)
+    specular: Vector = (0.0, 0.0, 0.0)
+    shininess: float = 0.0
+    emissive: Vector = (0.0, 0.0, 0.0)
+    lit: bool = True
+    both_sides: bool = False
+
+
+@dataclass(frozen=True)
 class Material:
-    """How a visual looks: colour as red, green, blue, alpha in 0..1, and Gazebo's script name."""
+    """How a visual looks.
+
+    Cameras see the reflection and the alpha of `rgba` (red, green, blue, alpha in 0..1); windows
+    that know no reflection show `rgba`. `script` is Gazebo's name for it.
+    """
 
     rgba: Colour = (0.7, 0.7, 0.7, 1.0)
     script: str = ''
+    reflection: Reflection = Reflection()
+
+    @classmethod
+    def plain(cls, rgba: Colour) -> 'Material':
+        """Return what has one colour in any light."""
+        return cls(rgba, reflection=Reflection(rgba[:3], rgba[:3]))
 
 
 @dataclass(frozen=True)

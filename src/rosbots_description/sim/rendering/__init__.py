@@ -1,6 +1,11 @@
 """What the world looks like: pictures without a screen, and meshes for a window."""
 
 from .camera import EYE, TARGET, View
+from .gl import BYTES, Lens
+from .render_process import RenderError
+from .studio import Picture, Shutter
 from .sunlit_meshes import SunlitMeshes
 
-__all__ = ['EYE', 'TARGET', 'SunlitMeshes', 'View']
+__all__ = [
+    'BYTES', 'EYE', 'TARGET', 'Lens', 'Picture', 'RenderError', 'Shutter', 'SunlitMeshes', 'View',
+]

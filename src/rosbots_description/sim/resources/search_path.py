@@ -30,10 +30,7 @@ BUILT_IN_MODELS = {
       </collision>
       <visual name="visual">
         <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
-        <material>
-          <script><name>Gazebo/Grey</name></script>
-          <diffuse>0.5 0.5 0.5 1</diffuse>
-        </material>
+        <material><script><name>Gazebo/Grey</name></script></material>
       </visual>
     </link>
   </model>

@@ -17,11 +17,12 @@ _SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
 def populate(world: World, spec: WorldSpec) -> None:
     """Put everything that moves or stands into a world that is empty, and set its clock.
 
-    Lights and scene stay in `spec` for those who serve them; plugins of the world that do more
+    Lights stay in `spec` for those who serve them; plugins of the world that do more
     than the server does anyway are named as not run. A model that the world does not take is an
     error in the log, and the others stand.
     """
     world.set_physics(spec.physics)
+    world.scene = spec.scene
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
     for model_spec, pose in spec.models:
         try:

@@ -18,7 +18,14 @@ from ..core import (
     Twist,
     shortened,
 )
-from ..description import LightSpec, ModelSpec, PhysicsSettings, PluginSpec, SensorSpec
+from ..description import (
+    LightSpec,
+    ModelSpec,
+    PhysicsSettings,
+    PluginSpec,
+    SceneSpec,
+    SensorSpec,
+)
 from ..physics import CompiledModel, EngineFactory, make_engine
 from ..plugin_registry import (
     PAGE,
@@ -79,10 +86,14 @@ class World:
         self.schedule.add(self.external_forces)
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightSpec] = {}
+        self.scene = SceneSpec()
         self.listeners: list[Listener] = []
         self.paused = False
         self._holders: set[object] = set()  # those who hold physics
         self.strict = False  # with the flaws of Gazebo that a client may rely on
+        # Set by who runs it at the pace of the wall clock: then no step waits for what takes long,
+        # such as pictures, and these are given out when they are there.
+        self.keeps_pace = False
         self.seed = 0  # of the noise of sensors that come; set it before they do
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)

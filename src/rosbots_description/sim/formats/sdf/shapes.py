@@ -17,6 +17,7 @@ from ...description import (
     Surface,
     Visual,
     gazebo_material,
+    material_of_colours,
 )
 from ...meshes import check_mesh, submesh_file
 from ..xml import ENDLESS_FRICTION, is_endless, scalar, tag_of
@@ -35,6 +36,7 @@ from .values import (
 )
 
 _NOT_SIMULATED = ('heightmap', 'polyline', 'image', 'capsule', 'ellipsoid', 'cone')
+_COLOURS = ('ambient', 'diffuse', 'specular', 'emissive')
 _UP = (0.0, 0.0, 1.0)
 
 
@@ -198,29 +200,24 @@ def _friction(surface: etree._Element, path: str, default: float) -> float:
 
 
 def _material(document: SdfDocument, visual: etree._Element) -> Material | None:
-    """Return the looks: <diffuse> (or <ambient>) before the script's colour, as in Gazebo."""
+    """Return the looks: its colours before those of the script, as in Gazebo."""
     element = visual.find('material')
     if element is None:
         return None
     document.notes.check(
         element,
-        ('script', 'diffuse', 'ambient'),
-        ('specular', 'emissive', 'shader', 'lighting', 'pbr', 'double_sided', 'shininess'),
+        ('script', *_COLOURS),
+        ('shader', 'lighting', 'pbr', 'double_sided', 'shininess'),
     )
     script = text_of(element, 'script/name') or text_of(element, 'script')
-    colour = colour_of(element, 'diffuse') or colour_of(element, 'ambient')
-    material = gazebo_material(script)
-    if colour is not None:
-        material = Material(colour, script)
-    elif script and material is None:
+    colours = {tag: colour_of(element, tag) for tag in _COLOURS}
+    if not script and not any(colours.values()):
+        return None
+    if gazebo_material(script) is None and not (colours['diffuse'] or colours['ambient']):
         document.notes.warn(
             element,
             f"material '{script}' is none of Gazebo's plain ones, grey is shown; add <diffuse>",
         )
-        material = Material(script=script)
-    transparency = number_of(visual, 'transparency', 0.0)
-    if material is None or transparency == 0.0:
-        return material
-    red, green, blue, alpha = material.rgba
-    return Material((red, green, blue, alpha * min(1.0, max(0.0, 1.0 - transparency))),
-                    material.script)
+    material = material_of_colours(script, **colours)
+    opacity = min(1.0, max(0.0, 1.0 - number_of(visual, 'transparency', 0.0)))
+    return replace(material, rgba=(*material.rgba[:3], material.rgba[3] * opacity))

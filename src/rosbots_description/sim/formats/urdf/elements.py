@@ -148,7 +148,7 @@ class LinkReader:
                 note(self.notes, lambda: sentence)
             return None
         red, green, blue, alpha = (min(1.0, max(0.0, value)) for value in rgba)
-        return Material((red, green, blue, alpha))
+        return Material.plain((red, green, blue, alpha))
 
     def _shape(self, element: etree._Element) -> Geometry | None:
         """Return the geometry, or None where there can be none and the link stands without."""

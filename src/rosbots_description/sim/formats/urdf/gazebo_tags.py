@@ -28,12 +28,14 @@ from ...core import (
 from ...description import (
     FIXED,
     REVOLUTE,
+    Colour,
     Element,
     LinkSpec,
     Material,
     PluginSpec,
     SensorSpec,
     gazebo_material,
+    material_of_colours,
 )
 from ...plugin_registry import library_remark
 from ..kinematics import LinkFlags, TreeLink
@@ -348,12 +350,15 @@ def _read_visual(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     name = element.find('material/script/name')
     if name is not None:
         _read_script(name, link, tags)
-    colour = element.find('material/diffuse')
-    if colour is None:
-        colour = element.find('material/ambient')
-    if colour is not None:
-        red, green, blue, alpha = scalar_numbers(colour, 4)
-        link.material = Material((red, green, blue, alpha))
+    colours: dict[str, Colour] = {}
+    for tag in ('ambient', 'diffuse', 'specular', 'emissive'):
+        colour = element.find(f'material/{tag}')
+        if colour is not None:
+            red, green, blue, alpha = scalar_numbers(colour, 4)
+            colours[tag] = (red, green, blue, alpha)
+    if colours:
+        link.material = material_of_colours(
+            link.material.script if link.material else '', **colours)
 
 
 _JOINT_TAGS = {*_SOLVER_TAGS, *_SPRING_TAGS, 'disableFixedJointLumping', 'preserveFixedJoint'}

@@ -53,7 +53,8 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
       <visualize>1</visualize><topic>t</topic><plugin name="p" filename="lib.so"/></sensor>
     <visual name="v"><pose>0 0 0 0 0 0</pose><transparency>0</transparency><visible>1</visible>
       <geometry><sphere><radius>1</radius></sphere></geometry><material><script>
-      <name>Gazebo/Red</name></script><diffuse>1 1 1</diffuse><ambient>1 1 1</ambient></material>
+      <name>Gazebo/Red</name></script><diffuse>1 1 1</diffuse><ambient>1 1 1</ambient>
+      <specular>1 1 1</specular><emissive>1 1 1</emissive></material>
     </visual>
     <visual name="v2"><geometry><cylinder><radius>1</radius><length>1</length></cylinder></geometry>
     </visual><visual name="v3"><geometry><plane><normal>0 0 1</normal><size>1 1</size></plane>

@@ -8,15 +8,16 @@ import pytest
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
-from rosbots_description.sim.description.built_in import GROUND_PLANE
-from rosbots_description.sim.description.model_spec import (
+from rosbots_description.sim.description import (
     Box,
     Cylinder,
     Material,
     Plane,
     Sphere,
     Surface,
+    gazebo_material,
 )
+from rosbots_description.sim.description.built_in import GROUND_PLANE
 from rosbots_description.sim.formats.sdf.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 from rosbots_description.sim.meshes.loader import check_mesh, read_mesh
@@ -260,13 +261,17 @@ def test_a_negative_or_infinite_friction_is_endless(mu):
 
 def test_a_script_of_gazebo_gives_its_colour():
     inside = '<material><script><name>Gazebo/Red</name><uri>file://media</uri></script></material>'
-    assert visual(inside).material == Material((1.0, 0.0, 0.0, 1.0), 'Gazebo/Red')
+    assert visual(inside).material == gazebo_material('Gazebo/Red')
 
 
 def test_a_diffuse_colour_counts_before_the_script():
     inside = ('<material><script><name>Gazebo/Red</name></script><ambient>0 1 0 1</ambient>'
               '<diffuse>0 0 1</diffuse></material>')
-    assert visual(inside).material == Material((0.0, 0.0, 1.0, 1.0), 'Gazebo/Red')
+    material = visual(inside).material
+    assert (material.rgba, material.script) == ((0.0, 0.0, 1.0, 1.0), 'Gazebo/Red')
+    assert material.reflection.ambient == (0.0, 1.0, 0.0)
+    assert material.reflection.diffuse == (0.0, 0.0, 1.0)
+    assert material.reflection.specular == (0.1, 0.1, 0.1)  # the script's
 
 
 def test_transparency_takes_from_alpha():

@@ -110,7 +110,10 @@ def test_an_unknown_material_is_grey_with_a_warning(caplog):
 def test_a_visual_block_gives_a_colour():
     spec = load('<gazebo reference="c"><visual><material><ambient>0 0 0 1</ambient>'
                 '<diffuse>0.1 0.2 0.3 1</diffuse></material></visual></gazebo>')
-    assert spec.link('c').visuals[0].material == Material((0.1, 0.2, 0.3, 1.0))
+    material = spec.link('c').visuals[0].material
+    assert material.rgba == (0.1, 0.2, 0.3, 1.0)
+    assert material.reflection.ambient == (0.0, 0.0, 0.0)
+    assert material.reflection.diffuse == (0.1, 0.2, 0.3)
 
 
 def test_static_is_a_property_of_the_model():

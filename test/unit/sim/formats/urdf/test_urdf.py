@@ -7,7 +7,14 @@ import pytest
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
-from rosbots_description.sim.description.model_spec import Box, Cylinder, Material, Mesh, Sphere
+from rosbots_description.sim.description import (
+    Box,
+    Cylinder,
+    Material,
+    Mesh,
+    Sphere,
+    gazebo_material,
+)
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.uris import UnknownPackage
 
@@ -56,7 +63,7 @@ def test_the_obstacle_of_the_course_loads_with_an_inertia_that_a_body_can_have(c
     assert spec.name == 'my_object'
     assert box.collisions[0].geometry == Box((1.0, 1.0, 2.0))
     assert box.collisions[0].pose.position == (2.0, 0.0, 1.0)
-    assert box.visuals[0].material == Material((0.0, 0.0, 1.0, 1.0), 'Gazebo/Blue')
+    assert box.visuals[0].material == gazebo_material('Gazebo/Blue')
     # Nearest to (1, 100, 1): a, 2a, a with a = 101/3.
     assert (box.inertial.ixx, box.inertial.iyy, box.inertial.izz) == pytest.approx(
         (101 / 3, 202 / 3, 101 / 3))

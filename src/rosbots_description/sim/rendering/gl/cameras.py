@@ -1,0 +1,82 @@
+"""The matrices of a camera, and of the light that casts shadows. Vectors are columns."""
+
+import numpy as np
+
+from .values import Lens
+
+# From the frame of a sensor (x forward, y left, z up) to OpenGL's (x right, y up, z backward),
+# with y turned down: row 0 of what OpenGL stores is then the top of the picture.
+_TO_CAMERA = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 0.0],
+                       [0.0, 0.0, 0.0, 1.0]])
+SHADOWED = 10.0  # [m] from the camera; what is further away is lit as if nothing stood before it
+WIDEST = 2.4  # [rad] across; what a wider camera sees further out is lit without shadows
+_CASTERS = 30.0  # [m] towards the light from what is seen: what casts shadows on it
+
+
+def matrices(poses: np.ndarray) -> np.ndarray:
+    """Return (n, 4, 4) of poses (n, 7): position [m], quaternion x, y, z, w."""
+    x, y, z, w = poses[:, 3:].T
+    result = np.zeros((len(poses), 4, 4))
+    result[:, 0, 0] = 1.0 - 2.0 * (y * y + z * z)
+    result[:, 0, 1] = 2.0 * (x * y - z * w)
+    result[:, 0, 2] = 2.0 * (x * z + y * w)
+    result[:, 1, 0] = 2.0 * (x * y + z * w)
+    result[:, 1, 1] = 1.0 - 2.0 * (x * x + z * z)
+    result[:, 1, 2] = 2.0 * (y * z - x * w)
+    result[:, 2, 0] = 2.0 * (x * z - y * w)
+    result[:, 2, 1] = 2.0 * (y * z + x * w)
+    result[:, 2, 2] = 1.0 - 2.0 * (x * x + y * y)
+    result[:, :3, 3] = poses[:, :3]
+    result[:, 3, 3] = 1.0
+    return result
+
+
+def projection(lens: Lens) -> np.ndarray:
+    """Return the pinhole."""
+    near, far = lens.near, lens.far
+    across = 2.0 * lens.focal_length / lens.width
+    upward = 2.0 * lens.focal_length / lens.height
+    return np.array([
+        [across, 0.0, 0.0, 0.0], [0.0, upward, 0.0, 0.0],
+        [0.0, 0.0, -(far + near) / (far - near), -2.0 * far * near / (far - near)],
+        [0.0, 0.0, -1.0, 0.0],
+    ])
+
+
+def camera_view(eye: np.ndarray) -> np.ndarray:
+    """Return the matrix from the world to OpenGL's camera that stands at `eye` (4, 4)."""
+    turned = eye[:3, :3].T
+    inverse = np.eye(4)
+    inverse[:3, :3], inverse[:3, 3] = turned, -turned @ eye[:3, 3]
+    return _TO_CAMERA @ inverse
+
+
+def light_axes(direction: np.ndarray) -> np.ndarray:
+    """Return the axes (3, 3) of a light that shines along `direction`: right, up, backward."""
+    backward = -direction
+    right = np.cross((0.0, 1.0, 0.0) if abs(backward[1]) < 0.9 else (1.0, 0.0, 0.0), backward)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(backward, right), backward])
+
+
+def seen_ball(eye: np.ndarray, lens: Lens) -> tuple[np.ndarray, float]:
+    """Return middle and radius of a ball around what a camera sees up to SHADOWED [m]."""
+    reach = min(lens.far, SHADOWED)
+    slope = np.hypot(1.0, lens.height / lens.width) * np.tan(min(lens.field_of_view, WIDEST) / 2.0)
+    # The ball around the pyramid of sight, or around its base where that is wide.
+    middle = reach * min(1.0, (1.0 + slope**2) / 2.0)
+    return eye[:3, 3] + middle * eye[:3, 0], max(middle, reach * slope)
+
+
+def shadow_view(axes: np.ndarray, middle: np.ndarray, radius: float, texel: float) -> np.ndarray:
+    """Return the matrix from the world to a shadow map that holds a ball.
+
+    The map stands at a multiple of its texels [m], so that the edges of shadows stand still.
+    """
+    matrix = np.eye(4)
+    matrix[:3, :3] = axes
+    matrix[:3, 3] = -np.round(axes @ middle / texel) * texel
+    low, high = -radius, radius + _CASTERS
+    scale = np.diag([1.0 / radius, 1.0 / radius, -2.0 / (high - low), 1.0])
+    scale[2, 3] = (high + low) / (high - low)
+    return scale @ matrix

@@ -1,0 +1,111 @@
+"""What a camera does to a picture: distortion, noise, and the encoding of its pixels."""
+
+import numpy as np
+
+from .values import BAYER, BGR, GREY8, GREY16, RGB16, Lens
+
+
+class Development:
+    """Turns what was drawn into what one camera gives out."""
+
+    def __init__(self, lens: Lens) -> None:
+        self._lens = lens
+        self._distortion = _Distortion(lens) if any(lens.distortion) else None
+
+    def finish(self, pixels: np.ndarray, seed: int) -> np.ndarray:
+        """Return the picture in the camera's encoding.
+
+        Args:
+            pixels: (height, width, 4) uint8.
+            seed: of the noise, which is the same for the same seed.
+        """
+        lens = self._lens
+        if self._distortion is not None:
+            pixels = self._distortion.apply(pixels)
+        if lens.noise_stddev or lens.noise_mean:
+            pixels = _with_noise(pixels, lens, seed)
+        if lens.encoding == BGR:
+            return np.ascontiguousarray(pixels[:, :, 2::-1])
+        if lens.encoding == GREY8:  # as Gazebo: the red channel
+            return np.ascontiguousarray(pixels[:, :, 0])
+        if lens.encoding == GREY16:
+            return pixels[:, :, 0].astype('<u2') * 257
+        if lens.encoding == RGB16:
+            return pixels[:, :, :3].astype('<u2') * 257
+        if lens.encoding in BAYER:
+            return _mosaic(pixels, BAYER[lens.encoding])
+        return np.ascontiguousarray(pixels[:, :, :3])
+
+
+def _mosaic(pixels: np.ndarray, channels: tuple[int, int, int, int]) -> np.ndarray:
+    result = np.empty(pixels.shape[:2], 'u1')
+    for number, channel in enumerate(channels):
+        row, column = divmod(number, 2)
+        result[row::2, column::2] = pixels[row::2, column::2, channel]
+    return result
+
+
+def _with_noise(pixels: np.ndarray, lens: Lens, seed: int) -> np.ndarray:
+    """Add the same to all channels of a pixel, as Gazebo does."""
+    generator = np.random.Generator(np.random.Philox(seed))
+    shape = pixels.shape[:2]
+    added = generator.standard_normal(shape, 'f4') * np.float32(255.0 * lens.noise_stddev)
+    noisy = pixels[:, :, :3] + (added + np.float32(255.0 * lens.noise_mean))[:, :, None]
+    return np.clip(np.rint(noisy), 0.0, 255.0).astype('u1')
+
+
+class _Distortion:
+    """Where in the pinhole's picture each pixel of the lens is, in Brown's model.
+
+    As in Gazebo, both axes are measured in shares of the picture's own width and height. The model
+    tells where the lens shows a point of the pinhole's picture; here its inverse is needed.
+    """
+
+    def __init__(self, lens: Lens) -> None:
+        self._coefficients = lens.distortion
+        centre = np.array(lens.centre)[:, None, None]
+        seen = np.stack(np.meshgrid((np.arange(lens.width) + 0.5) / lens.width,
+                                    (np.arange(lens.height) + 0.5) / lens.height))
+        if lens.crop:
+            low, high = (self._shown(corner - centre)[:, 0, 0]
+                         for corner in (np.zeros((2, 1, 1)), np.ones((2, 1, 1))))
+            seen = 0.5 + (seen - 0.5) * (high - low)[:, None, None]
+        sources = centre + self._inverse(seen - centre)
+        self._outside = ((sources < 0.0) | (sources >= 1.0) | ~np.isfinite(sources)).any(axis=0)
+        size = np.array([lens.width, lens.height])[:, None, None]
+        places = np.where(self._outside, 0.0, np.clip(sources * size - 0.5, 0.0, size - 1.0))
+        first = np.minimum(places.astype(int), np.maximum(size - 2, 0))
+        self._corners = [tuple(np.minimum(first + step, size - 1)[::-1]) for step in (
+            np.array(corner)[:, None, None] for corner in ((0, 0), (1, 0), (0, 1), (1, 1)))]
+        right, down = (places - first).astype('f4')
+        self._shares = [share[:, :, None] for share in (
+            (1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down)]
+
+    def apply(self, pixels: np.ndarray) -> np.ndarray:
+        """Return the lens's picture (height, width, 4) of the pinhole's."""
+        read = sum(share * pixels[corner]
+                   for share, corner in zip(self._shares, self._corners, strict=True))
+        result = np.rint(read).astype('u1')
+        result[self._outside] = pixels[0, 0] // 4  # Gazebo reads there halfway over both edges
+        return result
+
+    def _inverse(self, shown: np.ndarray) -> np.ndarray:
+        """Return the points that are shown there, by fixed-point iteration."""
+        points = shown.copy()
+        with np.errstate(all='ignore'):  # points far outside may have none
+            for _ in range(50):
+                radial, tangential = self._terms(points)
+                points = (shown - tangential) / radial
+        return points
+
+    def _shown(self, points: np.ndarray) -> np.ndarray:
+        radial, tangential = self._terms(points)
+        return points * radial + tangential
+
+    def _terms(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        k1, k2, k3, p1, p2 = self._coefficients
+        x, y = points
+        square = x * x + y * y
+        radial = 1.0 + square * (k1 + square * (k2 + square * k3))
+        return radial, np.stack([p2 * (square + 2.0 * x * x) + 2.0 * p1 * x * y,
+                                 p1 * (square + 2.0 * y * y) + 2.0 * p2 * x * y])

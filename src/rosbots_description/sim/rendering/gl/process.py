@@ -1,0 +1,101 @@
+"""The rendering process: it mirrors a scene and answers requests until nobody can ask any more."""
+
+import contextlib
+import mmap
+import os
+import signal
+import socket
+from multiprocessing.connection import Connection
+
+import numpy as np
+
+from .context import NoContextError, open_context
+from .development import Development
+from .renderer import Renderer
+from .values import Lens, Light, Look, Scene, ScenePart
+
+NICENESS = 2  # where processors are scarce, the clock comes first
+
+
+def main(handle: int) -> None:
+    """Serve who holds the other end of the socket `handle`; end when it is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is for who started us, whose end is ours
+    os.nice(NICENESS)
+    connection = Connection(handle)
+    try:
+        context, name, is_software = open_context()
+    except NoContextError as error:
+        connection.send(('failed', str(error)))
+        return
+    connection.send(('ready', name, is_software))
+    with contextlib.suppress(EOFError, ConnectionError):
+        _Service(connection, Renderer(context)).run()
+
+
+class _Service:
+    """Does what the messages say; each is a tuple of a verb and its arguments."""
+
+    def __init__(self, connection: Connection, renderer: Renderer) -> None:
+        self._connection = connection
+        self._renderer = renderer
+        self._cameras: dict[int, _Camera] = {}
+
+    def run(self) -> None:
+        """Serve until the connection ends."""
+        while True:
+            verb, *arguments = self._connection.recv()
+            getattr(self, f'_{verb}')(*arguments)
+
+    def _mesh(self, key: str, triangles: bytes) -> None:
+        self._renderer.add_mesh(key, np.frombuffer(triangles, 'f4').reshape(-1, 8))
+
+    def _image(self, key: str, shape: tuple[int, int, int], pixels: bytes) -> None:
+        self._renderer.add_image(key, np.frombuffer(pixels, 'u1').reshape(shape))
+
+    def _scene(self, parts: list, lights: list, *rest: object) -> None:
+        self._renderer.set_scene(Scene(
+            tuple(ScenePart(key, body, matrix, Look(*look), *others)
+                  for key, body, matrix, look, *others in parts),
+            tuple(Light(*light) for light in lights), *rest))
+
+    def _camera(self, number: int, lens: tuple, size: int) -> None:
+        """Take a camera, and the shared memory that is sent along."""
+        stream = socket.socket(fileno=os.dup(self._connection.fileno()))
+        with stream:
+            _, (file, *_), _, _ = socket.recv_fds(stream, 1, 1)
+        self._cameras[number] = _Camera(Lens(*lens), mmap.mmap(file, size))
+        os.close(file)
+
+    def _forget(self, number: int) -> None:
+        self._cameras.pop(number).memory.close()
+
+    def _picture(
+        self, number: int, place: int, has_colour: bool, has_depth: bool, seed: int,
+        eye: bytes, poses: bytes,
+    ) -> None:
+        """Write a picture into the camera's memory from `place` on, and say so."""
+        camera = self._cameras[number]
+        lens = camera.lens
+        where, bodies = np.frombuffer(eye), np.frombuffer(poses).reshape(-1, 7)
+        fault = ''
+        try:
+            if has_colour:
+                pixels = self._renderer.colours(lens, where, bodies)
+                content = camera.development.finish(pixels, seed)
+                camera.memory[place:place + lens.colour_bytes] = content.reshape(-1).view('u1').data
+                place += lens.colour_bytes
+            if has_depth:
+                depths = self._renderer.depths(lens, where, bodies)
+                camera.memory[place:place + lens.depth_bytes] = depths.reshape(-1).view('u1').data
+        except Exception as error:  # such as a picture that is too large for the driver
+            fault = f'{type(error).__name__}: {error}'
+        self._connection.send((number, fault))
+
+
+class _Camera:
+    """A lens, and where its pictures go."""
+
+    def __init__(self, lens: Lens, memory: mmap.mmap) -> None:
+        self.lens = lens
+        self.memory = memory
+        self.development = Development(lens)

@@ -1,0 +1,366 @@
+"""Draws a scene as cameras see it."""
+
+from functools import lru_cache
+
+import moderngl
+import numpy as np
+
+from .cameras import camera_view, matrices, projection
+from .shaders import (
+    DEPTH_FRAGMENT,
+    NOTHING_FRAGMENT,
+    PLACED_VERTEX,
+    SURFACE_VERTEX,
+    surface_fragment,
+)
+from .shadows import Shadows
+from .values import DIRECTIONAL, Lens, Look, Scene, ScenePart
+
+SAMPLES = 4  # per pixel, of edges
+MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have plain edges
+MAX_LIGHTS = 8
+_LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a corner
+
+
+class Renderer:
+    """Meshes, images and one scene; `draw` shows it to a camera."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        context.front_face = 'cw'  # pictures are drawn upside down, see `cameras`
+        self._meshes: dict[str, tuple[moderngl.Buffer, np.ndarray]] = {}
+        self._images: dict[str, moderngl.Texture] = {}
+        self._targets: dict[tuple[int, int, str], _Target] = {}
+        self._placed = _PlacedPrograms(context)
+        self._shadows: Shadows | None = None
+        self._drawables: list[_Drawable] = []
+        self._surfaces: dict[bool, moderngl.Program] = {}  # by whether they have images
+        self.set_scene(Scene(()))
+
+    def add_mesh(self, key: str, triangles: np.ndarray) -> None:
+        """Take triangles: (3 n, 8) float32 of position [m], normal, texture coordinates."""
+        corners = triangles[:, :3]
+        bounds = np.stack([corners.min(0), corners.max(0)])
+        self._meshes[key] = (self._context.buffer(np.ascontiguousarray(triangles, 'f4')), bounds)
+
+    def add_image(self, key: str, pixels: np.ndarray) -> None:
+        """Take an image (height, width, 3 or 4) uint8, its first row on top."""
+        pixels = np.ascontiguousarray(pixels[::-1])
+        height, width, channels = pixels.shape
+        image = self._context.texture((width, height), channels, pixels.tobytes(), alignment=1)
+        image.build_mipmaps()
+        image.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        self._images[key] = image
+
+    def set_scene(self, scene: Scene) -> None:
+        """Draw this from now on; meshes and images that it does not use are dropped."""
+        self._scene = scene
+        self._lights = scene.lights[:MAX_LIGHTS]
+        casting = [number for number, light in enumerate(self._lights)
+                   if light.type == DIRECTIONAL and light.casts_shadow]
+        self._sun = casting[0] if scene.shadows and casting else None
+        if self._shadows is not None:
+            self._shadows.release()
+        self._shadows = None if self._sun is None else Shadows(
+            self._context, self._placed.shadow, np.array(self._lights[self._sun].direction))
+        for drawable in self._drawables:
+            drawable.release()
+        self._drop(self._meshes, {part.mesh for part in scene.parts})
+        self._drop(self._images, {part.look.texture for part in scene.parts})
+        self._drawables = [
+            _Drawable(self._context, part, *self._meshes[part.mesh], self._placed,
+                      self._images.get(part.look.texture))
+            for part in scene.parts
+        ]
+        self._still_bodies = sorted({part.body for part in scene.parts if part.still})
+        self._moving = any(one.casts_shadow and not one.part.still for one in self._drawables)
+        self._stood: np.ndarray | None = None  # where what stands still was last
+        self._write_surfaces()
+
+    def _write_surfaces(self) -> None:
+        """Make the programs of surfaces, for the lights and shadows that there are."""
+        for program in self._surfaces.values():
+            program.release()
+        self._surfaces = {
+            textured: self._context.program(
+                vertex_shader=SURFACE_VERTEX,
+                fragment_shader=surface_fragment(
+                    [light.type for light in self._lights], self._sun, self._moving, textured))
+            for textured in {bool(drawable.part.look.texture) for drawable in self._drawables}
+        }
+        for drawable in self._drawables:
+            drawable.set_surface(self._surfaces[bool(drawable.part.look.texture)])
+
+    def _draw_shadows(self, frame: '_Shot', poses: np.ndarray) -> None:
+        stands = poses[self._still_bodies]
+        if self._stood is None or not np.array_equal(stands, self._stood):
+            self._stood = stands
+            self._shadows.forget()
+        casters = [one for one in self._drawables if one.casts_shadow]
+        self._shadows.draw(
+            frame.eye, frame.lens, [one for one in casters if one.part.still],
+            [one for one in casters if not one.part.still])
+
+    def _drop(self, kept: dict, used: set[str]) -> None:
+        for key in [key for key in kept if key not in used]:
+            resource = kept.pop(key)
+            (resource[0] if isinstance(resource, tuple) else resource).release()
+
+    def colours(
+        self, lens: Lens, eye: np.ndarray, poses: np.ndarray
+    ) -> np.ndarray:
+        """Return the picture (height, width, 4) uint8, before what a lens adds.
+
+        Args:
+            eye: the camera's pose (7,), position [m] and quaternion x, y, z, w.
+            poses: of the bodies (n, 7).
+        """
+        frame = self._frame(lens, eye, poses)
+        if self._shadows is not None:
+            self._draw_shadows(frame, poses)
+        samples = SAMPLES if lens.width * lens.height <= MAX_SMOOTHED else 0
+        target = self._target(lens, 'colour', samples)
+        target.use()
+        self._context.clear(*self._scene.background, 1.0, depth=1.0)
+        for program in self._surfaces.values():
+            self._set_frame(program, frame)
+        self._draw_surfaces(frame)
+        return target.read()
+
+    def depths(self, lens: Lens, eye: np.ndarray, poses: np.ndarray) -> np.ndarray:
+        """Return distances along the optical axis (height, width) float32 [m]; none is inf."""
+        frame = self._frame(lens, eye, poses)
+        target = self._target(lens, 'depth', 0)
+        target.use()
+        self._context.clear(np.inf, 0.0, 0.0, 1.0, depth=1.0)
+        self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        self._placed.depth['view'].write(_gl(frame.view))
+        for drawable in frame.visible:
+            self._cull(drawable)
+            drawable.draw_depth()
+        return target.read()
+
+    def _frame(self, lens: Lens, eye: np.ndarray, poses: np.ndarray) -> '_Shot':
+        eye_matrix = matrices(np.asarray(eye, dtype=float)[None])[0]
+        frame = _Shot(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
+                       matrices(poses))
+        frame.visible = []
+        for drawable in self._drawables:
+            drawable.place(frame)
+            if frame.may_see(drawable):
+                frame.visible.append(drawable)
+        return frame
+
+    def _target(self, lens: Lens, kind: str, samples: int) -> '_Target':
+        key = lens.width, lens.height, kind
+        if key not in self._targets:
+            self._targets[key] = _Target(self._context, *key, samples)
+        return self._targets[key]
+
+    def _set_frame(self, program: moderngl.Program, frame: '_Shot') -> None:
+        program['view'].write(_gl(frame.view))
+        _set(program, 'eye', tuple(frame.eye[:3, 3]))
+        _set(program, 'scene_ambient', self._scene.ambient)
+        lights = self._lights
+        if lights:
+            _set(program, 'light_position', [light.position for light in lights])
+            _set(program, 'light_direction', [light.direction for light in lights])
+            _set(program, 'light_diffuse', [light.diffuse for light in lights])
+            _set(program, 'light_specular', [light.specular for light in lights])
+            _set(program, 'light_attenuation',
+                 [(*light.attenuation, light.range) for light in lights])
+            _set(program, 'light_spot', [light.spot for light in lights])
+        if self._shadows is not None:
+            self._shadows.use(program)
+
+    def _draw_surfaces(self, frame: '_Shot') -> None:
+        context = self._context
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        # What is near first: what it hides need not be lit.
+        ordered = sorted(frame.visible, key=frame.distance)
+        for drawable in ordered:
+            if not drawable.transparent:
+                self._cull(drawable)
+                drawable.draw()
+        seen_through = [one for one in reversed(ordered) if one.transparent]
+        if seen_through:
+            context.enable(moderngl.BLEND)
+            context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+            context.fbo.depth_mask = False
+            for drawable in seen_through:
+                self._cull(drawable)
+                drawable.draw()
+            context.fbo.depth_mask = True
+
+    def _cull(self, drawable: '_Drawable') -> None:
+        if drawable.part.look.both_sides:
+            self._context.disable(moderngl.CULL_FACE)
+        else:
+            self._context.enable(moderngl.CULL_FACE)
+            self._context.front_face = 'ccw' if drawable.mirrored else 'cw'
+
+
+class _Shot:
+    """What one picture is drawn with."""
+
+    visible: list['_Drawable']
+
+    def __init__(
+        self, lens: Lens, eye: np.ndarray, view: np.ndarray, bodies: np.ndarray
+    ) -> None:
+        self.lens, self.eye, self.view, self.bodies = lens, eye, view, bodies
+        rows = view[3] + np.array([view[0], -view[0], view[1], -view[1], view[2]])
+        self._planes = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
+
+    def may_see(self, drawable: '_Drawable') -> bool:
+        """Tell whether a drawable's ball reaches into the pyramid of sight."""
+        return bool((self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
+                     > -drawable.radius).all())
+
+    def distance(self, drawable: '_Drawable') -> float:
+        """Return how far away a drawable begins along the optical axis [m]."""
+        way = drawable.middle - self.eye[:3, 3]
+        return float(way @ self.eye[:3, 0]) - (0.0 if drawable.transparent else drawable.radius)
+
+
+class _PlacedPrograms:
+    """The programs that need nothing but where a surface is."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.depth = context.program(vertex_shader=PLACED_VERTEX, fragment_shader=DEPTH_FRAGMENT)
+        self.shadow = context.program(
+            vertex_shader=PLACED_VERTEX, fragment_shader=NOTHING_FRAGMENT)
+
+
+class _Drawable:
+    """A part of the scene on the graphics processor."""
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        part: ScenePart,
+        buffer: moderngl.Buffer,
+        bounds: np.ndarray,
+        placed: _PlacedPrograms,
+        image: moderngl.Texture | None,
+    ) -> None:
+        self.part = part
+        self._matrix = np.frombuffer(part.matrix).reshape(4, 4)
+        self._middle = bounds.mean(axis=0)
+        half = (bounds[1] - bounds[0]) / 2.0
+        self.radius = float(np.linalg.norm(np.abs(self._matrix[:3, :3]) @ half))
+        self.mirrored = bool(np.linalg.det(self._matrix[:3, :3]) < 0.0)
+        self.transparent = part.look.alpha < 1.0
+        self.casts_shadow = part.casts_shadow and not self.transparent
+        self._depth, self._shadow = (
+            context.vertex_array(program, [(buffer, '3f 5x4', 'position')])
+            for program in (placed.depth, placed.shadow))
+        self._image = image
+        self._context, self._buffer = context, buffer
+        self._surface: moderngl.VertexArray | None = None
+        self._normals = np.linalg.inv(self._matrix[:3, :3]).T  # how normals turn with it
+
+    def set_surface(self, program: moderngl.Program) -> None:
+        """Be drawn by this program from now on."""
+        if self._surface is not None:
+            self._surface.release()
+        used = [name for name in _LAYOUT if name in program]
+        layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
+                          for name, size in _LAYOUT.items())
+        self._surface = self._context.vertex_array(program, [(self._buffer, layout, *used)])
+        self._look = _look_uniforms(program, self.part.look)
+
+    def place(self, frame: _Shot) -> None:
+        """Take its place in a picture."""
+        body = frame.bodies[self.part.body]
+        placement = body @ self._matrix
+        self._turn = body[:3, :3]
+        self.middle = placement[:3, :3] @ self._middle + placement[:3, 3]
+        self._placement = _gl(placement)
+
+    def draw(self) -> None:
+        """Draw the surface in its colours."""
+        program = self._surface.program
+        program['placement'].write(self._placement)
+        if 'normal_placement' in program:
+            program['normal_placement'].write(_gl(self._turn @ self._normals))
+        for uniform, value in self._look:
+            uniform.write(value)
+        if self._image is not None:
+            self._image.use(0)
+        self._surface.render()
+
+    def draw_depth(self) -> None:
+        """Draw how far away it is."""
+        self._depth.program['placement'].write(self._placement)
+        self._depth.render()
+
+    def draw_shadow(self) -> None:
+        """Draw it as the light sees it."""
+        self._shadow.program['placement'].write(self._placement)
+        self._shadow.render()
+
+    def release(self) -> None:
+        """Free what it has on the graphics processor."""
+        for array in (self._surface, self._depth, self._shadow):
+            if array is not None:
+                array.release()
+
+
+class _Target:
+    """What a camera's picture is drawn into."""
+
+    def __init__(
+        self, context: moderngl.Context, width: int, height: int, kind: str, samples: int
+    ) -> None:
+        size = width, height
+        self._context, self._samples = context, samples
+        self._form = ('f4', 1) if kind == 'depth' else ('f1', 4)
+        dtype, channels = self._form
+        self._plain = context.framebuffer(
+            [context.renderbuffer(size, channels, dtype=dtype)],
+            None if samples else context.depth_renderbuffer(size))
+        self._drawn = context.framebuffer(
+            [context.renderbuffer(size, channels, samples=samples)],
+            context.depth_renderbuffer(size, samples=samples)) if samples else self._plain
+        self._pixels = np.empty(
+            (height, width) if channels == 1 else (height, width, channels),
+            'f4' if dtype == 'f4' else 'u1')
+
+    def use(self) -> None:
+        """Draw into it from now on."""
+        self._drawn.use()
+
+    def read(self) -> np.ndarray:
+        """Return what was drawn; it is overwritten by the next picture."""
+        dtype, channels = self._form
+        if self._samples:
+            self._context.copy_framebuffer(self._plain, self._drawn)
+        self._plain.read_into(self._pixels, components=channels, dtype=dtype)
+        return self._pixels
+
+
+@lru_cache(maxsize=4096)
+def _look_values(look: Look) -> dict[str, bytes]:
+    values = {
+        'ambient': look.ambient, 'diffuse': (*look.diffuse, look.alpha),
+        'specular': (*look.specular, look.shininess), 'emissive': look.emissive,
+        'lit': (float(look.lit),),
+    }
+    return {name: np.array(value, 'f4').tobytes() for name, value in values.items()}
+
+
+def _look_uniforms(program: moderngl.Program, look: Look) -> list[tuple[moderngl.Uniform, bytes]]:
+    return [(program[name], value) for name, value in _look_values(look).items()
+            if name in program]
+
+
+def _set(program: moderngl.Program, name: str, value: object) -> None:
+    """Set what the compiler has not found useless."""
+    if name in program:
+        program[name].write(np.array(value, 'f4').tobytes())
+
+
+def _gl(matrix: np.ndarray) -> bytes:
+    """Return a matrix as OpenGL takes it: columns first, float32."""
+    return matrix.T.astype('f4').tobytes()

@@ -1,0 +1,128 @@
+"""Shadows of the sun: a map of what stands still, drawn seldom, and one of what moves.
+
+Both tell for each texel how far the light reaches. The map of what stands still is wider than what
+a camera sees, so that the camera may move on before it is drawn anew; the map of what moves is
+small and drawn for every picture. Where they stand depends on nothing but the camera and what casts
+shadows, so that the same world gives the same picture, whatever was drawn before.
+"""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import moderngl
+import numpy as np
+
+from .cameras import light_axes, seen_ball, shadow_view
+from .values import Lens
+
+STILL_SIZE, MOVING_SIZE = 2048, 1024  # texels along an edge
+_ROOM = 1.25  # how much wider than what is seen the map of what stands still is
+_CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # edge of the cubes in each of which one map does
+_MOST_MAPS = 4  # of what stands still, for cameras that see differently far
+
+
+class Caster(Protocol):
+    """What casts a shadow."""
+
+    middle: np.ndarray
+    radius: float
+
+    def draw_shadow(self) -> None:
+        """Draw it as the light sees it."""
+
+
+class Shadows:
+    """The shadow maps of one light."""
+
+    def __init__(
+        self, context: moderngl.Context, program: moderngl.Program, direction: np.ndarray
+    ) -> None:
+        self._context = context
+        self._program = program
+        self._axes = light_axes(direction)
+        self._moving = _Map(context, MOVING_SIZE)
+        self._still: dict[float, _Map] = {}  # by the radius of what is seen
+        self._used: tuple[_Map, _Map] = self._moving, self._moving
+
+    def release(self) -> None:
+        """Free the maps."""
+        for one in (self._moving, *self._still.values()):
+            one.release()
+
+    def forget(self) -> None:
+        """Draw what stands still anew: it has been moved."""
+        for one in self._still.values():
+            one.place = None
+
+    def draw(
+        self, eye: np.ndarray, lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
+    ) -> None:
+        """Draw what has changed for a camera's picture."""
+        middle, radius = seen_ball(eye, lens)
+        if radius not in self._still:
+            if len(self._still) == _MOST_MAPS:
+                self._still.pop(next(iter(self._still))).release()
+            self._still[radius] = _Map(self._context, STILL_SIZE)
+        still_map = self._still[radius]
+        cell = np.round(middle / (_CELL * radius))
+        if still_map.place is None or (still_map.place != cell).any():
+            still_map.place = cell
+            still_map.draw(
+                self._program, self._axes, cell * _CELL * radius, radius * _ROOM, still)
+        near = [one for one in moving
+                if np.linalg.norm(one.middle - middle) < radius + one.radius]
+        self._moving.draw(self._program, self._axes, *_ball_around(near, middle), near)
+        self._used = still_map, self._moving
+
+    def use(self, program: moderngl.Program) -> None:
+        """Let a program read the maps."""
+        for unit, (name, one) in enumerate(zip(('still', 'moving'), self._used, strict=True), 1):
+            if f'{name}_shadows' in program:
+                one.texture.use(unit)
+                program[f'{name}_shadows'] = unit
+                program[f'{name}_view'].write(one.view)
+                program[f'{name}_texel'] = one.texel
+
+
+def _ball_around(casters: Sequence[Caster], otherwise: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return middle and radius of a ball around casters [m]; of a small one if there are none."""
+    if not casters:
+        return otherwise, 0.1
+    middles = np.array([one.middle for one in casters])
+    reach = np.array([one.radius for one in casters])[:, None]
+    low, high = (middles - reach).min(axis=0), (middles + reach).max(axis=0)
+    return (low + high) / 2.0, float(np.linalg.norm(high - low) / 2.0) * 1.02
+
+
+class _Map:
+    """How far the light reaches, seen from it."""
+
+    def __init__(self, context: moderngl.Context, size: int) -> None:
+        self._context = context
+        self.size = size
+        self.texel = 1.0  # [m]
+        self.place: np.ndarray | None = None
+        self.view = np.zeros((4, 4), 'f4').tobytes()
+        self.texture = context.depth_texture((size, size))
+        self.texture.compare_func = '<='
+        self.texture.repeat_x = self.texture.repeat_y = False
+        self._buffer = context.framebuffer(depth_attachment=self.texture)
+
+    def release(self) -> None:
+        self._buffer.release()
+        self.texture.release()
+
+    def draw(
+        self, program: moderngl.Program, axes: np.ndarray, middle: np.ndarray, radius: float,
+        casters: Sequence[Caster],
+    ) -> None:
+        """Draw what casts shadows into a ball."""
+        self.texel = 2.0 * radius / self.size
+        view = shadow_view(axes, middle, radius, self.texel)
+        self.view = view.T.astype('f4').tobytes()
+        self._buffer.use()
+        self._buffer.clear(depth=1.0)
+        self._context.enable_only(moderngl.DEPTH_TEST)
+        program['view'].write(self.view)
+        for caster in casters:
+            caster.draw_shadow()

@@ -1,0 +1,98 @@
+"""What crosses the border of the rendering process; colours are red, green, blue in 0..1."""
+
+import math
+from typing import NamedTuple
+
+Colour = tuple[float, float, float]
+
+RGB, BGR, RGB16, GREY8, GREY16 = 'rgb8', 'bgr8', 'rgb16', 'mono8', 'mono16'
+# Of each two by two pixels, which channel is kept, row by row.
+BAYER = {'bayer_rggb8': (0, 1, 1, 2), 'bayer_bggr8': (2, 1, 1, 0),
+         'bayer_gbrg8': (1, 2, 0, 1), 'bayer_grbg8': (1, 0, 2, 1)}
+BYTES = {RGB: 3, BGR: 3, RGB16: 6, GREY8: 1, GREY16: 2, **dict.fromkeys(BAYER, 1)}  # of a pixel
+
+DIRECTIONAL, POINT, SPOT = range(3)
+
+
+class Look(NamedTuple):
+    """How a surface answers to light, as in fixed-function OpenGL."""
+
+    ambient: Colour = (1.0, 1.0, 1.0)
+    diffuse: Colour = (1.0, 1.0, 1.0)
+    specular: Colour = (0.0, 0.0, 0.0)
+    shininess: float = 0.0
+    emissive: Colour = (0.0, 0.0, 0.0)
+    alpha: float = 1.0
+    lit: bool = True  # False: the diffuse colour is shown as it is
+    both_sides: bool = False
+    texture: str = ''  # key of an image, which multiplies all but the specular light
+
+
+class ScenePart(NamedTuple):
+    """A surface that moves with a body."""
+
+    mesh: str  # key of its triangles
+    body: int  # row of the poses that come with each request
+    matrix: bytes  # (4, 4) float64, row-major: from the mesh to the body, scale included
+    look: Look
+    casts_shadow: bool = True
+    still: bool = False  # it seldom moves
+
+
+class Light(NamedTuple):
+    """A light in the world [m, rad]. `spot` is the cosines of half the cones, and the falloff."""
+
+    type: int
+    position: tuple[float, float, float]
+    direction: tuple[float, float, float]  # unit vector in which it shines
+    diffuse: Colour
+    specular: Colour
+    range: float
+    attenuation: tuple[float, float, float]  # constant, linear [1/m], quadratic [1/m^2]
+    spot: tuple[float, float, float]
+    casts_shadow: bool
+
+
+class Scene(NamedTuple):
+    """Everything that is drawn, but for where it is."""
+
+    parts: tuple[ScenePart, ...]
+    lights: tuple[Light, ...] = ()
+    ambient: Colour = (0.4, 0.4, 0.4)
+    background: Colour = (0.7, 0.7, 0.7)
+    shadows: bool = True
+
+
+class Lens(NamedTuple):
+    """A camera that looks along x, with y to the left and z up.
+
+    The picture's centre is on the optical axis. Distortion is Brown's model (k1, k2, k3, p1, p2)
+    about a centre in shares of the picture's size; `crop` enlarges the picture until it is full.
+    """
+
+    width: int  # [pixels]
+    height: int
+    field_of_view: float  # from the left to the right edge [rad]
+    near: float  # [m] along the optical axis
+    far: float
+    encoding: str = RGB
+    distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    centre: tuple[float, float] = (0.5, 0.5)
+    crop: bool = True
+    noise_mean: float = 0.0  # of 1.0 for white
+    noise_stddev: float = 0.0
+
+    @property
+    def focal_length(self) -> float:
+        """Return the focal length in pixels."""
+        return self.width / (2.0 * math.tan(self.field_of_view / 2.0))
+
+    @property
+    def colour_bytes(self) -> int:
+        """Return the size of a picture."""
+        return self.width * self.height * BYTES[self.encoding]
+
+    @property
+    def depth_bytes(self) -> int:
+        """Return the size of a depth image of float32."""
+        return self.width * self.height * 4

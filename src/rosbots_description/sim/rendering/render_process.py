@@ -1,0 +1,299 @@
+"""The rendering process, seen from the simulator: started when it is needed, and again if it dies.
+
+Pixels come back through memory that both processes share.
+"""
+
+import logging
+import mmap
+import os
+import socket
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import numpy as np
+
+from .gl import Lens, Scene
+
+logger = logging.getLogger(__name__)
+
+UNDER_WAY = 3  # pictures of one camera at a time
+MOST_DEATHS = 3  # in a row without a picture between them; then no more is tried
+_FOLDER = str(Path(__file__).parent)
+# It imports one package by its bare name, so that nothing of the simulator is loaded.
+_PROGRAM = """
+import sys
+sys.path[1:1] = sys.argv[3:]
+sys.path.insert(0, sys.argv[1])
+from gl.process import main
+main(int(sys.argv[2]))
+"""
+# A picture may take long where processors are shared; what never comes must end some day.
+PATIENCE = 60.0  # [s, wall]
+
+
+class RenderError(Exception):
+    """There is no picture, and why."""
+
+
+class RenderProcess:
+    """Draws one scene for any number of cameras. One thread uses it."""
+
+    def __init__(self, meshes: Callable[[str], np.ndarray]) -> None:
+        """Start nothing yet.
+
+        Args:
+            meshes: gives the triangles of a key that stands in a scene.
+        """
+        self._meshes = meshes
+        self._process: subprocess.Popen | None = None
+        self._connection: Connection | None = None
+        self._ready = False  # it has told who draws, and knows scene and cameras
+        self._scene: Scene | None = None
+        self._sent: set[str] = set()
+        self._cameras: dict[int, RenderedCamera] = {}
+        self._deaths = 0
+        self.fault = ''  # why nothing is drawn any more
+
+    def close(self) -> None:
+        """End the process."""
+        if self._connection is not None:
+            self._connection.close()
+            self._process.wait()
+        self._connection = self._process = None
+        self._ready = False
+
+    @property
+    def process_id(self) -> int | None:
+        """Return the process's id, or None while there is none."""
+        return None if self._process is None else self._process.pid
+
+    def set_scene(self, scene: Scene) -> None:
+        """Draw this from now on."""
+        self._scene = scene
+        if self._ready:
+            self._send_scene()
+
+    def camera(self, lens: Lens) -> 'RenderedCamera':
+        """Return a camera, to be closed when it is not needed any more."""
+        number = max(self._cameras, default=0) + 1
+        camera = self._cameras[number] = RenderedCamera(self, number, lens)
+        if self._ready:
+            self._send_camera(camera)
+        return camera
+
+    # What cameras ask of it.
+
+    def forget(self, camera: 'RenderedCamera') -> None:
+        """Know a camera no more."""
+        del self._cameras[camera.number]
+        if self._ready:
+            self._send(('forget', camera.number))
+
+    def request(self, message: tuple) -> None:
+        """Ask for a picture; while the process starts, that is put off."""
+        if self._connection is None:
+            self._start()
+        elif self._ready:
+            self._send(message)
+
+    def receive(self, wait: bool) -> bool:
+        """Take one answer, if there is one or one is waited for; return whether there was one."""
+        if self._connection is None:
+            return False
+        try:
+            if not self._connection.poll(PATIENCE if wait else 0.0):
+                if not wait:
+                    return False
+                self._process.kill()
+            number, fault, *rest = self._connection.recv()
+        except (EOFError, OSError):
+            self._mourn()
+            return False
+        if not self._ready:
+            self._begin(number, fault, *rest)
+            return True
+        self._deaths = 0
+        camera = self._cameras.get(number)
+        if camera is not None:
+            camera.answered(fault)
+        return True
+
+    def _start(self) -> None:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            threads = max(0, min(4, len(os.sched_getaffinity(0)) - 2))
+            self._process = subprocess.Popen(
+                [sys.executable, '-c', _PROGRAM, _FOLDER, str(theirs.fileno()), *sys.path[1:]],
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                pass_fds=[theirs.fileno()],
+                env={'LP_NUM_THREADS': str(threads), 'OPENBLAS_NUM_THREADS': '1', **os.environ})
+        self._connection = Connection(ours.detach())
+
+    def _begin(self, state: str, text: str, is_software: bool = False) -> None:
+        """Go on once the process has started: `text` is who draws, or why nobody does."""
+        if state == 'failed':
+            self.close()
+            self._give_up(f'cameras see nothing: {text}')
+            return
+        logger.info('pictures are drawn by %s%s', text,
+                    ', in software: no graphics card can be used' if is_software else '')
+        self._ready = True
+        self._sent = set()
+        if self._scene is not None:
+            self._send_scene()
+        for camera in self._cameras.values():
+            self._send_camera(camera)
+            camera.ask_again()
+
+    def _send_scene(self) -> None:
+        scene = self._scene
+        used = {part.mesh for part in scene.parts}
+        for key in sorted(used - self._sent):
+            self._send(('mesh', key, self._meshes(key).astype('f4').tobytes()))
+        self._sent = used
+        self._send((
+            'scene', [(*part[:3], tuple(part.look), *part[4:]) for part in scene.parts],
+            [tuple(light) for light in scene.lights], *scene[2:]))
+
+    def _send_camera(self, camera: 'RenderedCamera') -> None:
+        self._send(('camera', camera.number, tuple(camera.lens), len(camera.memory)))
+        if self._ready:
+            stream = socket.socket(fileno=os.dup(self._connection.fileno()))
+            with stream:
+                socket.send_fds(stream, [b'm'], [camera.file])
+
+    def _send(self, message: tuple) -> None:
+        if not self._ready:
+            return  # it has died meanwhile
+        try:
+            self._connection.send(message)
+        except OSError:
+            self._mourn()
+
+    def _mourn(self) -> None:
+        """Take note that the process has died."""
+        process = self._process
+        self.close()
+        self._deaths += 1
+        code = process.returncode
+        ended = f'killed by signal {-code}' if code < 0 else f'exit code {code}'
+        if self._deaths < MOST_DEATHS:
+            logger.error('the process that draws pictures has died (%s); another one begins', ended)
+            self._start()
+        else:
+            self._give_up('cameras see nothing any more: the process that draws pictures has died '
+                          f'{self._deaths} times ({ended})')
+
+    def _give_up(self, fault: str) -> None:
+        logger.error('%s', fault)
+        self.fault = fault
+        for camera in self._cameras.values():
+            camera.give_up(fault)
+
+
+class RenderedCamera:
+    """One camera: ask for pictures, and take them in that order."""
+
+    def __init__(self, process: RenderProcess, number: int, lens: Lens) -> None:
+        self.number = number
+        self.lens = lens
+        self._process = process
+        self._size = lens.colour_bytes + lens.depth_bytes
+        self.file = os.memfd_create('picture')
+        os.truncate(self.file, UNDER_WAY * self._size)
+        self.memory = mmap.mmap(self.file, UNDER_WAY * self._size)
+        self._asked: deque[tuple] = deque()  # messages that were sent
+        self._done: deque[tuple[tuple, str]] = deque()  # those that were answered, and a fault
+        self._next = 0
+
+    def close(self) -> None:
+        """Need no more pictures."""
+        self._process.forget(self)
+        self.memory.close()
+        os.close(self.file)
+
+    @property
+    def under_way(self) -> int:
+        """Return how many pictures were asked for and not taken yet; at most UNDER_WAY."""
+        return len(self._asked) + len(self._done)
+
+    def request(
+        self, eye: np.ndarray, poses: np.ndarray, seed: int = 0,
+        wants: tuple[bool, bool] = (True, False),
+    ) -> None:
+        """Ask for a picture of the scene as it is now.
+
+        Args:
+            eye: the camera's pose (7,), position [m] and quaternion x, y, z, w.
+            poses: of the bodies of the scene (n, 7).
+            seed: of the noise.
+            wants: colours, depths.
+        Raises:
+            RenderError: nothing is drawn here.
+        """
+        message = ('picture', self.number, self._next * self._size, *wants, seed, eye.tobytes(),
+                   poses.tobytes())
+        if self._process.fault:
+            raise RenderError(self._process.fault)
+        self._next = (self._next + 1) % UNDER_WAY
+        self._asked.append(message)
+        self._process.request(message)
+
+    def take(self, wait: bool) -> tuple[np.ndarray | None, np.ndarray | None] | None:
+        """Return colours and depths of the oldest picture asked for, or None if it is not there.
+
+        Colours are (height, width, channels), depths (height, width) float32 [m], inf where
+        nothing is. They are copies.
+
+        Args:
+            wait: do so until it is there; then there is None only if none was asked for.
+        Raises:
+            RenderError: it could not be drawn, or the process died of it.
+        """
+        if not self.has_picture(wait):
+            return None
+        message, fault = self._done.popleft()
+        if fault:
+            raise RenderError(fault)
+        return self._content(*message[2:5])
+
+    def has_picture(self, wait: bool) -> bool:
+        """Tell whether there is something to take; wait for it if there will be."""
+        while not self._done and self._asked:
+            if not self._process.receive(wait) and not wait:
+                return False
+        return bool(self._done)
+
+    def answered(self, fault: str) -> None:
+        """Take note that the oldest picture is there, or why not."""
+        self._done.append((self._asked.popleft(), fault))
+
+    def ask_again(self) -> None:
+        """Ask a process that has just begun for what is still to come."""
+        for message in tuple(self._asked):
+            self._process.request(message)
+
+    def give_up(self, fault: str) -> None:
+        """Take note that there will be no pictures."""
+        while self._asked:
+            self.answered(fault)
+
+    def _content(
+        self, place: int, has_colour: bool, has_depth: bool
+    ) -> tuple[np.ndarray | None, np.ndarray | None]:
+        lens = self.lens
+        shape = lens.height, lens.width
+        colours = depths = None
+        if has_colour:
+            content = self.memory[place:place + lens.colour_bytes]
+            wide = lens.encoding.endswith('16')
+            colours = np.frombuffer(content, '<u2' if wide else 'u1').reshape(*shape, -1)
+            place += lens.colour_bytes
+        if has_depth:
+            depths = np.frombuffer(
+                self.memory[place:place + lens.depth_bytes], 'f4').reshape(shape)
+        return colours, depths

@@ -1,0 +1,142 @@
+"""What is to be drawn of a world, in the words of the rendering process."""
+
+import math
+import os
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ..core import rotate
+from ..description import (
+    DIRECTIONAL,
+    POINT,
+    SPOT,
+    Box,
+    Cylinder,
+    LightSpec,
+    Material,
+    Mesh,
+    Plane,
+    Reflection,
+    Sphere,
+    Visual,
+)
+from ..meshes import visual_parts
+from ..runtime import Link, World
+from .gl import Light, Look, Scene, ScenePart
+from .shapes import mesh_triangles, unit_box, unit_cylinder, unit_sphere, unit_square
+
+# What a Collada file does not say of its materials; the rest is in its parts.
+_COLLADA_AMBIENT = (0.4, 0.4, 0.4)
+_LIGHT_TYPES = {DIRECTIONAL: 0, POINT: 1, SPOT: 2}
+Triangles = Callable[[], np.ndarray]
+
+
+class SceneMirror:
+    """Follows what enters and leaves a world.
+
+    `scene` and `meshes` are those of the last `update`; `poses` tells where the scene's bodies are.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._seen: tuple = ()
+        self._links: list[Link] = []
+        self.scene = Scene(())
+        self.meshes: dict[str, Triangles] = {}
+
+    def update(self) -> bool:
+        """Look at the world; return whether `scene` has changed."""
+        world = self._world
+        # Specifications are frozen values, and a model is made anew when it changes.
+        seen = (
+            [(model, model.spec) for model in world.models.values()],
+            list(world.lights.values()), world.scene,
+        )
+        if seen == self._seen:
+            return False
+        self._seen = seen
+        self._links = [
+            link for model in world.models.values() for link in model.links.values()
+            if link.spec.visuals]
+        self.meshes = {}
+        parts = tuple(
+            part for number, link in enumerate(self._links) for visual in link.spec.visuals
+            for part in self._parts(visual, number, link.model.static))
+        scene = world.scene
+        self.scene = Scene(
+            parts, tuple(_light(light) for light in world.lights.values()), scene.ambient[:3],
+            scene.background[:3], scene.shadows)
+        return True
+
+    def poses(self) -> np.ndarray:
+        """Return where the bodies of the scene are now (n, 7): position [m], quaternion x, y, z, w.
+
+        The engine is asked once for each.
+        """
+        if not self._links:
+            return np.zeros((0, 7))
+        return np.array([(*pose.position, *pose.orientation)
+                         for pose in (link.pose for link in self._links)])
+
+    def _parts(self, visual: Visual, body: int, still: bool) -> Iterator[ScenePart]:
+        for key, triangles, size, look in _surfaces(visual):
+            self.meshes[key] = triangles
+            yield ScenePart(key, body, _matrix(visual, size).tobytes(), look,
+                       not isinstance(visual.geometry, Plane), still)
+
+
+def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, tuple, Look]]:
+    """Yield the surfaces of a visual: key and triangles, size, look."""
+    look = _look(visual.material or Material())
+    match visual.geometry:
+        case Box(size):
+            yield 'box', unit_box, size, look
+        case Sphere(radius):
+            yield 'sphere', unit_sphere, (radius, radius, radius), look
+        case Cylinder(radius, length):
+            yield 'cylinder', unit_cylinder, (radius, radius, length), look
+        case Plane(normal, (width, depth)):
+            yield f'plane {normal}', lambda: unit_square(normal), (width, depth, 1.0), look
+        case Mesh(path, scale):
+            key = f'{path} {os.stat(path).st_mtime_ns}'
+            for number, (vertices, faces, normals, rgba) in enumerate(visual_parts(path)):
+                yield (
+                    f'{key} {number}',
+                    lambda v=vertices, f=faces, n=normals: mesh_triangles(v, f, n), scale,
+                    look if visual.material else _mesh_look(path, rgba))
+
+
+def _mesh_look(path: str, rgba: tuple) -> Look:
+    """Return the look of a mesh in its own colours."""
+    if path.lower().endswith('.stl'):
+        return _look(Material())  # it has none
+    return Look(_COLLADA_AMBIENT, rgba[:3], alpha=rgba[3])
+
+
+def _look(material: Material) -> Look:
+    own: Reflection = material.reflection
+    return Look(own.ambient, own.diffuse, own.specular, own.shininess, own.emissive,
+                material.rgba[3], own.lit, own.both_sides)
+
+
+def _light(light: LightSpec) -> Light:
+    direction = rotate(light.pose.orientation, light.direction)
+    length = math.hypot(*direction) or 1.0
+    return Light(
+        _LIGHT_TYPES[light.type], light.pose.position,
+        tuple(value / length for value in direction), light.diffuse[:3], light.specular[:3],
+        light.range,
+        (light.attenuation_constant, light.attenuation_linear, light.attenuation_quadratic),
+        (math.cos(light.spot_inner_angle / 2.0), math.cos(light.spot_outer_angle / 2.0),
+         light.spot_falloff),
+        light.cast_shadows)
+
+
+def _matrix(visual: Visual, size: tuple) -> np.ndarray:
+    """Return the matrix (4, 4) from the shape of unit size to the link."""
+    axes = [rotate(visual.pose.orientation, axis) for axis in np.eye(3)]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(axes).T * size
+    matrix[:3, 3] = visual.pose.position
+    return matrix
