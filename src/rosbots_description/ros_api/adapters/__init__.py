@@ -1,6 +1,16 @@
 """Which topics stand for which plugin; importing registers the adapters."""
 
-from . import contacts, drives, force, imus, lasers, state, wheel_slip, wrenches  # noqa: F401
+from . import (  # noqa: F401
+    cameras,
+    contacts,
+    drives,
+    force,
+    imus,
+    lasers,
+    state,
+    wheel_slip,
+    wrenches,
+)
 from .registry import Adapters
 
 __all__ = ['Adapters']

@@ -3,4 +3,4 @@
 Each module is imported where it is needed.
 """
 
-__all__ = ['physics', 'wheel_slip']
+__all__ = ['camera', 'physics', 'wheel_slip']

@@ -178,8 +178,10 @@ class Loop:
         if self._left is not None:
             batch = min(batch, self._left)
             self._left -= batch
+        self._world.keeps_pace = rate > 0.0
         with self._batch():
             self._world.run(batch)
+        self._world.keeps_pace = False
         cost = (time.monotonic() - now) / batch
         self._step_cost += 0.1 * (cost - self._step_cost)
 

@@ -46,6 +46,11 @@ class Output(Generic[Reading]):
         self.kept: Reading | None = None  # see `newest`
         self.wanted = False
 
+    @property
+    def readers(self) -> int:
+        """Return how many there are."""
+        return len(self._readers)
+
     def connect(self, read: Callable[[Reading], object]) -> None:
         """Give every reading to `read(reading)`, after those that were connected before."""
         self._set_readers((*self._readers, read))

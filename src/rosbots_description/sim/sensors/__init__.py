@@ -2,6 +2,16 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
+from .camera_plugins import (
+    CameraInfo,
+    CameraPlugin,
+    Cloud,
+    DepthCameraPlugin,
+    Image,
+    MultiCameraPlugin,
+    OpenniKinectPlugin,
+    StampedInfo,
+)
 from .contact import BumperPlugin, ContactPair, ContactPoint
 from .imu import ImuSensorPlugin, Inertia
 from .joint_wrench import JointWrench, JointWrenchPlugin
@@ -11,7 +21,8 @@ from .range import Distance, RangePlugin
 from .ray import Scan
 
 __all__ = [
-    'BlockLaserPlugin', 'BumperPlugin', 'ContactPair', 'ContactPoint', 'Distance',
-    'ImuSensorPlugin', 'Inertia', 'JointWrench', 'JointWrenchPlugin', 'LaserPlugin', 'LinkImu',
-    'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin',
+    'BlockLaserPlugin', 'BumperPlugin', 'CameraInfo', 'CameraPlugin', 'Cloud', 'ContactPair',
+    'ContactPoint', 'DepthCameraPlugin', 'Distance', 'Image', 'ImuSensorPlugin', 'Inertia',
+    'JointWrench', 'JointWrenchPlugin', 'LaserPlugin', 'LinkImu', 'MultiCameraPlugin',
+    'OpenniKinectPlugin', 'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin', 'StampedInfo',
 ]

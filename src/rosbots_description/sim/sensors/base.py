@@ -197,7 +197,11 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         self._next_ns = self._times.after(self.world.clock.now_ns)
 
     def _take(self, reading: Reading) -> None:
-        now_ns = self.world.clock.now_ns
-        if now_ns >= self._next_ns:
-            self._next_ns = self._times.after(now_ns)
+        stamp_ns = self.stamp_of(reading)
+        if stamp_ns >= self._next_ns:
+            self._next_ns = self._times.after(stamp_ns)
             self.take(reading)
+
+    def stamp_of(self, _reading: Reading) -> int:
+        """Return the time of a reading [ns]."""
+        return self.world.clock.now_ns

@@ -1,0 +1,143 @@
+"""The topics of cameras.
+
+Publishes:
+    <ns>/<cameraName>/<imageTopicName> (sensor_msgs/Image, latched)
+    <ns>/<cameraName>/<cameraInfoTopicName> (sensor_msgs/CameraInfo)
+    multicamera: the same, for each side, in <cameraName>/left and <cameraName>/right
+    depth_camera, openni_kinect: <depthImageTopicName> (sensor_msgs/Image),
+        <depthImageCameraInfoTopicName> (sensor_msgs/CameraInfo), <pointCloudTopicName>
+        (sensor_msgs/PointCloud2), below <cameraName>, too
+    <cameraName>/parameter_descriptions and parameter_updates, of dynamic_reconfigure
+Services:
+    <cameraName>/set_camera_info (sensor_msgs/SetCameraInfo)
+    <cameraName>/set_parameters (dynamic_reconfigure/Reconfigure): imager_rate
+"""
+
+from collections.abc import Callable
+
+import rospy
+from sensor_msgs.msg import CameraInfo as CameraInfoMessage
+from sensor_msgs.msg import Image as ImageMessage
+from sensor_msgs.msg import PointCloud2, PointField, RegionOfInterest
+from sensor_msgs.srv import SetCameraInfo, SetCameraInfoRequest, SetCameraInfoResponse
+from std_msgs.msg import Header
+
+from ...sim.sensors import (
+    CameraInfo,
+    CameraPlugin,
+    Cloud,
+    DepthCameraPlugin,
+    Image,
+    MultiCameraPlugin,
+    OpenniKinectPlugin,
+    StampedInfo,
+)
+from ..messages import stamp
+from .adapter import Adapter
+from .declarations import Offers, Publishes
+from .registry import connects
+
+QUEUE = 2
+_FIELDS = [PointField(name, offset, PointField.FLOAT32, 1)
+           for name, offset in (('x', 0), ('y', 4), ('z', 8), ('rgb', 16))]
+
+
+def header(stamp_ns: int, frame: str) -> Header:
+    """Return a header with the time of a picture, which may come some steps later."""
+    return Header(stamp=stamp(stamp_ns), frame_id=frame)
+
+
+def image_message(image: Image) -> ImageMessage:
+    """Return an image as a message."""
+    return ImageMessage(
+        header(image.stamp_ns, image.frame), image.height, image.width, image.encoding, 0,
+        len(image.pixels) // image.height, image.pixels)
+
+
+def cloud_message(cloud: Cloud) -> PointCloud2:
+    """Return a point cloud as a message."""
+    height, width, floats = cloud.points.shape
+    step = 4 * floats
+    return PointCloud2(
+        header(cloud.stamp_ns, cloud.frame), height, width, _FIELDS, False, step, step * width,
+        cloud.points.tobytes(), cloud.is_dense)
+
+
+def info_message(reading: StampedInfo) -> CameraInfoMessage:
+    """Return a camera's info as a message."""
+    info = reading.info
+    return CameraInfoMessage(
+        header=header(reading.stamp_ns, info.frame),
+        height=info.height, width=info.width, distortion_model=info.model,
+        D=list(info.distortion), K=list(info.intrinsics), R=list(info.rectification),
+        P=list(info.projection), binning_x=info.binning[0], binning_y=info.binning[1],
+        roi=RegionOfInterest(*info.region))
+
+
+def read_info(message: CameraInfoMessage) -> CameraInfo:
+    """Return the info of a message."""
+    roi = message.roi
+    return CameraInfo(
+        message.width, message.height, message.distortion_model, tuple(message.D),
+        tuple(message.K), tuple(message.R), tuple(message.P),
+        (message.binning_x, message.binning_y),
+        (roi.x_offset, roi.y_offset, roi.height, roi.width, roi.do_rectify),
+        message.header.frame_id)
+
+
+def set_camera_info(channel: int) -> Callable[[Adapter, str], Callable[[], None]]:
+    """Return what offers the service of one camera of a plugin."""
+
+    def offer(adapter: Adapter, name: str) -> Callable[[], None]:
+        def answer(request: SetCameraInfoRequest) -> SetCameraInfoResponse:
+            info = read_info(request.camera_info)
+            if channel < len(adapter.plugin.channels):
+                adapter.server.loop.call(lambda: adapter.plugin.set_info(info, channel))
+            return SetCameraInfoResponse(success=True)
+
+        return rospy.Service(name, SetCameraInfo, answer).shutdown
+
+    return offer
+
+
+def reconfigure(adapter: Adapter, name: str) -> Callable[[], None]:
+    """Offer the rate; loading the library must not keep the world waiting."""
+    if not adapter.plugin.camera_name:
+        return lambda: None
+    from ..reconfigure.camera import CameraReconfigure  # noqa: PLC0415
+
+    return CameraReconfigure(adapter.plugin, name, adapter.server.loop.post).close
+
+
+def channel_topics(side: str, image: str, info: str, folder: str, number: int) -> tuple:
+    """Return the topics and services of one camera.
+
+    Args:
+        side: begins the names of its outputs.
+        image: name of the topic; `info` is that of its camera_info.
+        folder: in which its services are.
+        number: of its channel.
+    """
+    return (
+        Publishes(f'{side}image', image, ImageMessage, image_message, queue=QUEUE, latch=True),
+        Publishes(f'{side}camera_info', info, CameraInfoMessage, info_message, queue=QUEUE),
+        Offers(f'{folder}/set_camera_info', set_camera_info(number)),
+        Offers(folder, reconfigure),
+    )
+
+
+_ONE = channel_topics('', '<imageTopicName>', '<cameraInfoTopicName>', '<cameraName>', 0)
+_DEPTH = (
+    *_ONE,
+    Publishes('depth', '<depthImageTopicName>', ImageMessage, image_message, queue=QUEUE),
+    Publishes('depth_camera_info', '<depthImageCameraInfoTopicName>', CameraInfoMessage,
+              info_message, queue=QUEUE),
+    Publishes('points', '<pointCloudTopicName>', PointCloud2, cloud_message, queue=QUEUE),
+)
+connects(CameraPlugin, *_ONE)
+connects(MultiCameraPlugin, *(
+    declared for number, side in enumerate(('left', 'right')) for declared in channel_topics(
+        f'{side}_', f'<{side} imageTopicName>', f'<{side} cameraInfoTopicName>',
+        f'<cameraName>/{side}', number)))
+connects(DepthCameraPlugin, *_DEPTH)
+connects(OpenniKinectPlugin, *_DEPTH)

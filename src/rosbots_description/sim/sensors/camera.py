@@ -1,0 +1,224 @@
+"""Cameras: what `<sensor>` elements of type camera, multicamera and depth see."""
+
+import logging
+import math
+from typing import NamedTuple
+
+from ..core import PluginError, Pose, compose, from_rpy
+from ..description import Element
+from ..plugin_registry import register_sensor
+from ..rendering import Lens, Picture, RenderError, Shutter
+from ..runtime import NEVER
+from .base import DueTimes, Sensor
+from .noise import read_noise
+from .numbers import child_at, count, number
+
+logger = logging.getLogger(__name__)
+
+LARGEST = 8192  # [pixels] along an edge
+POLL = 4  # steps between two looks for a picture that is under way
+_ENCODINGS = {
+    'L8': 'mono8', 'L_INT8': 'mono8', 'L16': 'mono16', 'L_INT16': 'mono16',
+    'R8G8B8': 'rgb8', 'RGB_INT8': 'rgb8', 'B8G8R8': 'bgr8', 'BGR_INT8': 'bgr8',
+    'R16G16B16': 'rgb16', 'RGB_INT16': 'rgb16', 'BAYER_RGGB8': 'bayer_rggb8',
+    'BAYER_BGGR8': 'bayer_bggr8', 'BAYER_GBRG8': 'bayer_gbrg8', 'BAYER_GRBG8': 'bayer_grbg8',
+}
+_DISTORTION = ('k1', 'k2', 'k3', 'p1', 'p2')
+
+
+class SensedCamera(NamedTuple):
+    """One <camera>: its name, where it is in the sensor, its lens, and how its pixels are called.
+
+    That differs from what they are where the format is unknown: as in Gazebo they are then red,
+    green, blue, and called bgr8.
+    """
+
+    name: str
+    pose: Pose
+    lens: Lens
+    encoding: str
+
+
+@register_sensor('camera')
+class CameraSensor(Sensor):
+    """Gives `Picture`s.
+
+    While the world keeps pace with the wall clock it does not wait for them: each comes when it is
+    drawn, with the stamp of when it was taken. Otherwise the step waits, and none is left out.
+    """
+
+    has_depth = False
+
+    def load(self) -> None:
+        """Read the cameras."""
+        elements = [one for one in self.spec.element.children if one.tag == 'camera']
+        if not elements:
+            raise PluginError(f'line {self.spec.element.line}: a <sensor> of type '
+                              f"'{self.spec.type}' without <camera>; add it")
+        self.cameras = tuple(self._camera(one) for one in self._chosen(elements))
+        self._wanted: dict[object, tuple[bool, bool]] = {}  # by plugin: pixels, depths
+        self._shutter = Shutter(self.world)
+        self._picture_step = NEVER
+        self._complaint = ''
+
+    def _chosen(self, elements: list[Element]) -> list[Element]:
+        return elements[:1]
+
+    def reading(self, pictures: tuple[Picture, ...]) -> object:
+        """Return what is given out for the pictures of all cameras."""
+        return pictures[0]
+
+    def shared(self) -> tuple:
+        """Return what is no part of the state."""
+        return (*super().shared(), self.cameras, self._shutter)
+
+    def want(self, plugin: object, what: tuple[bool, bool] | None) -> None:
+        """Draw pixels and depths as plugins that read want them; for other readers draw all."""
+        if what is None:
+            self._wanted.pop(plugin, None)
+        else:
+            self._wanted[plugin] = what
+
+    def crop(self, crops: bool) -> None:
+        """Leave out the borders of a distorted picture if it may be and there would be any."""
+        self.cameras = tuple(
+            one._replace(lens=one.lens._replace(crop=crops and one.lens.crop))
+            for one in self.cameras)
+
+    def set_rate(self, rate: float) -> None:
+        """Take pictures at this rate [Hz] from now on."""
+        self._times = DueTimes(rate, 'imager_rate')
+        self._times.begin(self.world.clock.now_ns)
+        self.count_readers()
+
+    def unload(self) -> None:
+        """Let the shutter go."""
+        self._shutter.close()
+
+    def measure(self) -> object:
+        """Return what is seen now.
+
+        Raises:
+            PluginError: nothing can be drawn.
+        """
+        try:
+            self._press((True, self.has_depth))
+            taken = None
+            while self._shutter.under_way:  # those that were asked for before come first
+                taken = self._shutter.take(wait=True)
+        except RenderError as error:
+            raise PluginError(f'{self.called}: {error}') from None
+        return self.reading(taken)
+
+    def before_step(self) -> None:
+        """Take a picture after physics if one is due, or look for one that is under way."""
+        self._takes = self.world.clock.steps >= self._picture_step
+        super().before_step()
+
+    def after_step(self) -> None:
+        """Take a picture, and give out those that are there."""
+        waits = not self.world.keeps_pace
+        try:
+            self._give(waits)
+            if self._takes and self._shutter.is_free:
+                self._press(self._wants())
+                self._give(waits)
+        except RenderError as error:
+            if str(error) != self._complaint:
+                self._complaint = str(error)
+                logger.error("model '%s', %s: %s", self.model.name, self.called, error)
+        self.count_readers()
+
+    def count_readers(self) -> None:
+        """Be due when the next picture is, and before that if one is under way."""
+        super().count_readers()
+        self._picture_step = self.due
+        if self.due != NEVER and self._shutter.under_way:
+            self.due = min(self.due, self.world.clock.steps + POLL)
+
+    def _wants(self) -> tuple[bool, bool]:
+        if self.readings.readers > len(self._wanted):
+            return True, self.has_depth
+        return tuple(map(any, zip(*self._wanted.values(), strict=True)))
+
+    def _press(self, wants: tuple[bool, bool]) -> None:
+        while not self._shutter.is_free:
+            self._shutter.take(wait=True)
+        here = self.pose
+        seed = int(self.random.at(self.world.clock.steps).integers(1 << 63))
+        self._shutter.press(
+            [(one.lens, compose(here, one.pose)) for one in self.cameras], seed, wants)
+
+    def _give(self, waits: bool) -> None:
+        """Send the pictures that are there; those of a time that has not come yet are void."""
+        while (taken := self._shutter.take(waits)) is not None:
+            if taken[0].stamp_ns <= self.world.clock.now_ns:
+                self.readings.send(self.reading(taken))
+
+    def _camera(self, element: Element) -> SensedCamera:
+        width = count(element, 'image/width', 320, LARGEST)
+        height = count(element, 'image/height', 240, LARGEST)
+        field = number(element, 'horizontal_fov', 1.047)
+        near, far = number(element, 'clip/near', 0.1), number(element, 'clip/far', 100.0)
+        if not 0.001 <= field <= math.pi - 0.001:
+            raise PluginError(f'line {element.line}: <horizontal_fov> is {field:g} rad; a pinhole '
+                              'sees more than 0 and less than pi')
+        if not 0.0 < near < far:
+            raise PluginError(f'line {element.line}: <near> is {near:g} m and <far> is {far:g} m; '
+                              'near must be above 0 and below far')
+        child = child_at(element, 'image/format')
+        written = child.text.strip() if child is not None else 'R8G8B8'
+        encoding = _ENCODINGS.get(written)
+        if encoding is None:
+            logger.error(
+                "model '%s', %s: <format> '%s' is unknown; pixels are red, green, blue and are "
+                'called bgr8, as in Gazebo', self.model.name, self.called, written)
+        noise = read_noise(element.child('noise'))
+        lens = Lens(
+            width, height, field, near, far, encoding or 'rgb8',
+            tuple(number(element, f'distortion/{name}', 0.0) for name in _DISTORTION),
+            _pair(child_at(element, 'distortion/center'), (0.5, 0.5)),
+            number(element, 'distortion/k1', 0.0) < 0.0, noise.mean, noise.deviation)
+        pose = element.child('pose')
+        return SensedCamera(element.attributes.get('name', ''),
+                            Pose() if pose is None else _pose(pose), lens, encoding or 'bgr8')
+
+
+@register_sensor('multicamera')
+class MultiCameraSensor(CameraSensor):
+    """Gives tuples of `Picture`s, one of each camera, all of one moment."""
+
+    def _chosen(self, elements: list[Element]) -> list[Element]:
+        return elements
+
+    def reading(self, pictures: tuple[Picture, ...]) -> object:
+        """Return the pictures of all cameras."""
+        return pictures
+
+
+@register_sensor('depth')
+class DepthSensor(CameraSensor):
+    """Gives `Picture`s with depths."""
+
+    has_depth = True
+
+
+def _numbers(element: Element, size: int) -> list[float]:
+    words = element.text.split()
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        values = []
+    if len(values) != size or not all(map(math.isfinite, values)):
+        raise PluginError(f"line {element.line}: <{element.tag}> is '{element.text}'; it takes "
+                          f'{size} finite numbers')
+    return values
+
+
+def _pair(element: Element | None, default: tuple[float, float]) -> tuple[float, float]:
+    return default if element is None else tuple(_numbers(element, 2))
+
+
+def _pose(element: Element) -> Pose:
+    values = _numbers(element, 6)
+    return Pose(tuple(values[:3]), from_rpy(*values[3:]))

@@ -1,0 +1,323 @@
+"""Pictures and point clouds: libgazebo_ros_camera.so, multicamera, depth_camera, openni_kinect.
+
+Tags, defaults and namespaces are those of gazebo_ros_pkgs 2.9.2.
+"""
+
+import logging
+import math
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from ..plugin_registry import register_in_sensor
+from ..rendering import BYTES, Lens, Picture
+from ..runtime import Output
+from .base import SensorPlugin
+from .camera import CameraSensor, DepthSensor, MultiCameraSensor, SensedCamera
+
+logger = logging.getLogger(__name__)
+
+Value = TypeVar('Value', str, float, bool)
+_MILLIMETRES = 1000.0  # per metre
+
+
+@dataclass(frozen=True)
+class CameraInfo:
+    """How a picture came to be, in the words of sensor_msgs/CameraInfo; matrices row by row."""
+
+    width: int
+    height: int
+    model: str
+    distortion: tuple[float, ...]
+    intrinsics: tuple[float, ...]  # (3, 3)
+    rectification: tuple[float, ...]  # (3, 3)
+    projection: tuple[float, ...]  # (3, 4)
+    binning: tuple[int, int] = (0, 0)
+    region: tuple[int, int, int, int, bool] = (0, 0, 0, 0, False)
+    frame: str = ''
+
+
+@dataclass(frozen=True)
+class StampedInfo:
+    """A `CameraInfo` and its time [ns]."""
+
+    stamp_ns: int
+    info: CameraInfo
+
+
+@dataclass(frozen=True)
+class Image:
+    """Rows of pixels [bytes] at a time [ns]; encodings are those of sensor_msgs/Image."""
+
+    stamp_ns: int
+    frame: str
+    width: int
+    height: int
+    encoding: str
+    pixels: bytes
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Points in the optical frame, (height, width, 8) float32: x, y, z [m], 0, colour, 0, 0, 0.
+
+    `is_dense`: none is NaN.
+    """
+
+    stamp_ns: int
+    frame: str
+    points: np.ndarray
+    is_dense: bool
+
+
+class Channel:
+    """The outputs and the info of one camera of a plugin: `image` and `camera_info`."""
+
+    def __init__(self, plugin: 'CameraPlugin', camera: SensedCamera, side: str, baseline: float
+                 ) -> None:
+        """Make them; `side` begins the names of the outputs, `baseline` is in metres."""
+        self.camera = camera
+        self.frame = plugin.frame
+        self.image: Output = plugin.output(f'{side}image')
+        self.camera_info: Output = plugin.output(f'{side}camera_info')
+        self.info = plugin.info(camera.lens, baseline)
+
+    def send(self, picture: Picture) -> None:
+        """Give out a picture."""
+        if self.image.wanted and picture.pixels is not None:
+            lens = self.camera.lens
+            self.image.send(Image(picture.stamp_ns, self.frame, lens.width, lens.height,
+                                  self.camera.encoding, picture.pixels.tobytes()))
+        if self.camera_info.wanted:
+            self.camera_info.send(StampedInfo(picture.stamp_ns, self.info))
+
+
+@register_in_sensor('libgazebo_ros_camera.so')
+class CameraPlugin(SensorPlugin):
+    """Passes pictures on. Outputs: `image`, `camera_info`."""
+
+    sensor_class: type[CameraSensor] = CameraSensor
+    prefix = 'Camera Plugin (ns = {}) '
+    empty_namespace = '{}'
+    sensor: CameraSensor
+
+    def load(self) -> None:
+        """Read the tags."""
+        self.rate = self._value('updateRate', 0.0)
+        self.camera_name = self._value('cameraName', '')
+        if not self.camera_name:
+            logger.warning('%s<cameraName> is missing or empty: there is no dynamic_reconfigure',
+                           self.log_prefix)
+        self.frame = self._value('frameName', '')
+        self._topic('imageTopicName', 'image_raw')
+        self._topic('cameraInfoTopicName', 'camera_info')
+        self._values = {tag: self._value(tag, 0.0) for tag in (
+            'Cx', 'Cy', 'focalLength', 'hackBaseline', 'distortionK1', 'distortionK2',
+            'distortionK3', 'distortionT1', 'distortionT2')}
+        self._takes_distortion = self._value('autoDistortion', False)
+        self.params.ignore('CxPrime', 'triggerTopicName')
+        self.sensor.crop(self._value('borderCrop', True))
+        self.load_channels()
+
+    def load_channels(self) -> None:
+        """Make the outputs."""
+        self.channels = (
+            Channel(self, self.sensor.cameras[0], '', self._values['hackBaseline']),)
+
+    def restart(self) -> None:
+        """Count the times of pictures from now on."""
+        super().restart()
+        self.readers_changed()
+
+    def info(self, lens: Lens, baseline: float) -> CameraInfo:
+        """Return how pictures of a lens come to be, as the tags say."""
+        values = self._values
+        seen = lens.focal_length
+        focal = values['focalLength'] or seen
+        if abs(focal - seen) > 1e-6 * seen:
+            logger.warning(
+                '%s<focalLength> is %g and does not fit <horizontal_fov> and width, which make '
+                '%.6g: messages say the former, pictures are taken with the latter',
+                self.log_prefix, focal, seen)
+        x = values['Cx'] or (lens.width + 1.0) / 2.0
+        y = values['Cy'] or (lens.height + 1.0) / 2.0
+        k1, k2, k3, t1, t2 = lens.distortion if self._takes_distortion else (
+            values[f'distortion{name}'] for name in ('K1', 'K2', 'K3', 'T1', 'T2'))
+        return CameraInfo(
+            lens.width, lens.height, 'plumb_bob', (k1, k2, t1, t2, k3),
+            (focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0),
+            (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+            (focal, 0.0, x, -focal * baseline, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0),
+            frame=self.frame)
+
+    def set_info(self, info: CameraInfo, channel: int = 0) -> None:
+        """Send this with pictures from now on, as set_camera_info asks for."""
+        self.channels[channel].info = info
+
+    def set_rate(self, rate: float) -> None:
+        """Take pictures at this rate [Hz] from now on, as dynamic_reconfigure asks for."""
+        self.sensor.set_rate(rate)
+
+    def readers_changed(self) -> None:
+        """Have drawn what is read."""
+        self.sensor.want(self, self.wants() if self.is_read else None)
+        super().readers_changed()
+
+    def wants(self) -> tuple[bool, bool]:
+        """Tell whether pixels and depths are read."""
+        return any(channel.image.wanted for channel in self.channels), False
+
+    def stamp_of(self, reading: Picture | tuple[Picture, ...]) -> int:
+        """Return when a picture was taken [ns]."""
+        return (reading if isinstance(reading, Picture) else reading[0]).stamp_ns
+
+    def take(self, reading: Picture) -> None:
+        """Send a picture."""
+        self.channels[0].send(reading)
+
+    def unload(self) -> None:
+        """Want nothing any more."""
+        self.sensor.want(self, None)
+
+    def _topic(self, tag: str, default: str) -> None:
+        """Read the name of a topic, which stands below the camera's name; keep it as the tag's."""
+        name = self._value(tag, default)
+        if not name.startswith('/') and self.camera_name:
+            name = f'{self.camera_name}/{name}'
+        self.params.values[tag] = name
+
+    def _value(self, tag: str, default: Value) -> Value:
+        """Return a tag's value; upstream says nothing of one that is missing."""
+        if self.params.text(tag) is None:
+            self.params.values[tag] = default
+            return default
+        return self.params.read(tag, default)
+
+
+@register_in_sensor('libgazebo_ros_multicamera.so')
+class MultiCameraPlugin(CameraPlugin):
+    """Passes the pictures of the cameras named left and right on, of equal stamps.
+
+    Outputs: `left_image`, `left_camera_info`, `right_image`, `right_camera_info`.
+    """
+
+    sensor_class = MultiCameraSensor
+
+    def load_channels(self) -> None:
+        """Make the outputs."""
+        found = {}
+        for number, camera in enumerate(self.sensor.cameras):
+            side = next((side for side in ('left', 'right') if side in camera.name), '')
+            if not side or side in found:
+                logger.warning("%scamera '%s' has no topics: upstream looks for one 'left' and one "
+                               "'right' in the names", self.log_prefix, camera.name)
+            else:
+                found[side] = number
+        self._numbers = tuple(found.values())
+        self.sides = tuple(found)
+        # Only the right camera stands the baseline aside.
+        self.channels = tuple(
+            Channel(self, self.sensor.cameras[number], f'{side}_',
+                    self._values['hackBaseline'] if side == 'right' else 0.0)
+            for side, number in found.items())
+
+    def _topic(self, tag: str, default: str) -> None:
+        super()._topic(tag, default)
+        name = self._value(tag, default).lstrip('/')
+        for side in ('left', 'right'):
+            self.params.values[f'{side} {tag}'] = f'{self.camera_name}/{side}/{name}'.lstrip('/')
+
+    def take(self, reading: tuple[Picture, ...]) -> None:
+        """Send the pictures."""
+        for channel, number in zip(self.channels, self._numbers, strict=True):
+            channel.send(reading[number])
+
+
+@register_in_sensor('libgazebo_ros_depth_camera.so')
+class DepthCameraPlugin(CameraPlugin):
+    """Passes pictures and depths on.
+
+    Outputs: `image`, `camera_info`, `depth`, `depth_camera_info`, `points`.
+    """
+
+    sensor_class = DepthSensor
+    is_organised = False
+    sensor: DepthSensor
+
+    def load_channels(self) -> None:
+        """Make the outputs."""
+        super().load_channels()
+        self._topic('depthImageTopicName', 'depth/image_raw')
+        self._topic('depthImageCameraInfoTopicName', 'depth/camera_info')
+        self._topic('pointCloudTopicName', 'points')
+        self.params.ignore('reflectanceTopicName', 'normalsTopicName', 'reduceNormals')
+        self._cutoff = self._value('pointCloudCutoff', 0.4)
+        self._most = self.farthest()
+        self._is_short = self._value('useDepth16UC1Format', False)
+        self.depth = self.output('depth')
+        self.depth_camera_info = self.output('depth_camera_info')
+        self.points = self.output('points')
+        lens = self.channels[0].camera.lens
+        across, down = (
+            (np.arange(size) - 0.5 * (size - 1)) / lens.focal_length
+            for size in (lens.width, lens.height))
+        self._rays = across.astype('f4')[None, :], down.astype('f4')[:, None]
+
+    def farthest(self) -> float:
+        """Return the distance from which on there is no depth [m]."""
+        return math.inf
+
+    def wants(self) -> tuple[bool, bool]:
+        """Tell whether pixels and depths are read."""
+        channel = self.channels[0]
+        return (channel.image.wanted or self.points.wanted,
+                self.depth.wanted or self.points.wanted)
+
+    def take(self, reading: Picture) -> None:
+        """Send a picture and what is made of its depths."""
+        channel = self.channels[0]
+        channel.send(reading)
+        if self.depth_camera_info.wanted:
+            self.depth_camera_info.send(StampedInfo(reading.stamp_ns, channel.info))
+        if reading.depths is None:
+            return
+        depths = np.minimum(reading.depths, np.float32(channel.camera.lens.far))
+        depths[(depths <= self._cutoff) | (depths >= self._most)] = np.nan
+        if self.depth.wanted:
+            self.depth.send(self._depth_image(reading.stamp_ns, depths))
+        if self.points.wanted and reading.pixels is not None:
+            self.points.send(self._cloud(reading, depths))
+
+    def _depth_image(self, stamp_ns: int, depths: np.ndarray) -> Image:
+        height, width = depths.shape
+        if not self._is_short:
+            return Image(stamp_ns, self.frame, width, height, '32FC1', depths.tobytes())
+        short = np.minimum(np.nan_to_num(depths) * np.float32(_MILLIMETRES), 65535.0)
+        return Image(stamp_ns, self.frame, width, height, '16UC1', short.astype('<u2').tobytes())
+
+    def _cloud(self, picture: Picture, depths: np.ndarray) -> Cloud:
+        across, down = self._rays
+        points = np.zeros((*depths.shape, 8), '<f4')
+        points[:, :, 0] = depths * across
+        points[:, :, 1] = depths * down
+        points[:, :, 2] = depths
+        if BYTES[self.channels[0].camera.lens.encoding] == 3:
+            points.view('u1')[:, :, 16:19] = picture.pixels  # in the order of the image
+        elif picture.pixels.dtype == np.uint8:
+            points.view('u1')[:, :, 16:19] = picture.pixels[:, :, :1]
+        if not self.is_organised:
+            points = points.reshape(1, -1, 8)
+        return Cloud(picture.stamp_ns, self.frame, points, not bool(np.isnan(depths).any()))
+
+
+@register_in_sensor('libgazebo_ros_openni_kinect.so')
+class OpenniKinectPlugin(DepthCameraPlugin):
+    """As the depth camera; clouds have rows, and what is far has no depth."""
+
+    is_organised = True
+
+    def farthest(self) -> float:
+        """Return the distance from which on there is no depth [m]."""
+        return self._value('pointCloudCutoffMax', 5.0)
+

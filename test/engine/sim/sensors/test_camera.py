@@ -1,0 +1,279 @@
+"""Cameras see what Gazebo's saw, at the times they should, whatever happens to who draws."""
+
+import logging
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import closing
+
+import numpy as np
+import pytest
+from support.pictures import FILES, recorded_picture, recorded_world, spawn_robot
+from support.sensing import recordings
+
+from rosbots_description.sim.public.world import World
+from rosbots_description.sim.rendering.studio import studio_of
+from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
+
+LEVELS = 3  # of 255 that a face may differ
+EDGES = 1e-4  # share of pixels on edges, where one of four samples may fall to the other side
+SCENES = {  # picture: world, robot, where it stands along x [m], heading [rad]
+    'camera_320': ('scene_a', 'camera_320', 0.0, 0.0),
+    'camera_640': ('scene_a', 'camera_640', 0.0, 0.0),
+    'level_640': ('scene_a', 'camera_level', 0.0, 0.0),
+    'camera_L8': ('scene_a', 'camera_L8', 0.0, 0.0),
+    'colours_0e': ('colours_0e', 'camera_level', 0.0, 0.0),
+    'colours_0e_from_behind': ('colours_0e', 'camera_level', 6.0, math.pi),
+    'colours_2e': ('colours_2e', 'camera_level', 0.0, 0.0),
+    'colours_2e_from_behind': ('colours_2e', 'camera_level', 6.0, math.pi),
+}
+INFOS = recordings('camera_info')
+
+
+@pytest.fixture
+def scene():
+    with closing(recorded_world()) as world:
+        yield world
+
+
+def plugin_of(sensor):
+    return next(one for one in sensor.model.parts
+                if isinstance(one, CameraPlugin) and one.sensor is sensor)
+
+
+def stamps(sensor):
+    """Return a list that takes the stamp [ns] and the time [ns] of each picture from now on."""
+    found = []
+    sensor.readings.connect(
+        lambda picture: found.append((picture.stamp_ns, sensor.world.clock.now_ns)))
+    return found
+
+
+def process_of(world):
+    return studio_of(world).process.process_id
+
+
+@pytest.mark.parametrize('name', SCENES)
+def test_a_picture_is_the_recorded_one(name):
+    world_name, robot, x, yaw = SCENES[name]
+    with closing(recorded_world(world_name)) as world:
+        _, camera = spawn_robot(world, robot, x, yaw)
+        seen = camera.read().pixels.astype(int)
+    away = np.abs(seen - recorded_picture(name)).max(axis=2)
+    assert (away > LEVELS).mean() < EDGES
+
+
+def test_both_eyes_of_a_multicamera_see_from_where_they_are(scene):
+    _, camera = spawn_robot(scene, 'multicamera')
+    left, right = (picture.pixels.astype(int) for picture in camera.read())
+    away = np.abs(left - recorded_picture('multicamera_left')).max(axis=2)
+    assert (away > LEVELS).mean() < 10 * EDGES
+    assert np.abs(left - right).max() > 50
+
+
+@pytest.mark.parametrize(('robot', 'share'), [('camera_dist_auto', 0.04),
+                                              ('camera_dist_nocrop', 0.06)])
+def test_a_distorted_picture_is_the_recorded_one_but_for_its_ragged_edges(scene, robot, share):
+    """Gazebo's map of the distortion has gaps, which it fills with the mean of what is around."""
+    _, camera = spawn_robot(scene, robot)
+    seen = camera.read().pixels.astype(int)
+    away = np.abs(seen - recorded_picture(robot)).max(axis=2)
+    assert (away > LEVELS).mean() < share
+
+
+def test_noise_has_the_deviation_that_was_asked_for_and_repeats_with_the_step(scene):
+    _, camera = spawn_robot(scene, 'camera_noise')
+    first, second = camera.read().pixels, camera.read().pixels
+    assert np.array_equal(first, second)
+    scene.run(steps=1)
+    assert not np.array_equal(first, camera.read().pixels)
+    away = first.astype(int) - recorded_picture('camera_320')
+    ground = (recorded_picture('camera_320') == 155).all(axis=2)
+    assert away[ground].std() == pytest.approx(255 * 0.007, rel=0.05)
+    assert (away[ground][:, 0] == away[ground].T).all()  # as Gazebo: the same in all channels
+
+
+@pytest.mark.parametrize('name', INFOS)
+def test_camera_info_is_the_recorded_one(scene, name):
+    recorded = INFOS[name]
+    _, camera = spawn_robot(scene, recorded['robot'])
+    info = plugin_of(camera).channels[0].info
+    assert (info.width, info.height, info.model, info.frame) == (
+        recorded['width'], recorded['height'], recorded['distortion_model'], recorded['frame_id'])
+    for ours, theirs in ((info.distortion, 'D'), (info.intrinsics, 'K'),
+                         (info.rectification, 'R'), (info.projection, 'P')):
+        assert ours == pytest.approx(recorded[theirs], rel=1e-7)
+    assert camera.cameras[0].encoding == recorded['encoding']
+
+
+def test_depths_are_the_recorded_ones(scene):
+    _, camera = spawn_robot(scene, 'openni_kinect')
+    plugin = plugin_of(camera)
+    images, clouds = [], []
+    plugin.depth.connect(images.append)
+    plugin.points.connect(clouds.append)
+    plugin.take(camera.read())
+    depths = np.frombuffer(images[0].pixels, '<f4').reshape(240, 320)
+    with np.load(FILES / 'openni_kinect.npz') as file:
+        recorded = file[file.files[0]]
+    assert np.array_equal(np.isnan(depths), np.isnan(recorded))
+    away = np.abs(depths - recorded)
+    assert (away[np.isfinite(away)] > 1e-4).mean() < EDGES
+    points = clouds[0].points
+    assert points.shape == (240, 320, 8)
+    assert not clouds[0].is_dense
+    across, down, along = points[200, 40, :3]
+    assert across == pytest.approx(along * (40 - 159.5) / 277.19136, rel=1e-5)
+    assert down == pytest.approx(along * (200 - 119.5) / 277.19136, rel=1e-5)
+    assert list(points[200, 40].view('u1')[16:19]) == [155, 155, 155]
+
+
+def test_the_depth_camera_gives_the_far_clip_for_the_sky_and_clouds_without_rows(scene):
+    _, camera = spawn_robot(scene, 'depth_camera')
+    plugin = plugin_of(camera)
+    clouds = []
+    plugin.points.connect(clouds.append)
+    plugin.take(camera.read())
+    assert clouds[0].points.shape == (1, 76800, 8)
+    assert clouds[0].is_dense
+    assert clouds[0].points[0, 0, 2] == 10.0
+
+
+def test_each_picture_comes_at_its_step_and_none_is_left_out(scene):
+    _, camera = spawn_robot(scene, 'camera_320')
+    taken = stamps(camera)
+    scene.run(seconds=1.0)
+    assert [stamp for stamp, _ in taken] == [now for _, now in taken]
+    assert [stamp // 1_000_000 for stamp, _ in taken] == [
+        math.ceil(1000 * k / 30) for k in range(1, 31)]
+
+
+def test_pictures_repeat_bit_for_bit_with_shadows_and_noise():
+    def take():
+        with closing(recorded_world(shadows=True)) as world:
+            model, camera = spawn_robot(world, 'camera_noise')
+            model.set_twist(model.state()[1]._replace(linear=(0.5, 0.0, 0.0)))
+            found = []
+            camera.readings.connect(lambda picture: found.append(picture.pixels.tobytes()))
+            world.run(seconds=0.3)
+            return found
+
+    first = take()
+    assert len(first) == 9  # 30 Hz
+    assert first == take()
+
+
+def test_nobody_draws_while_nobody_reads(scene):
+    spawn_robot(scene, 'camera_320')
+    scene.run(seconds=0.2)
+    assert process_of(scene) is None
+
+
+def test_at_the_pace_of_the_wall_clock_no_step_waits_for_a_picture(scene):
+    _, camera = spawn_robot(scene, 'camera_320')
+    camera.read()
+    taken = stamps(camera)
+    scene.keeps_pace = True
+    os.kill(process_of(scene), signal.SIGSTOP)
+    begin = time.monotonic()
+    scene.run(seconds=0.2)
+    assert time.monotonic() - begin < 2.0
+    assert taken == []
+    os.kill(process_of(scene), signal.SIGCONT)
+    deadline = time.monotonic() + 10.0
+    while not taken and time.monotonic() < deadline:
+        scene.run(steps=1)
+        time.sleep(0.001)
+    stamp, now = taken[0]
+    assert stamp == 34_000_000  # when it was taken
+    assert now > stamp
+
+
+def test_another_process_begins_where_one_has_died(scene, caplog):
+    _, camera = spawn_robot(scene, 'camera_320')
+    before = camera.read().pixels
+    dead = process_of(scene)
+    os.kill(dead, signal.SIGKILL)
+    taken = stamps(camera)
+    scene.run(seconds=0.1)
+    assert len(taken) == 3
+    assert process_of(scene) != dead
+    # The robot has settled by some micrometres.
+    assert (np.abs(camera.read().pixels.astype(int) - before) > LEVELS).mean() < EDGES
+    assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
+        'the process that draws pictures has died (killed by signal 9); another one begins']
+
+
+def test_it_ends_with_the_process_that_it_draws_for():
+    text = f"""
+import os, sys
+sys.path[:0] = {sys.path!r}
+from support.pictures import recorded_world, spawn_robot
+from rosbots_description.sim.rendering.studio import studio_of
+world = recorded_world()
+spawn_robot(world, 'camera_320')[1].read()
+print(studio_of(world).process.process_id, flush=True)
+os.kill(os.getpid(), 9)
+"""
+    run = subprocess.run([sys.executable, '-c', text], capture_output=True, text=True, check=False)
+    drawing = int(run.stdout)
+    deadline = time.monotonic() + 10.0
+    while os.path.exists(f'/proc/{drawing}') and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not os.path.exists(f'/proc/{drawing}')
+
+
+def test_what_stands_before_the_sun_casts_a_shadow_unless_the_world_says_no():
+    def ground(shadows):
+        with closing(recorded_world(shadows=shadows)) as world:
+            _, camera = spawn_robot(world, 'camera_640')
+            return camera.read().pixels[310:316, 120:160].astype(int)
+
+    assert (ground(False) == 155).all()
+    assert ground(True).max() <= 34  # ambient light alone: 31
+
+
+@pytest.mark.parametrize(('element', 'said'), [
+    ('<horizontal_fov>0</horizontal_fov>', 'horizontal_fov'),
+    ('<horizontal_fov>3.2</horizontal_fov>', 'horizontal_fov'),
+    ('<image><width>0</width></image>', 'width'),
+    ('<image><width>9000</width></image>', 'width'),
+    ('<clip><near>2</near><far>1</far></clip>', 'near must be above 0 and below far'),
+    ('<noise><type>gaussian</type><stddev>nan</stddev></noise>', 'stddev'),
+])
+def test_a_lens_that_cannot_be_is_said_in_one_sentence(element, said, caplog):
+    with closing(World.empty()) as world:
+        world.spawn('<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" '
+                    f'type="camera"><camera>{element}</camera></sensor></link></model></sdf>', 'm')
+        assert said in caplog.text
+        world.run(steps=10)
+
+
+def test_the_smallest_and_the_largest_picture_are_drawn():
+    for size in (1, 8192):
+        with closing(World.empty()) as world:
+            model = world.spawn(
+                '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 1 0 0 0</pose>'
+                '<link name="l"><sensor name="s" type="camera"><camera><image>'
+                f'<width>{size}</width><height>{size}</height></image></camera></sensor></link>'
+                '</model></sdf>', 'm')
+            assert model.sensors[0].read().pixels.shape == (size, size, 3)
+
+
+def test_a_robot_may_go_while_its_picture_is_under_way(scene):
+    model, camera = spawn_robot(scene, 'camera_320')
+    stamps(camera)
+    scene.keeps_pace = True
+    scene.run(seconds=0.1)
+    scene.delete(model.name)
+    scene.run(seconds=0.1)
+
+
+def test_an_unknown_format_is_red_green_blue_and_called_bgr8(scene, caplog):
+    _, camera = spawn_robot(scene, 'camera_BGR8')
+    assert "<format> 'BGR8' is unknown" in caplog.text
+    away = np.abs(camera.read().pixels - recorded_picture('camera_320')).max(axis=2)
+    assert (away > LEVELS).mean() < EDGES
