@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections import deque
 from collections.abc import Callable
+from itertools import count
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -55,6 +56,7 @@ class RenderProcess:
         self._scene: Scene | None = None
         self._sent: set[str] = set()
         self._cameras: dict[int, RenderedCamera] = {}
+        self._numbers = count()  # of cameras; answers to one that has gone may still come
         self._deaths = 0
         self.fault = ''  # why nothing is drawn any more
 
@@ -79,7 +81,7 @@ class RenderProcess:
 
     def camera(self, lens: Lens) -> 'RenderedCamera':
         """Return a camera, to be closed when it is not needed any more."""
-        number = max(self._cameras, default=0) + 1
+        number = next(self._numbers)
         camera = self._cameras[number] = RenderedCamera(self, number, lens)
         if self._ready:
             self._send_camera(camera)

@@ -52,9 +52,7 @@ class CameraSensor(Sensor):
     def load(self) -> None:
         """Read the cameras."""
         elements = [one for one in self.spec.element.children if one.tag == 'camera']
-        if not elements:
-            raise PluginError(f'line {self.spec.element.line}: a <sensor> of type '
-                              f"'{self.spec.type}' without <camera>; add it")
+        elements = elements or [Element('camera')]  # which has defaults for all
         self.cameras = tuple(self._camera(one) for one in self._chosen(elements))
         self._wanted: dict[object, tuple[bool, bool]] = {}  # by plugin: pixels, depths
         self._shutter = Shutter(self.world)

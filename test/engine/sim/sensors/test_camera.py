@@ -269,7 +269,8 @@ def test_a_robot_may_go_while_its_picture_is_under_way(scene):
     scene.keeps_pace = True
     scene.run(seconds=0.1)
     scene.delete(model.name)
-    scene.run(seconds=0.1)
+    _, camera = spawn_robot(scene, 'camera_640')  # what comes for the other one is not for it
+    assert camera.read().pixels.shape == (480, 640, 3)
 
 
 def test_an_unknown_format_is_red_green_blue_and_called_bgr8(scene, caplog):

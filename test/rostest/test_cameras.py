@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Cameras on the wire: names, types, frames, stamps, latching, and the settings that clients make."""
+
+import sys
+
+import rospy
+import rostest
+from dynamic_reconfigure.client import Client
+from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+from sensor_msgs.srv import SetCameraInfo
+from simulator import SimulatorTest, pose, topics_of, wait_until
+from test_sensors import ROBOTS, spacing
+
+SETTINGS = ('parameter_descriptions', 'parameter_updates')
+
+
+class CameraTest(SimulatorTest):
+
+    def bring(self, robot, folder, topics, namespace='/'):
+        """Spawn a robot of the recordings; its topics below `folder` are those recorded."""
+        before = topics_of()
+        text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
+        self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
+        self.assertEqual(topics_of() - before, {f'{folder}/{topic}' for topic in topics})
+
+    def read(self, topic, message_class, count):
+        messages = self.collect(topic, message_class)
+        wait_until(lambda: len(messages) >= count, f'messages on {topic}')
+        return messages
+
+    def test_a_camera_sends_pictures_and_infos_of_equal_stamps(self):
+        self.bring('camera_320', '/nsx/camera1', {'image_raw', 'camera_info', *SETTINGS}, '/nsx')
+        infos = self.collect('/nsx/camera1/camera_info', CameraInfo)
+        images = self.read('/nsx/camera1/image_raw', Image, 12)
+        image = images[-1]
+        self.assertEqual((image.width, image.height, image.step), (320, 240, 960))
+        self.assertEqual((image.encoding, len(image.data)), ('rgb8', 230400))
+        self.assertEqual(image.header.frame_id, 'camera_link_optical')
+        self.assertEqual(tuple(image.data[:3]), (178, 178, 178))  # the background
+        stamps = {message.header.stamp for message in infos}
+        self.assertIn(images[5].header.stamp, stamps)
+        # Pictures that are late for a busy machine are left out.
+        self.assertLessEqual(min(spacing(images)), 34)
+        self.assertAlmostEqual(infos[-1].P[3], -13.347686, 5)
+
+    def test_who_comes_in_a_pause_gets_the_last_picture(self):
+        self.bring('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+        self.read('/camera1/image_raw', Image, 2)
+        self.pause()
+        self.assertEqual(len(self.read('/camera1/image_raw', Image, 1)), 1)
+        self.assertEqual(self.collect('/camera1/camera_info', CameraInfo), [])
+
+    def test_clients_set_the_rate_and_the_info(self):
+        self.bring('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+        self.assertEqual(rospy.get_param('/camera1/imager_rate'), 2.0)
+        client = Client('/camera1', timeout=10.0)
+        client.update_configuration({'imager_rate': 5.0})
+        self.assertEqual(spacing(self.read('/camera1/camera_info', CameraInfo, 4)[1:]), {200})
+        client.close()
+        rospy.wait_for_service('/camera1/set_camera_info', 10.0)
+        wanted = CameraInfo(width=320, height=240, K=[1.0, 0, 2.0, 0, 3.0, 4.0, 0, 0, 1.0])
+        answer = rospy.ServiceProxy('/camera1/set_camera_info', SetCameraInfo)(wanted)
+        self.assertEqual((answer.success, answer.status_message), (True, ''))
+        info = self.read('/camera1/camera_info', CameraInfo, 2)[-1]
+        self.assertEqual((list(info.K), info.header.frame_id), (list(wanted.K), ''))
+
+    def test_both_eyes_of_a_multicamera_share_their_stamps(self):
+        topics = {f'{side}/{topic}' for side in ('left', 'right')
+                  for topic in ('image_raw', 'camera_info', *SETTINGS)}
+        self.bring('multicamera', '/multisense', topics)
+        left = self.collect('/multisense/left/image_raw', Image)
+        right = self.read('/multisense/right/image_raw', Image, 5)
+        wait_until(lambda: {m.header.stamp for m in left} & {m.header.stamp for m in right},
+                   'equal stamps')
+
+    def test_a_depth_camera_sends_all_its_topics(self):
+        self.bring('openni_kinect', '/camera', {
+            'rgb/image_raw', 'rgb/camera_info', 'depth/image_raw', 'depth/camera_info',
+            'depth/points', *SETTINGS})
+        cloud = self.read('/camera/depth/points', PointCloud2, 2)[-1]
+        self.assertEqual((cloud.height, cloud.width, cloud.point_step), (240, 320, 32))
+        self.assertEqual([(f.name, f.offset) for f in cloud.fields],
+                         [('x', 0), ('y', 4), ('z', 8), ('rgb', 16)])
+        self.assertFalse(cloud.is_dense)
+        image = self.read('/camera/depth/image_raw', Image, 2)[-1]
+        self.assertEqual((image.encoding, image.step), ('32FC1', 1280))
+        self.read('/camera/depth/camera_info', CameraInfo, 2)
+
+    def test_a_robot_may_go_while_its_camera_is_read(self):
+        for _ in range(2):
+            self.bring('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+            self.read('/camera1/image_raw', Image, 2)
+            self.assertTrue(self.delete('bot').success)
+            self.assertNotIn('/camera1/image_raw', topics_of())
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_cameras', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'cameras', CameraTest, sys.argv)
