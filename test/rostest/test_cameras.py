@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cameras on the wire: names, types, frames, stamps, latching, and the settings that clients make."""
+"""Cameras on the wire: names, types, frames, stamps, latching, and what clients set."""
 
 import sys
 

@@ -1,7 +1,5 @@
 """Read what a Collada file shows: the triangles of its scene, node by node.
 
-Of materials only the diffuse colour and how transparent they are count; a texture counts as white,
-and it is said that there is one.
 To be imported late: pycollada takes a tenth of the simulator's start, and is seldom needed.
 """
 
@@ -17,7 +15,11 @@ from collada.polylist import Polylist
 from collada.scene import GeometryNode, Node
 from collada.triangleset import TriangleSet
 
+from ..core import Vector
 from ..core.arrays import FloatArray, IntArray
+from ..description import Reflection
+
+_AMBIENT, _DIFFUSE, _BLACK = (0.4, 0.4, 0.4), (0.5, 0.5, 0.5), (0.0, 0.0, 0.0)
 
 
 class ColladaPart(NamedTuple):
@@ -27,8 +29,11 @@ class ColladaPart(NamedTuple):
     faces: IntArray  # (m, 3), numbers of vertices
     normals: FloatArray | None  # (n, 3)
     matrix: FloatArray  # (4, 4), from the node's frame to the scene's
-    rgba: FloatArray | None  # (4,), None without a material
+    rgba: FloatArray | None  # (4,), None without a material; white with an image
     textured: bool
+    reflection: Reflection
+    texcoords: FloatArray | None  # (n, 2)
+    image: str  # that covers it, as the file names it; '' for none
 
 
 def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
@@ -48,17 +53,15 @@ def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
 def _shown_by(node: object, matrix: FloatArray) -> Iterator[ColladaPart]:
     if isinstance(node, GeometryNode):
         effects = {one.symbol: one.target.effect for one in node.materials}
-        colours = {symbol: (_colour(effect), isinstance(effect.diffuse, Map))
-                   for symbol, effect in effects.items()}
         for primitive in node.geometry.primitives:
-            yield from _triangles(primitive, matrix, colours)
+            yield from _triangles(primitive, matrix, effects)
     elif isinstance(node, Node):
         for child in node.children or ():
             yield from _shown_by(child, matrix @ node.matrix)
 
 
 def _triangles(
-    primitive: object, matrix: FloatArray, colours: dict[str, tuple[FloatArray, bool]]
+    primitive: object, matrix: FloatArray, effects: dict[str, Effect]
 ) -> Iterator[ColladaPart]:
     if isinstance(primitive, Polylist):
         primitive = primitive.triangleset()
@@ -69,8 +72,34 @@ def _triangles(
     if primitive.normal is not None:
         normals = primitive.normal[primitive.normal_index].reshape(-1, 3)
     faces = np.arange(len(vertices)).reshape(-1, 3)
-    rgba, textured = colours.get(primitive.material, (None, False))
-    yield ColladaPart(vertices, faces, normals, matrix, rgba, textured)
+    texcoords = None
+    if primitive.texcoordset:
+        texcoords = primitive.texcoordset[0][primitive.texcoord_indexset[0]].reshape(-1, 2)
+    effect = effects.get(primitive.material)
+    yield ColladaPart(
+        vertices, faces, normals, matrix, None if effect is None else _colour(effect),
+        isinstance(getattr(effect, 'diffuse', None), Map), _reflection(effect), texcoords,
+        _image(effect))
+
+
+def _reflection(effect: Effect | None) -> Reflection:
+    """Return how a material answers to light; what it does not say is as in Gazebo."""
+    def colour(name: str, default: Vector) -> Vector:
+        given = getattr(effect, name, None)
+        if not isinstance(given, tuple | list) or not np.isfinite(given[:3]).all():
+            return default
+        red, green, blue = (float(value) for value in np.clip(given[:3], 0.0, 1.0))
+        return red, green, blue
+
+    shininess = getattr(effect, 'shininess', None)
+    return Reflection(
+        colour('ambient', _AMBIENT), colour('diffuse', _DIFFUSE), colour('specular', _BLACK),
+        float(shininess) if isinstance(shininess, float | int) else 0.0, colour('emission', _BLACK))
+
+
+def _image(effect: Effect | None) -> str:
+    diffuse = getattr(effect, 'diffuse', None)
+    return diffuse.sampler.surface.image.path or '' if isinstance(diffuse, Map) else ''
 
 
 def _colour(effect: Effect) -> FloatArray:

@@ -10,7 +10,7 @@ import logging
 import os
 import threading
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from ..core import LONGEST, AbsentError, ModelError, shortened
 from ..core.arrays import FloatArray, IntArray
-from ..description import Colour
+from ..description import Colour, Reflection
 from ..resources import read_file, regular_state, within
 from .collada_limits import ColladaError, safe_collada
 from .decimation import thinned
@@ -54,6 +54,9 @@ class MeshPart:
     normals: FloatArray | None  # (n, 3), unit vectors at the vertices
     rgba: Colour
     textured: bool = False  # a picture gives it more colours than this one
+    reflection: Reflection = Reflection()
+    texcoords: FloatArray | None = None  # (n, 2), at the vertices
+    image: str = ''  # path of what covers it
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +165,7 @@ def _parse_collada(content: bytes, path: str) -> list[MeshPart]:
     from .collada import read_collada
 
     parts, unit = read_collada(safe_collada(content))
-    return [_collada_part(part, unit) for part in parts]
+    return [_collada_part(part, unit, path) for part in parts]
 
 
 def _parse_obj(content: bytes, path: str) -> list[MeshPart]:
@@ -186,8 +189,9 @@ def _obj_part(part: ObjPart) -> MeshPart:
     normals = part.normals
     if normals is not None:
         normals = _turn_normals(normals, np.eye(3), len(part.vertices))
-    rgba = None if part.colour is None else np.append(part.colour, 1.0)
-    return MeshPart(part.vertices, part.faces, normals, _colour(rgba), part.textured)
+    rgba = _colour(None if part.colour is None else np.append(part.colour, 1.0))
+    return MeshPart(
+        part.vertices, part.faces, normals, rgba, part.textured, Reflection(rgba[:3], rgba[:3]))
 
 
 def _parse_stl(content: bytes, path: str) -> list[MeshPart]:
@@ -199,7 +203,7 @@ def _parse_stl(content: bytes, path: str) -> list[MeshPart]:
 _PARSERS = {'.dae': _parse_collada, '.obj': _parse_obj, '.stl': _parse_stl}
 
 
-def _collada_part(part: 'ColladaPart', unit: float) -> MeshPart:
+def _collada_part(part: 'ColladaPart', unit: float, path: str) -> MeshPart:
     faces, normals = part.faces, part.normals
     linear, offset = part.matrix[:3, :3], part.matrix[:3, 3]
     vertices = (np.asarray(part.vertices, dtype=float) @ linear.T + offset) * unit
@@ -207,7 +211,24 @@ def _collada_part(part: 'ColladaPart', unit: float) -> MeshPart:
         faces = faces[:, ::-1]  # a mirror turns the triangles inside out
     if normals is not None:
         normals = _turn_normals(np.asarray(normals, dtype=float), linear, len(vertices))
-    return MeshPart(vertices, faces, normals, _colour(part.rgba), part.textured)
+    texcoords = part.texcoords
+    if texcoords is not None and not np.isfinite(texcoords).all():
+        texcoords = None
+    image = _image_file(part.image, path) if part.image and texcoords is not None else ''
+    return MeshPart(vertices, faces, normals, _colour(part.rgba), part.textured, part.reflection,
+                    texcoords, image)
+
+
+def _image_file(name: str, path: str) -> str:
+    """Return where an image is that a mesh file names: beside it, or in its model; else ''."""
+    folder = os.path.dirname(path)
+    model = os.path.dirname(folder)
+    for place in (os.path.join(folder, name),
+                  os.path.join(model, 'materials', 'textures', os.path.basename(name))):
+        if within(place, model) and os.path.isfile(place):
+            return os.path.realpath(place)
+    logger.warning("mesh file '%s' names the image '%s', which is not there", path, name)
+    return ''
 
 
 def _turn_normals(normals: FloatArray, linear: FloatArray, count: int) -> FloatArray | None:
@@ -256,7 +277,9 @@ def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
         most = max(1, FINEST * len(part.faces) // count)
         vertices, faces, kept, cell = thinned(part.vertices, part.faces, most)
         normals = None if part.normals is None else part.normals[kept]
-        thin.append(MeshPart(vertices, faces, normals, part.rgba))
+        texcoords = None if part.texcoords is None else part.texcoords[kept]
+        thin.append(replace(
+            part, vertices=vertices, faces=faces, normals=normals, texcoords=texcoords))
         widest = max(widest, cell)
     logger.warning(
         "mesh file '%s' has %d triangles; %d are used, of points that lie %.2g m apart", path,
@@ -267,16 +290,18 @@ def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
 
 def _by_colour(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
     """Return the parts with those of equal colour joined, in order of first appearance."""
-    groups: dict[Colour, list[MeshPart]] = {}
+    groups: dict[tuple, list[MeshPart]] = {}
     for part in parts:
-        groups.setdefault(part.rgba, []).append(part)
+        groups.setdefault((part.rgba, part.reflection, part.image), []).append(part)
     joined = []
-    for rgba, group in groups.items():
+    for group in groups.values():
         vertices, faces = MeshData('', tuple(group)).triangles()
         have_normals = all(part.normals is not None for part in group)
         normals = np.concatenate([part.normals for part in group]) if have_normals else None
-        for array in (vertices, faces, normals):
+        texcoords = np.concatenate([part.texcoords for part in group]) if group[0].image else None
+        for array in (vertices, faces, normals, texcoords):
             if array is not None:
                 array.setflags(write=False)  # it is shared by all who read the file
-        joined.append(MeshPart(vertices, faces, normals, rgba))
+        joined.append(replace(
+            group[0], vertices=vertices, faces=faces, normals=normals, texcoords=texcoords))
     return tuple(joined)

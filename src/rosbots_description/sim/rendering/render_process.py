@@ -156,7 +156,10 @@ class RenderProcess:
         used = {part.mesh for part in scene.parts}
         for key in sorted(used - self._sent):
             self._send(('mesh', key, self._meshes(key).astype('f4').tobytes()))
-        self._sent = used
+        images = {part.look.texture for part in scene.parts} - {''}
+        for path in sorted(images - self._sent):
+            self._send(('image', path))
+        self._sent = used | images
         self._send((
             'scene', [(*part[:3], tuple(part.look), *part[4:]) for part in scene.parts],
             [tuple(light) for light in scene.lights], *scene[2:]))

@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -21,13 +22,11 @@ from ..description import (
     Sphere,
     Visual,
 )
-from ..meshes import visual_parts
+from ..meshes import MeshPart, read_mesh
 from ..runtime import Link, World
 from .gl import Light, Look, Scene, ScenePart
-from .shapes import mesh_triangles, unit_box, unit_cylinder, unit_sphere, unit_square
+from .shapes import mesh_corners, unit_box, unit_cylinder, unit_sphere, unit_square
 
-# What a Collada file does not say of its materials; the rest is in its parts.
-_COLLADA_AMBIENT = (0.4, 0.4, 0.4)
 _LIGHT_TYPES = {DIRECTIONAL: 0, POINT: 1, SPOT: 2}
 Triangles = Callable[[], np.ndarray]
 
@@ -88,7 +87,8 @@ class SceneMirror:
 
 def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, tuple, Look]]:
     """Yield the surfaces of a visual: key and triangles, size, look."""
-    look = _look(visual.material or Material())
+    material = visual.material or Material()
+    look = _look(material.reflection, material.rgba[3])
     match visual.geometry:
         case Box(size):
             yield 'box', unit_box, size, look
@@ -100,24 +100,19 @@ def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, tuple, Look]]:
             yield f'plane {normal}', lambda: unit_square(normal), (width, depth, 1.0), look
         case Mesh(path, scale):
             key = f'{path} {os.stat(path).st_mtime_ns}'
-            for number, (vertices, faces, normals, rgba) in enumerate(visual_parts(path)):
-                yield (
-                    f'{key} {number}',
-                    lambda v=vertices, f=faces, n=normals: mesh_triangles(v, f, n), scale,
-                    look if visual.material else _mesh_look(path, rgba))
+            for number, part in enumerate(read_mesh(path).parts):
+                own = _look(part.reflection, part.rgba[3])._replace(texture=part.image)
+                yield (f'{key} {number}', partial(_mesh_corners, part), scale,
+                       look if visual.material else own)
 
 
-def _mesh_look(path: str, rgba: tuple) -> Look:
-    """Return the look of a mesh in its own colours."""
-    if path.lower().endswith('.stl'):
-        return _look(Material())  # it has none
-    return Look(_COLLADA_AMBIENT, rgba[:3], alpha=rgba[3])
+def _mesh_corners(part: MeshPart) -> np.ndarray:
+    return mesh_corners(part.vertices, part.faces, part.normals, part.texcoords)
 
 
-def _look(material: Material) -> Look:
-    own: Reflection = material.reflection
-    return Look(own.ambient, own.diffuse, own.specular, own.shininess, own.emissive,
-                material.rgba[3], own.lit, own.both_sides)
+def _look(own: Reflection, alpha: float) -> Look:
+    return Look(own.ambient, own.diffuse, own.specular, own.shininess, own.emissive, alpha,
+                own.lit, own.both_sides)
 
 
 def _light(light: LightSpec) -> Light:

@@ -74,7 +74,7 @@ def unit_square(normal: Vector) -> np.ndarray:
                      for u, v in _SQUARE])
 
 
-def mesh_triangles(
+def mesh_corners(
     vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None,
     texcoords: np.ndarray | None = None,
 ) -> np.ndarray:

@@ -48,7 +48,8 @@ def studio_of(world: World) -> Studio:
     studio = _STUDIOS.get(world)
     if studio is None:
         studio = _STUDIOS[world] = Studio(world)
-        weakref.finalize(world, studio.process.close)
+        world.resources.callback(studio.process.close)
+        weakref.finalize(world, studio.process.close)  # of a world that nobody closes
     return studio
 
 

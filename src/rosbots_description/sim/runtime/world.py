@@ -88,6 +88,7 @@ class World:
         self.lights: dict[str, LightSpec] = {}
         self.scene = SceneSpec()
         self.listeners: list[Listener] = []
+        self.resources = contextlib.ExitStack()  # of others, which end with the world
         self.paused = False
         self._holders: set[object] = set()  # those who hold physics
         self.strict = False  # with the flaws of Gazebo that a client may rely on
@@ -101,6 +102,7 @@ class World:
 
     def close(self) -> None:
         """Free what the world holds outside Python."""
+        self.resources.close()
         self.engine.close()
 
     def run(self, steps: int) -> int:

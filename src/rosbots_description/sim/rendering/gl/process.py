@@ -8,12 +8,14 @@ import socket
 from multiprocessing.connection import Connection
 
 import numpy as np
+from PIL import Image
 
 from .context import NoContextError, open_context
 from .development import Development
 from .renderer import Renderer
 from .values import Lens, Light, Look, Scene, ScenePart
 
+LARGEST_IMAGE = 2048  # [pixels] along an edge; larger ones are made smaller
 NICENESS = 2  # where processors are scarce, the clock comes first
 
 
@@ -49,8 +51,13 @@ class _Service:
     def _mesh(self, key: str, triangles: bytes) -> None:
         self._renderer.add_mesh(key, np.frombuffer(triangles, 'f4').reshape(-1, 8))
 
-    def _image(self, key: str, shape: tuple[int, int, int], pixels: bytes) -> None:
-        self._renderer.add_image(key, np.frombuffer(pixels, 'u1').reshape(shape))
+    def _image(self, path: str) -> None:
+        """Take an image file; one that cannot be read is white."""
+        pixels = np.full((1, 1, 3), 255, 'u1')
+        with contextlib.suppress(Exception), Image.open(path) as image:  # whatever is in the file
+            image.thumbnail((LARGEST_IMAGE, LARGEST_IMAGE))
+            pixels = np.asarray(image.convert('RGBA' if 'A' in image.getbands() else 'RGB'))
+        self._renderer.add_image(path, pixels)
 
     def _scene(self, parts: list, lights: list, *rest: object) -> None:
         self._renderer.set_scene(Scene(

@@ -1,5 +1,6 @@
 """Draws a scene as cameras see it."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import moderngl
@@ -19,6 +20,7 @@ from .values import DIRECTIONAL, Lens, Look, Scene, ScenePart
 SAMPLES = 4  # per pixel, of edges
 MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have plain edges
 MAX_LIGHTS = 8
+_FARTHEST_SHADOW = 30.0  # [m] from what casts it
 _LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a corner
 
 
@@ -34,7 +36,8 @@ class Renderer:
         self._placed = _PlacedPrograms(context)
         self._shadows: Shadows | None = None
         self._drawables: list[_Drawable] = []
-        self._surfaces: dict[bool, moderngl.Program] = {}  # by whether they have images
+        # By whether they have images, and whether shadows move over them.
+        self._surfaces: dict[tuple[bool, bool], moderngl.Program] = {}
         self.set_scene(Scene(()))
 
     def add_mesh(self, key: str, triangles: np.ndarray) -> None:
@@ -73,7 +76,6 @@ class Renderer:
             for part in scene.parts
         ]
         self._still_bodies = sorted({part.body for part in scene.parts if part.still})
-        self._moving = any(one.casts_shadow and not one.part.still for one in self._drawables)
         self._stood: np.ndarray | None = None  # where what stands still was last
         self._write_surfaces()
 
@@ -81,15 +83,17 @@ class Renderer:
         """Make the programs of surfaces, for the lights and shadows that there are."""
         for program in self._surfaces.values():
             program.release()
+        textures = {bool(drawable.part.look.texture) for drawable in self._drawables}
+        types = [light.type for light in self._lights]
         self._surfaces = {
-            textured: self._context.program(
+            (textured, moving): self._context.program(
                 vertex_shader=SURFACE_VERTEX,
-                fragment_shader=surface_fragment(
-                    [light.type for light in self._lights], self._sun, self._moving, textured))
-            for textured in {bool(drawable.part.look.texture) for drawable in self._drawables}
+                fragment_shader=surface_fragment(types, self._sun, moving, textured))
+            for textured in textures for moving in (False, True)
         }
         for drawable in self._drawables:
-            drawable.set_surface(self._surfaces[bool(drawable.part.look.texture)])
+            textured = bool(drawable.part.look.texture)
+            drawable.set_surfaces([self._surfaces[textured, moving] for moving in (False, True)])
 
     def _draw_shadows(self, frame: '_Shot', poses: np.ndarray) -> None:
         stands = poses[self._still_bodies]
@@ -97,9 +101,13 @@ class Renderer:
             self._stood = stands
             self._shadows.forget()
         casters = [one for one in self._drawables if one.casts_shadow]
+        light = np.array(self._lights[self._sun].direction)
+        low = min(one.low for one in self._drawables)
         self._shadows.draw(
             frame.eye, frame.lens, [one for one in casters if one.part.still],
-            [one for one in casters if not one.part.still])
+            [one for one in casters
+             if not one.part.still and frame.may_see_shadow(one, light, low)])
+        frame.shadows_move = self._shadows.move
 
     def _drop(self, kept: dict, used: set[str]) -> None:
         for key in [key for key in kept if key not in used]:
@@ -122,8 +130,9 @@ class Renderer:
         target = self._target(lens, 'colour', samples)
         target.use()
         self._context.clear(*self._scene.background, 1.0, depth=1.0)
-        for program in self._surfaces.values():
-            self._set_frame(program, frame)
+        for (_, moving), program in self._surfaces.items():
+            if moving == frame.shadows_move:
+                self._set_frame(program, frame)
         self._draw_surfaces(frame)
         return target.read()
 
@@ -181,7 +190,7 @@ class Renderer:
         for drawable in ordered:
             if not drawable.transparent:
                 self._cull(drawable)
-                drawable.draw()
+                drawable.draw(frame.shadows_move)
         seen_through = [one for one in reversed(ordered) if one.transparent]
         if seen_through:
             context.enable(moderngl.BLEND)
@@ -189,7 +198,7 @@ class Renderer:
             context.fbo.depth_mask = False
             for drawable in seen_through:
                 self._cull(drawable)
-                drawable.draw()
+                drawable.draw(frame.shadows_move)
             context.fbo.depth_mask = True
 
     def _cull(self, drawable: '_Drawable') -> None:
@@ -204,6 +213,7 @@ class _Shot:
     """What one picture is drawn with."""
 
     visible: list['_Drawable']
+    shadows_move = False
 
     def __init__(
         self, lens: Lens, eye: np.ndarray, view: np.ndarray, bodies: np.ndarray
@@ -216,6 +226,19 @@ class _Shot:
         """Tell whether a drawable's ball reaches into the pyramid of sight."""
         return bool((self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
                      > -drawable.radius).all())
+
+    def may_see_shadow(self, drawable: '_Drawable', light: np.ndarray, low: float) -> bool:
+        """Tell whether a drawable's shadow reaches into the pyramid of sight.
+
+        Args:
+            light: unit vector in which it shines.
+            low: height below which there is nothing [m].
+        """
+        fall = drawable.middle[2] + drawable.radius - low
+        length = min(_FARTHEST_SHADOW, fall / -light[2]) if light[2] < 0.0 else _FARTHEST_SHADOW
+        begin = self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
+        end = begin + length * (self._planes[:, :3] @ light)
+        return bool((np.maximum(begin, end) > -drawable.radius).all())
 
     def distance(self, drawable: '_Drawable') -> float:
         """Return how far away a drawable begins along the optical axis [m]."""
@@ -247,7 +270,7 @@ class _Drawable:
         self.part = part
         self._matrix = np.frombuffer(part.matrix).reshape(4, 4)
         self._middle = bounds.mean(axis=0)
-        half = (bounds[1] - bounds[0]) / 2.0
+        half = self._half = (bounds[1] - bounds[0]) / 2.0
         self.radius = float(np.linalg.norm(np.abs(self._matrix[:3, :3]) @ half))
         self.mirrored = bool(np.linalg.det(self._matrix[:3, :3]) < 0.0)
         self.transparent = part.look.alpha < 1.0
@@ -257,18 +280,18 @@ class _Drawable:
             for program in (placed.depth, placed.shadow))
         self._image = image
         self._context, self._buffer = context, buffer
-        self._surface: moderngl.VertexArray | None = None
+        self._surfaces: list[moderngl.VertexArray] = []
         self._normals = np.linalg.inv(self._matrix[:3, :3]).T  # how normals turn with it
 
-    def set_surface(self, program: moderngl.Program) -> None:
-        """Be drawn by this program from now on."""
-        if self._surface is not None:
-            self._surface.release()
-        used = [name for name in _LAYOUT if name in program]
-        layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
-                          for name, size in _LAYOUT.items())
-        self._surface = self._context.vertex_array(program, [(self._buffer, layout, *used)])
-        self._look = _look_uniforms(program, self.part.look)
+    def set_surfaces(self, programs: Sequence[moderngl.Program]) -> None:
+        """Be drawn by these from now on: without and with shadows that move."""
+        for program in programs:
+            used = [name for name in _LAYOUT if name in program]
+            layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
+                              for name, size in _LAYOUT.items())
+            self._surfaces.append(
+                self._context.vertex_array(program, [(self._buffer, layout, *used)]))
+        self._looks = [_look_uniforms(program, self.part.look) for program in programs]
 
     def place(self, frame: _Shot) -> None:
         """Take its place in a picture."""
@@ -276,19 +299,21 @@ class _Drawable:
         placement = body @ self._matrix
         self._turn = body[:3, :3]
         self.middle = placement[:3, :3] @ self._middle + placement[:3, 3]
+        self.low = float(self.middle[2] - np.abs(placement[2, :3]) @ self._half)  # [m]
         self._placement = _gl(placement)
 
-    def draw(self) -> None:
+    def draw(self, shadows_move: bool) -> None:
         """Draw the surface in its colours."""
-        program = self._surface.program
+        surface = self._surfaces[shadows_move]
+        program = surface.program
         program['placement'].write(self._placement)
         if 'normal_placement' in program:
             program['normal_placement'].write(_gl(self._turn @ self._normals))
-        for uniform, value in self._look:
+        for uniform, value in self._looks[shadows_move]:
             uniform.write(value)
         if self._image is not None:
             self._image.use(0)
-        self._surface.render()
+        surface.render()
 
     def draw_depth(self) -> None:
         """Draw how far away it is."""
@@ -302,9 +327,8 @@ class _Drawable:
 
     def release(self) -> None:
         """Free what it has on the graphics processor."""
-        for array in (self._surface, self._depth, self._shadow):
-            if array is not None:
-                array.release()
+        for array in (*self._surfaces, self._depth, self._shadow):
+            array.release()
 
 
 class _Target:

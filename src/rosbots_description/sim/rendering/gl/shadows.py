@@ -42,6 +42,7 @@ class Shadows:
         self._axes = light_axes(direction)
         self._moving = _Map(context, MOVING_SIZE)
         self._still: dict[float, _Map] = {}  # by the radius of what is seen
+        self.move = False  # whether one that moves may be seen in the picture
         self._used: tuple[_Map, _Map] = self._moving, self._moving
 
     def release(self) -> None:
@@ -71,7 +72,9 @@ class Shadows:
                 self._program, self._axes, cell * _CELL * radius, radius * _ROOM, still)
         near = [one for one in moving
                 if np.linalg.norm(one.middle - middle) < radius + one.radius]
-        self._moving.draw(self._program, self._axes, *_ball_around(near, middle), near)
+        self.move = bool(near)
+        if near:
+            self._moving.draw(self._program, self._axes, *_ball_around(near), near)
         self._used = still_map, self._moving
 
     def use(self, program: moderngl.Program) -> None:
@@ -84,10 +87,8 @@ class Shadows:
                 program[f'{name}_texel'] = one.texel
 
 
-def _ball_around(casters: Sequence[Caster], otherwise: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return middle and radius of a ball around casters [m]; of a small one if there are none."""
-    if not casters:
-        return otherwise, 0.1
+def _ball_around(casters: Sequence[Caster]) -> tuple[np.ndarray, float]:
+    """Return middle and radius of a ball around casters [m]."""
     middles = np.array([one.middle for one in casters])
     reach = np.array([one.radius for one in casters])[:, None]
     low, high = (middles - reach).min(axis=0), (middles + reach).max(axis=0)
