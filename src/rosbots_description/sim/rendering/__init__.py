@@ -2,10 +2,11 @@
 
 from .camera import EYE, TARGET, View
 from .gl import BYTES, Lens
-from .render_process import RenderError
+from .render_process import NoRendererError, RenderError
 from .studio import Picture, Shutter
 from .sunlit_meshes import SunlitMeshes
 
 __all__ = [
-    'BYTES', 'EYE', 'TARGET', 'Lens', 'Picture', 'RenderError', 'Shutter', 'SunlitMeshes', 'View',
+    'BYTES', 'EYE', 'TARGET', 'Lens', 'NoRendererError', 'Picture', 'RenderError', 'Shutter',
+    'SunlitMeshes', 'View',
 ]

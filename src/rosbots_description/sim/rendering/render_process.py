@@ -40,6 +40,10 @@ class RenderError(Exception):
     """There is no picture, and why."""
 
 
+class NoRendererError(RenderError):
+    """There will be no picture of any camera; the log says why."""
+
+
 class RenderProcess:
     """Draws one scene for any number of cameras. One thread uses it."""
 
@@ -243,7 +247,7 @@ class RenderedCamera:
         message = ('picture', self.number, self._next * self._size, *wants, seed, eye.tobytes(),
                    poses.tobytes())
         if self._process.fault:
-            raise RenderError(self._process.fault)
+            raise NoRendererError(self._process.fault)
         self._next = (self._next + 1) % UNDER_WAY
         self._asked.append(message)
         self._process.request(message)
@@ -263,7 +267,7 @@ class RenderedCamera:
             return None
         message, fault = self._done.popleft()
         if fault:
-            raise RenderError(fault)
+            raise (NoRendererError if self._process.fault else RenderError)(fault)
         return self._content(*message[2:5])
 
     def has_picture(self, wait: bool) -> bool:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..core import PluginError, Pose, compose, from_rpy
 from ..description import Element
 from ..plugin_registry import register_sensor
-from ..rendering import Lens, Picture, RenderError, Shutter
+from ..rendering import Lens, NoRendererError, Picture, RenderError, Shutter
 from ..runtime import NEVER
 from .base import DueTimes, Sensor
 from .noise import read_noise
@@ -121,6 +121,8 @@ class CameraSensor(Sensor):
             if self._takes and self._shutter.is_free:
                 self._press(self._wants())
                 self._give(waits)
+        except NoRendererError:
+            pass
         except RenderError as error:
             if str(error) != self._complaint:
                 self._complaint = str(error)

@@ -20,6 +20,13 @@ from rosbots_description.sim.rendering.studio import studio_of
 from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
 
 LEVELS = 3  # of 255 that a face may differ
+LIMITS = {
+    # A patch of a texture, beside the mean of all of it.
+    **dict.fromkeys(('Bricks', 'CeilingTiled', 'PaintedWall', 'WoodFloor', 'Wood', 'Road',
+                     'Residential'), 6),
+    # Half of its light is specular, and Gazebo's has a tenth less of that here.
+    'ZincYellow': 5,
+}
 EDGES = 1e-4  # share of pixels on edges, where one of four samples may fall to the other side
 SCENES = {  # picture: world, robot, where it stands along x [m], heading [rad]
     'camera_320': ('scene_a', 'camera_320', 0.0, 0.0),
@@ -32,6 +39,7 @@ SCENES = {  # picture: world, robot, where it stands along x [m], heading [rad]
     'colours_2e_from_behind': ('colours_2e', 'camera_level', 6.0, math.pi),
 }
 INFOS = recordings('camera_info')
+FACES = recordings('materials')
 
 
 @pytest.fixture
@@ -65,6 +73,39 @@ def test_a_picture_is_the_recorded_one(name):
         seen = camera.read().pixels.astype(int)
     away = np.abs(seen - recorded_picture(name)).max(axis=2)
     assert (away > LEVELS).mean() < EDGES
+
+
+@pytest.mark.parametrize('behind', [False, True])
+def test_the_faces_of_cubes_have_the_recorded_colours_of_their_materials(behind):
+    """Cubes of 0.4 m stand at x = 3, turned by 45 degrees; a texture is its mean colour."""
+    x, yaw, sides = (6.0, math.pi, ('+x+y', '+x-y')) if behind else (0.0, 0.0, ('-x+y', '-x-y'))
+    with closing(recorded_world('colours_1e')) as world:
+        _, camera = spawn_robot(world, 'camera_level', x, yaw)
+        seen = camera.read().pixels.astype(int)
+        cubes = {name.removeprefix('cube_'): model.pose.position
+                 for name, model in world.models.items() if name.startswith('cube_')}
+    focal, way, aside = 554.38271, 3.0 - 0.1 * math.sqrt(2.0), 0.1 * math.sqrt(2.0)
+    found = {}
+    for material, (_, y, z) in cubes.items():
+        for side, shift in zip(sides, (aside, -aside), strict=True):
+            column = 320 - round((-1 if behind else 1) * focal * (y + shift) / way)
+            row = 240 - round(focal * (z - 0.85) / way)
+            patch = seen[row - 4:row + 5, column - 4:column + 5].reshape(-1, 3).mean(axis=0)
+            found[material, side] = np.abs(patch - FACES[material][side]).max()
+    assert {face: away for face, away in found.items()
+            if away > LIMITS.get(face[0], LEVELS)} == {}
+    assert len(found) == 30
+
+
+def test_without_opengl_one_line_says_what_would_help(scene, caplog, monkeypatch):
+    monkeypatch.setenv('__EGL_VENDOR_LIBRARY_FILENAMES', '/nonexistent')
+    _, camera = spawn_robot(scene, 'camera_320')
+    taken = stamps(camera)
+    scene.run(seconds=0.5)
+    assert taken == []
+    assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
+        'cameras see nothing: there is no OpenGL 3.3 (requested device index 0, but found 0 '
+        'devices); install libegl-mesa0 and libgl1-mesa-dri, which draw in software']
 
 
 def test_both_eyes_of_a_multicamera_see_from_where_they_are(scene):

@@ -93,7 +93,6 @@ void shine_on(int i, vec3 towards_light, float strength) {
 
 void main() {
     normal = normalize(world_normal);
-    if (!gl_FrontFacing) normal = -normal;
     towards_eye = normalize(eye - world);
     reflected = emissive + scene_ambient * ambient;
     shine = vec3(0.0);
