@@ -22,7 +22,8 @@ RECORDED = ROOT / 'test' / 'data' / 'gazebo'
 ROBOT = RECORDED / 'sensors' / 'robots' / 'laser_noise.urdf'
 WINDOW = 3.0  # [s, wall]
 ROUNDS = 4
-RATE = 40.0  # [Hz]
+RATE, CAMERA_RATE = 40.0, 30.0  # [Hz]
+MOST_OF_CAMERA = 500.0  # [ms of processor time per simulated second], a third of Gazebo's
 MOST_ADDED = 30.0  # [ms of processor time per simulated second] for a reader
 LEAST_SPEED = 40.0  # times real time, with a reader
 # Of Gazebo, three runs: [ms of processor time per simulated second] and times real time.
@@ -30,24 +31,24 @@ GAZEBO = {'no sensor': '155-170', 'nobody reads': '175-192', 'read': '197-245'}
 GAZEBO_SPEED = {'nobody reads': '22-27', 'read': '14-20'}
 
 
-def window(server: Server, reader: Reader | None) -> tuple[float, float, float]:
+def window(server: Server, reader: Reader | None, rate: float) -> tuple[float, float, float]:
     """Return processor time [ms per simulated s], times real time, and share of messages."""
     messages = reader.messages() if reader else 0
     used, begin, simulated = server.cpu_seconds(), time.monotonic(), server.simulated()
     time.sleep(WINDOW)
     end, passed = time.monotonic(), server.simulated() - simulated
     cost = 1000.0 * (server.cpu_seconds() - used) / passed
-    arrived = (reader.messages() - messages) / (RATE * passed) if reader else 0.0
+    arrived = (reader.messages() - messages) / (rate * passed) if reader else 0.0
     return cost, passed / (end - begin), arrived
 
 
-def best(server: Server, topic: str = '') -> tuple[float, float, float]:
+def best(server: Server, topic: str = '', rate: float = RATE) -> tuple[float, float, float]:
     """Return the least cost, the greatest speed and the share of messages of several windows."""
     with ExitStack() as stack:
         reader = stack.enter_context(Reader(topic)) if topic else None
         server.settle(1.0)
         costs, speeds, arrived = zip(
-            *(window(server, reader) for _ in range(ROUNDS)), strict=True)
+            *(window(server, reader, rate) for _ in range(ROUNDS)), strict=True)
     return min(costs), max(speeds), max(arrived)
 
 
@@ -79,6 +80,33 @@ def measure_laser(slower: float) -> None:
               f'{arrived:.0%} of the scans arrive (Gazebo 80-93 %)')
 
 
+def measure_camera(robot: str, size: str, slower: float) -> None:
+    """Print what a camera at 30 Hz costs, its process included, beside a robot that drives.
+
+    Args:
+        robot: the recorded robot that has it.
+        size: of its pictures, e.g. '320x240'.
+        slower: as `measure_laser`.
+    """
+    world = RECORDED / 'worlds' / 'scene_a.world'
+    with Server(f'world_name:={world}') as server:
+        text = (ROBOT.parent / f'{robot}.urdf').read_text(encoding='utf-8')
+        server.bring('bot', text, x=1.2)
+        server.spawn()
+        server.drive(-0.1)
+        idle = best(server)[0]
+        cost, speed, arrived = best(server, '/camera1/image_raw', CAMERA_RATE)
+        added = cost - idle
+        print(f'camera {size}: a reader adds {added:.0f} ms of processor time per simulated '
+              f'second, {added / slower:.0f} where Gazebo was measured (aim for 320x240: '
+              f'{MOST_OF_CAMERA:g}; Gazebo 1270-1350), at {speed:.3f} times real time; '
+              f'{arrived:.0%} of the pictures arrive (Gazebo 58-96 %)')
+        server.unthrottle()
+        _, speed, arrived = best(server, '/camera1/image_raw', CAMERA_RATE)
+        print(f'camera {size}, as fast as it can: {speed:.1f} times real time, {arrived:.0%} of '
+              'the pictures arrive (Gazebo 15-21, 3-5 %)')
+
+
 def _verdict(met: bool) -> str:
     return 'met' if met else 'NOT met'
 
@@ -88,6 +116,8 @@ def main() -> int:
     slower = slowness()
     print(f'bare PyBullet takes {slower:.2f} times as long as it did beside Gazebo')
     in_a_process_of_its_own(measure_laser, slower)
+    for robot, size in (('camera_320', '320x240'), ('camera_640', '640x480')):
+        in_a_process_of_its_own(measure_camera, robot, size, slower)
     return 0
 
 

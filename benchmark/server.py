@@ -135,9 +135,10 @@ class Server:
         self._drivers.append(rospy.Publisher(f'/robot{number}/{COMMANDS}', Twist, queue_size=1))
         return took
 
-    def bring(self, name: str, text: str) -> None:
-        """Spawn a model from a URDF at the origin."""
-        answer = self._spawn(name, text, '/', Pose(orientation=Quaternion(w=1.0)), '')
+    def bring(self, name: str, text: str, x: float = 0.0) -> None:
+        """Spawn a model from a URDF on the x axis [m]."""
+        place = Pose(Point(x, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
+        answer = self._spawn(name, text, '/', place, '')
         if not answer.success:
             raise RuntimeError(answer.status_message)
 
@@ -158,12 +159,14 @@ class Server:
             driver.publish(command)
 
     def cpu_seconds(self) -> float:
-        """Return the processor time that it has used so far [s]."""
-        return self._in_seconds(USER_TIME) + self._in_seconds(SYSTEM_TIME)
+        """Return the processor time that it and its child processes have used so far [s]."""
+        children = Path(f'/proc/{self.process}/task/{self.process}/children').read_text('ascii')
+        return sum(self._in_seconds(field, process) for field in (USER_TIME, SYSTEM_TIME)
+                   for process in (self.process, *map(int, children.split())))
 
-    def _in_seconds(self, field: int) -> float:
-        """Return what /proc tells of the process in a field after its name, a time [s]."""
-        stat = Path(f'/proc/{self.process}/stat').read_text(encoding='ascii')
+    def _in_seconds(self, field: int, process: int = 0) -> float:
+        """Return what /proc tells of a process in a field after its name, a time [s]."""
+        stat = Path(f'/proc/{process or self.process}/stat').read_text(encoding='ascii')
         return int(stat.rsplit(')', 1)[1].split()[field]) / os.sysconf('SC_CLK_TCK')
 
     def memory(self) -> float:

@@ -104,7 +104,7 @@ def reconfigure(adapter: Adapter, name: str) -> Callable[[], None]:
     """Offer the rate; loading the library must not keep the world waiting."""
     if not adapter.plugin.camera_name:
         return lambda: None
-    from ..reconfigure.camera import CameraReconfigure  # noqa: PLC0415
+    from ..reconfigure.camera import CameraReconfigure
 
     return CameraReconfigure(adapter.plugin, name, adapter.server.loop.post).close
 

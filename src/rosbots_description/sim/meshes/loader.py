@@ -36,6 +36,7 @@ FINEST = 400_000  # triangles that are simulated and shown; more are thinned
 MAX_LIBRARY_BYTES = 1_000_000
 FORMATS = ('.dae', '.stl', '.obj')
 
+WHITE = Reflection()
 GREY: Colour = (0.7, 0.7, 0.7, 1.0)
 
 # A material this transparent is nearly always an exporter's slip: the part is shown.
@@ -54,7 +55,7 @@ class MeshPart:
     normals: FloatArray | None  # (n, 3), unit vectors at the vertices
     rgba: Colour
     textured: bool = False  # a picture gives it more colours than this one
-    reflection: Reflection = Reflection()
+    reflection: Reflection = WHITE
     texcoords: FloatArray | None = None  # (n, 2), at the vertices
     image: str = ''  # path of what covers it
 

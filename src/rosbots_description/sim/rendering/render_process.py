@@ -130,6 +130,8 @@ class RenderProcess:
 
     def _start(self) -> None:
         ours, theirs = socket.socketpair()
+        for end in (ours, theirs):
+            end.setblocking(True)  # whatever default timeout the process has for its sockets
         with theirs:
             threads = max(0, min(4, len(os.sched_getaffinity(0)) - 2))
             self._process = subprocess.Popen(
@@ -172,6 +174,7 @@ class RenderProcess:
         self._send(('camera', camera.number, tuple(camera.lens), len(camera.memory)))
         if self._ready:
             stream = socket.socket(fileno=os.dup(self._connection.fileno()))
+            stream.setblocking(True)  # as above: the handle is another one, the socket the same
             with stream:
                 socket.send_fds(stream, [b'm'], [camera.file])
 

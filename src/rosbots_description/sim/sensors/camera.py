@@ -153,7 +153,7 @@ class CameraSensor(Sensor):
         """Send the pictures that are there; those of a time that has not come yet are void."""
         while (taken := self._shutter.take(waits)) is not None:
             if taken[0].stamp_ns <= self.world.clock.now_ns:
-                self.readings.send(self.reading(taken))
+                self.give(self.reading(taken))
 
     def _camera(self, element: Element) -> SensedCamera:
         width = count(element, 'image/width', 320, LARGEST)

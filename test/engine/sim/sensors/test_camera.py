@@ -4,6 +4,7 @@ import logging
 import math
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -12,9 +13,11 @@ from contextlib import closing
 import numpy as np
 import pytest
 from PIL import Image
+from support import robot_spec
 from support.pictures import FILES, recorded_picture, recorded_world, spawn_robot
 from support.sensing import recordings
 
+from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.public.world import World
 from rosbots_description.sim.rendering.studio import studio_of
 from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
@@ -247,6 +250,19 @@ def test_another_process_begins_where_one_has_died(scene, caplog):
     assert (np.abs(camera.read().pixels.astype(int) - before) > LEVELS).mean() < EDGES
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
         'the process that draws pictures has died (killed by signal 9); another one begins']
+
+
+def test_meshes_reach_it_whatever_timeout_sockets_have_by_default(scene, caplog):
+    socket.setdefaulttimeout(60.0)  # as rospy does
+    try:
+        scene.spawn(robot_spec(), 'rosbots', Pose((0.0, 2.0, 0.5)))
+        _, camera = spawn_robot(scene, 'camera_320')
+        taken = stamps(camera)
+        scene.run(seconds=0.1)
+    finally:
+        socket.setdefaulttimeout(None)
+    assert len(taken) == 3
+    assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == []
 
 
 def test_it_ends_with_the_process_that_it_draws_for():
