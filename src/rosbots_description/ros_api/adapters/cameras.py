@@ -14,6 +14,7 @@ Services:
 """
 
 from collections.abc import Callable
+from typing import cast
 
 import rospy
 from sensor_msgs.msg import CameraInfo as CameraInfoMessage
@@ -91,8 +92,9 @@ def set_camera_info(channel: int) -> Callable[[Adapter, str], Callable[[], None]
     def offer(adapter: Adapter, name: str) -> Callable[[], None]:
         def answer(request: SetCameraInfoRequest) -> SetCameraInfoResponse:
             info = read_info(request.camera_info)
-            if channel < len(adapter.plugin.channels):
-                adapter.server.loop.call(lambda: adapter.plugin.set_info(info, channel))
+            plugin = cast(CameraPlugin, adapter.plugin)
+            if channel < len(plugin.channels):
+                adapter.server.loop.call(lambda: plugin.set_info(info, channel))
             return SetCameraInfoResponse(success=True)
 
         return rospy.Service(name, SetCameraInfo, answer).shutdown
@@ -102,11 +104,12 @@ def set_camera_info(channel: int) -> Callable[[Adapter, str], Callable[[], None]
 
 def reconfigure(adapter: Adapter, name: str) -> Callable[[], None]:
     """Offer the rate; loading the library must not keep the world waiting."""
-    if not adapter.plugin.camera_name:
+    plugin = cast(CameraPlugin, adapter.plugin)
+    if not plugin.camera_name:
         return lambda: None
     from ..reconfigure.camera import CameraReconfigure
 
-    return CameraReconfigure(adapter.plugin, name, adapter.server.loop.post).close
+    return CameraReconfigure(plugin, name, adapter.server.loop.post).close
 
 
 def channel_topics(side: str, image: str, info: str, folder: str, number: int) -> tuple:

@@ -33,12 +33,17 @@ def _glow(rgb: Vector, reflected: Vector = _WHITE) -> Material:
     return _material(rgb, ambient=reflected, diffuse=reflected, emissive=rgb)
 
 
+def scale(colour: Vector, factor: float) -> Vector:
+    """Return a colour as many times as bright."""
+    red, green, blue = colour
+    return factor * red, factor * green, factor * blue
+
+
 def _textured(mean: Vector, ambient: float, diffuse: float, *specular: float) -> Material:
     grey, shininess = specular or (0.0, 0.0)
     return _material(
         mean, (grey, grey, grey), shininess,
-        ambient=tuple(ambient * value for value in mean),
-        diffuse=tuple(diffuse * value for value in mean))
+        ambient=scale(mean, ambient), diffuse=scale(mean, diffuse))
 
 
 _GREY = _material((0.7, 0.7, 0.7), (0.01, 0.01, 0.01), 1.5, ambient=(0.3, 0.3, 0.3))

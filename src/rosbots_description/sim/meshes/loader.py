@@ -291,7 +291,7 @@ def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
 
 def _by_colour(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
     """Return the parts with those of equal colour joined, in order of first appearance."""
-    groups: dict[tuple, list[MeshPart]] = {}
+    groups: dict[tuple[Colour, Reflection, str], list[MeshPart]] = {}
     for part in parts:
         groups.setdefault((part.rgba, part.reflection, part.image), []).append(part)
     joined = []

@@ -14,8 +14,10 @@ from collections.abc import Callable
 from itertools import count
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .gl import Lens, Scene
 
@@ -47,17 +49,17 @@ class NoRendererError(RenderError):
 class RenderProcess:
     """Draws one scene for any number of cameras. One thread uses it."""
 
-    def __init__(self, meshes: Callable[[str], np.ndarray]) -> None:
+    def __init__(self, meshes: Callable[[str], NDArray[Any]]) -> None:
         """Start nothing yet.
 
         Args:
             meshes: gives the triangles of a key that stands in a scene.
         """
         self._meshes = meshes
-        self._process: subprocess.Popen | None = None
-        self._connection: Connection | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._connection: Connection[Any, Any] | None = None
         self._ready = False  # it has told who draws, and knows scene and cameras
-        self._scene: Scene | None = None
+        self._scene = Scene(())
         self._sent: set[str] = set()
         self._cameras: dict[int, RenderedCamera] = {}
         self._numbers = count()  # of cameras; answers to one that has gone may still come
@@ -66,7 +68,7 @@ class RenderProcess:
 
     def close(self) -> None:
         """End the process."""
-        if self._connection is not None:
+        if self._connection is not None and self._process is not None:
             self._connection.close()
             self._process.wait()
         self._connection = self._process = None
@@ -99,7 +101,7 @@ class RenderProcess:
         if self._ready:
             self._send(('forget', camera.number))
 
-    def request(self, message: tuple) -> None:
+    def request(self, message: tuple[Any, ...]) -> None:
         """Ask for a picture; while the process starts, that is put off."""
         if self._connection is None:
             self._start()
@@ -108,7 +110,7 @@ class RenderProcess:
 
     def receive(self, wait: bool) -> bool:
         """Take one answer, if there is one or one is waited for; return whether there was one."""
-        if self._connection is None:
+        if self._connection is None or self._process is None:
             return False
         try:
             if not self._connection.poll(PATIENCE if wait else 0.0):
@@ -151,8 +153,7 @@ class RenderProcess:
                     ', in software: no graphics card can be used' if is_software else '')
         self._ready = True
         self._sent = set()
-        if self._scene is not None:
-            self._send_scene()
+        self._send_scene()
         for camera in self._cameras.values():
             self._send_camera(camera)
             camera.ask_again()
@@ -172,14 +173,14 @@ class RenderProcess:
 
     def _send_camera(self, camera: 'RenderedCamera') -> None:
         self._send(('camera', camera.number, tuple(camera.lens), len(camera.memory)))
-        if self._ready:
+        if self._connection is not None:
             stream = socket.socket(fileno=os.dup(self._connection.fileno()))
             stream.setblocking(True)  # as above: the handle is another one, the socket the same
             with stream:
                 socket.send_fds(stream, [b'm'], [camera.file])
 
-    def _send(self, message: tuple) -> None:
-        if not self._ready:
+    def _send(self, message: tuple[Any, ...]) -> None:
+        if self._connection is None:
             return  # it has died meanwhile
         try:
             self._connection.send(message)
@@ -191,7 +192,7 @@ class RenderProcess:
         process = self._process
         self.close()
         self._deaths += 1
-        code = process.returncode
+        code = process.returncode if process is not None else 0
         ended = f'killed by signal {-code}' if code < 0 else f'exit code {code}'
         if self._deaths < MOST_DEATHS:
             logger.error('the process that draws pictures has died (%s); another one begins', ended)
@@ -218,8 +219,9 @@ class RenderedCamera:
         self.file = os.memfd_create('picture')
         os.truncate(self.file, UNDER_WAY * self._size)
         self.memory = mmap.mmap(self.file, UNDER_WAY * self._size)
-        self._asked: deque[tuple] = deque()  # messages that were sent
-        self._done: deque[tuple[tuple, str]] = deque()  # those that were answered, and a fault
+        self._asked: deque[tuple[Any, ...]] = deque()  # messages that were sent
+        # Those that were answered, and a fault.
+        self._done: deque[tuple[tuple[Any, ...], str]] = deque()
         self._next = 0
 
     def close(self) -> None:
@@ -234,7 +236,7 @@ class RenderedCamera:
         return len(self._asked) + len(self._done)
 
     def request(
-        self, eye: np.ndarray, poses: np.ndarray, seed: int = 0,
+        self, eye: NDArray[Any], poses: NDArray[Any], seed: int = 0,
         wants: tuple[bool, bool] = (True, False),
     ) -> None:
         """Ask for a picture of the scene as it is now.
@@ -255,7 +257,7 @@ class RenderedCamera:
         self._asked.append(message)
         self._process.request(message)
 
-    def take(self, wait: bool) -> tuple[np.ndarray | None, np.ndarray | None] | None:
+    def take(self, wait: bool) -> tuple[NDArray[Any] | None, NDArray[Any] | None] | None:
         """Return colours and depths of the oldest picture asked for, or None if it is not there.
 
         Colours are (height, width, channels), depths (height, width) float32 [m], inf where
@@ -296,7 +298,7 @@ class RenderedCamera:
 
     def _content(
         self, place: int, has_colour: bool, has_depth: bool
-    ) -> tuple[np.ndarray | None, np.ndarray | None]:
+    ) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
         lens = self.lens
         shape = lens.height, lens.width
         colours = depths = None

@@ -4,10 +4,12 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..core import rotate
+from ..core import Vector, rotate
 from ..description import (
     DIRECTIONAL,
     POINT,
@@ -28,7 +30,7 @@ from .gl import Light, Look, Scene, ScenePart
 from .shapes import mesh_corners, unit_box, unit_cylinder, unit_sphere, unit_square
 
 _LIGHT_TYPES = {DIRECTIONAL: 0, POINT: 1, SPOT: 2}
-Triangles = Callable[[], np.ndarray]
+Triangles = Callable[[], NDArray[Any]]
 
 
 class SceneMirror:
@@ -39,7 +41,7 @@ class SceneMirror:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._seen: tuple = ()
+        self._seen: tuple[Any, ...] = ()
         self._links: list[Link] = []
         self.scene = Scene(())
         self.meshes: dict[str, Triangles] = {}
@@ -68,7 +70,7 @@ class SceneMirror:
             scene.background[:3], scene.shadows)
         return True
 
-    def poses(self) -> np.ndarray:
+    def poses(self) -> NDArray[Any]:
         """Return where the bodies of the scene are now (n, 7): position [m], quaternion x, y, z, w.
 
         The engine is asked once for each.
@@ -85,7 +87,7 @@ class SceneMirror:
                        not isinstance(visual.geometry, Plane), still)
 
 
-def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, tuple, Look]]:
+def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Look]]:
     """Yield the surfaces of a visual: key and triangles, size, look."""
     material = visual.material or Material()
     look = _look(material.reflection, material.rgba[3])
@@ -106,7 +108,7 @@ def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, tuple, Look]]:
                        look if visual.material else own)
 
 
-def _mesh_corners(part: MeshPart) -> np.ndarray:
+def _mesh_corners(part: MeshPart) -> NDArray[Any]:
     return mesh_corners(part.vertices, part.faces, part.normals, part.texcoords)
 
 
@@ -120,15 +122,15 @@ def _light(light: LightSpec) -> Light:
     length = math.hypot(*direction) or 1.0
     return Light(
         _LIGHT_TYPES[light.type], light.pose.position,
-        tuple(value / length for value in direction), light.diffuse[:3], light.specular[:3],
-        light.range,
+        (direction[0] / length, direction[1] / length, direction[2] / length),
+        light.diffuse[:3], light.specular[:3], light.range,
         (light.attenuation_constant, light.attenuation_linear, light.attenuation_quadratic),
         (math.cos(light.spot_inner_angle / 2.0), math.cos(light.spot_outer_angle / 2.0),
          light.spot_falloff),
         light.cast_shadows)
 
 
-def _matrix(visual: Visual, size: tuple) -> np.ndarray:
+def _matrix(visual: Visual, size: Vector) -> NDArray[Any]:
     """Return the matrix (4, 4) from the shape of unit size to the link."""
     axes = [rotate(visual.pose.orientation, axis) for axis in np.eye(3)]
     matrix = np.eye(4)

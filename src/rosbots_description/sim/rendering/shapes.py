@@ -6,8 +6,10 @@ Gazebo's, so that pictures have the same outlines.
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core import Vector
 
@@ -15,7 +17,7 @@ SEGMENTS = 32  # around cylinders and spheres, and from pole to pole
 
 
 @cache
-def unit_box() -> np.ndarray:
+def unit_box() -> NDArray[Any]:
     """Return a cube of edge 1, its faces in the order in which Gazebo draws them.
 
     That matters where one is seen through another.
@@ -32,7 +34,7 @@ def unit_box() -> np.ndarray:
 
 
 @cache
-def unit_sphere() -> np.ndarray:
+def unit_sphere() -> NDArray[Any]:
     """Return a sphere of radius 1; its poles are on the y axis, as Gazebo's are."""
     ring, segment = (numbers.ravel() for numbers in np.meshgrid(
         np.arange(SEGMENTS), np.arange(SEGMENTS), indexing='ij'))
@@ -46,7 +48,7 @@ def unit_sphere() -> np.ndarray:
 
 
 @cache
-def unit_cylinder() -> np.ndarray:
+def unit_cylinder() -> NDArray[Any]:
     """Return a cylinder of radius 1 and length 1 about z."""
     corners = []
     for number in range(SEGMENTS):
@@ -64,7 +66,7 @@ def unit_cylinder() -> np.ndarray:
 
 
 @cache
-def unit_square(normal: Vector) -> np.ndarray:
+def unit_square(normal: Vector) -> NDArray[Any]:
     """Return a square of edge 1 about the origin, seen from where `normal` points."""
     upward = np.array(normal)
     right = np.cross((0.0, 1.0, 0.0) if abs(upward[1]) < 0.9 else (0.0, 0.0, 1.0), upward)
@@ -75,9 +77,9 @@ def unit_square(normal: Vector) -> np.ndarray:
 
 
 def mesh_corners(
-    vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None,
-    texcoords: np.ndarray | None = None,
-) -> np.ndarray:
+    vertices: NDArray[Any], faces: NDArray[Any], normals: NDArray[Any] | None,
+    texcoords: NDArray[Any] | None = None,
+) -> NDArray[Any]:
     """Return triangles of a mesh; without normals its faces are flat.
 
     Args:

@@ -3,9 +3,10 @@
 import weakref
 from collections import deque
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core import Pose
 from ..runtime import World
@@ -22,8 +23,8 @@ class Picture(NamedTuple):
     """
 
     stamp_ns: int
-    pixels: np.ndarray | None
-    depths: np.ndarray | None
+    pixels: NDArray[Any] | None
+    depths: NDArray[Any] | None
 
 
 class Studio:
@@ -33,7 +34,7 @@ class Studio:
         self._mirror = SceneMirror(world)
         self.process = RenderProcess(lambda key: self._mirror.meshes[key]())
 
-    def look(self) -> np.ndarray:
+    def look(self) -> NDArray[Any]:
         """Bring the scene up to date; return where its bodies are."""
         if self._mirror.update():
             self.process.set_scene(self._mirror.scene)
@@ -112,7 +113,7 @@ class Shutter:
         found, faults = [], []
         for camera in self._cameras:
             try:
-                found.append(Picture(stamp_ns, *camera.take(wait)))
+                found.append(Picture(stamp_ns, *(camera.take(wait) or (None, None))))
             except RenderError as error:
                 faults.append(error)
         if faults:

@@ -66,7 +66,7 @@ class CameraSensor(Sensor):
         """Return what is given out for the pictures of all cameras."""
         return pictures[0]
 
-    def shared(self) -> tuple:
+    def shared(self) -> tuple[object, ...]:
         """Return what is no part of the state."""
         return (*super().shared(), self.cameras, self._shutter)
 
@@ -101,9 +101,9 @@ class CameraSensor(Sensor):
         """
         try:
             self._press((True, self.has_depth))
-            taken = None
+            taken: tuple[Picture, ...] = ()
             while self._shutter.under_way:  # those that were asked for before come first
-                taken = self._shutter.take(wait=True)
+                taken = self._shutter.take(wait=True) or taken
         except RenderError as error:
             raise PluginError(f'{self.called}: {error}') from None
         return self.reading(taken)
@@ -139,7 +139,8 @@ class CameraSensor(Sensor):
     def _wants(self) -> tuple[bool, bool]:
         if self.readings.readers > len(self._wanted):
             return True, self.has_depth
-        return tuple(map(any, zip(*self._wanted.values(), strict=True)))
+        wanted = self._wanted.values()
+        return any(pixels for pixels, _ in wanted), any(depths for _, depths in wanted)
 
     def _press(self, wants: tuple[bool, bool]) -> None:
         while not self._shutter.is_free:
@@ -173,12 +174,13 @@ class CameraSensor(Sensor):
             logger.error(
                 "model '%s', %s: <format> '%s' is unknown; pixels are red, green, blue and are "
                 'called bgr8, as in Gazebo', self.model.name, self.called, written)
+        k1, k2, k3, p1, p2 = (
+            number(element, f'distortion/{name}', 0.0) for name in _DISTORTION)
         noise = read_noise(element.child('noise'))
         lens = Lens(
             width, height, field, near, far, encoding or 'rgb8',
-            tuple(number(element, f'distortion/{name}', 0.0) for name in _DISTORTION),
-            _pair(child_at(element, 'distortion/center'), (0.5, 0.5)),
-            number(element, 'distortion/k1', 0.0) < 0.0, noise.mean, noise.deviation)
+            (k1, k2, k3, p1, p2), _pair(child_at(element, 'distortion/center'), (0.5, 0.5)),
+            k1 < 0.0, noise.mean, noise.deviation)
         pose = element.child('pose')
         return SensedCamera(element.attributes.get('name', ''),
                             Pose() if pose is None else _pose(pose), lens, encoding or 'bgr8')
@@ -216,9 +218,12 @@ def _numbers(element: Element, size: int) -> list[float]:
 
 
 def _pair(element: Element | None, default: tuple[float, float]) -> tuple[float, float]:
-    return default if element is None else tuple(_numbers(element, 2))
+    if element is None:
+        return default
+    x, y = _numbers(element, 2)
+    return x, y
 
 
 def _pose(element: Element) -> Pose:
-    values = _numbers(element, 6)
-    return Pose(tuple(values[:3]), from_rpy(*values[3:]))
+    x, y, z, roll, pitch, yaw = _numbers(element, 6)
+    return Pose((x, y, z), from_rpy(roll, pitch, yaw))

@@ -6,9 +6,10 @@ Tags, defaults and namespaces are those of gazebo_ros_pkgs 2.9.2.
 import logging
 import math
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..plugin_registry import register_in_sensor
 from ..rendering import BYTES, Lens, Picture
@@ -18,6 +19,7 @@ from .camera import CameraSensor, DepthSensor, MultiCameraSensor, SensedCamera
 
 logger = logging.getLogger(__name__)
 
+Pictures = Picture | tuple[Picture, ...]
 Value = TypeVar('Value', str, float, bool)
 _MILLIMETRES = 1000.0  # per metre
 
@@ -67,7 +69,7 @@ class Cloud:
 
     stamp_ns: int
     frame: str
-    points: np.ndarray
+    points: NDArray[Any]
     is_dense: bool
 
 
@@ -79,8 +81,8 @@ class Channel:
         """Make them; `side` begins the names of the outputs, `baseline` is in metres."""
         self.camera = camera
         self.frame = plugin.frame
-        self.image: Output = plugin.output(f'{side}image')
-        self.camera_info: Output = plugin.output(f'{side}camera_info')
+        self.image: Output[Image] = plugin.output(f'{side}image')
+        self.camera_info: Output[StampedInfo] = plugin.output(f'{side}camera_info')
         self.info = plugin.info(camera.lens, baseline)
 
     def send(self, picture: Picture) -> None:
@@ -94,7 +96,7 @@ class Channel:
 
 
 @register_in_sensor('libgazebo_ros_camera.so')
-class CameraPlugin(SensorPlugin):
+class CameraPlugin(SensorPlugin[Pictures]):
     """Passes pictures on. Outputs: `image`, `camera_info`."""
 
     sensor_class: type[CameraSensor] = CameraSensor
@@ -122,7 +124,7 @@ class CameraPlugin(SensorPlugin):
 
     def load_channels(self) -> None:
         """Make the outputs."""
-        self.channels = (
+        self.channels: tuple[Channel, ...] = (
             Channel(self, self.sensor.cameras[0], '', self._values['hackBaseline']),)
 
     def restart(self) -> None:
@@ -168,13 +170,13 @@ class CameraPlugin(SensorPlugin):
         """Tell whether pixels and depths are read."""
         return any(channel.image.wanted for channel in self.channels), False
 
-    def stamp_of(self, reading: Picture | tuple[Picture, ...]) -> int:
+    def stamp_of(self, reading: Pictures) -> int:
         """Return when a picture was taken [ns]."""
-        return (reading if isinstance(reading, Picture) else reading[0]).stamp_ns
+        return _first(reading).stamp_ns
 
-    def take(self, reading: Picture) -> None:
+    def take(self, reading: Pictures) -> None:
         """Send a picture."""
-        self.channels[0].send(reading)
+        self.channels[0].send(_first(reading))
 
     def unload(self) -> None:
         """Want nothing any more."""
@@ -228,10 +230,11 @@ class MultiCameraPlugin(CameraPlugin):
         for side in ('left', 'right'):
             self.params.values[f'{side} {tag}'] = f'{self.camera_name}/{side}/{name}'.lstrip('/')
 
-    def take(self, reading: tuple[Picture, ...]) -> None:
+    def take(self, reading: Pictures) -> None:
         """Send the pictures."""
+        pictures = (reading,) if isinstance(reading, Picture) else reading
         for channel, number in zip(self.channels, self._numbers, strict=True):
-            channel.send(reading[number])
+            channel.send(pictures[number])
 
 
 @register_in_sensor('libgazebo_ros_depth_camera.so')
@@ -274,41 +277,41 @@ class DepthCameraPlugin(CameraPlugin):
         return (channel.image.wanted or self.points.wanted,
                 self.depth.wanted or self.points.wanted)
 
-    def take(self, reading: Picture) -> None:
+    def take(self, reading: Pictures) -> None:
         """Send a picture and what is made of its depths."""
-        channel = self.channels[0]
-        channel.send(reading)
+        channel, picture = self.channels[0], _first(reading)
+        channel.send(picture)
         if self.depth_camera_info.wanted:
-            self.depth_camera_info.send(StampedInfo(reading.stamp_ns, channel.info))
-        if reading.depths is None:
+            self.depth_camera_info.send(StampedInfo(picture.stamp_ns, channel.info))
+        if picture.depths is None:
             return
-        depths = np.minimum(reading.depths, np.float32(channel.camera.lens.far))
+        depths = np.minimum(picture.depths, np.float32(channel.camera.lens.far))
         depths[(depths <= self._cutoff) | (depths >= self._most)] = np.nan
         if self.depth.wanted:
-            self.depth.send(self._depth_image(reading.stamp_ns, depths))
-        if self.points.wanted and reading.pixels is not None:
-            self.points.send(self._cloud(reading, depths))
+            self.depth.send(self._depth_image(picture.stamp_ns, depths))
+        if self.points.wanted and picture.pixels is not None:
+            self.points.send(self._cloud(picture.stamp_ns, picture.pixels, depths))
 
-    def _depth_image(self, stamp_ns: int, depths: np.ndarray) -> Image:
+    def _depth_image(self, stamp_ns: int, depths: NDArray[Any]) -> Image:
         height, width = depths.shape
         if not self._is_short:
             return Image(stamp_ns, self.frame, width, height, '32FC1', depths.tobytes())
         short = np.minimum(np.nan_to_num(depths) * np.float32(_MILLIMETRES), 65535.0)
         return Image(stamp_ns, self.frame, width, height, '16UC1', short.astype('<u2').tobytes())
 
-    def _cloud(self, picture: Picture, depths: np.ndarray) -> Cloud:
+    def _cloud(self, stamp_ns: int, pixels: NDArray[Any], depths: NDArray[Any]) -> Cloud:
         across, down = self._rays
         points = np.zeros((*depths.shape, 8), '<f4')
         points[:, :, 0] = depths * across
         points[:, :, 1] = depths * down
         points[:, :, 2] = depths
         if BYTES[self.channels[0].camera.lens.encoding] == 3:
-            points.view('u1')[:, :, 16:19] = picture.pixels  # in the order of the image
-        elif picture.pixels.dtype == np.uint8:
-            points.view('u1')[:, :, 16:19] = picture.pixels[:, :, :1]
+            points.view('u1')[:, :, 16:19] = pixels  # in the order of the image
+        elif pixels.dtype == np.uint8:
+            points.view('u1')[:, :, 16:19] = pixels[:, :, :1]
         if not self.is_organised:
             points = points.reshape(1, -1, 8)
-        return Cloud(picture.stamp_ns, self.frame, points, not bool(np.isnan(depths).any()))
+        return Cloud(stamp_ns, self.frame, points, not bool(np.isnan(depths).any()))
 
 
 @register_in_sensor('libgazebo_ros_openni_kinect.so')
@@ -321,3 +324,7 @@ class OpenniKinectPlugin(DepthCameraPlugin):
         """Return the distance from which on there is no depth [m]."""
         return self._value('pointCloudCutoffMax', 5.0)
 
+
+
+def _first(reading: Pictures) -> Picture:
+    return reading if isinstance(reading, Picture) else reading[0]

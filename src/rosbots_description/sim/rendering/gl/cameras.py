@@ -1,6 +1,9 @@
 """The matrices of a camera, and of the light that casts shadows. Vectors are columns."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .values import Lens
 
@@ -13,7 +16,7 @@ WIDEST = 2.4  # [rad] across; what a wider camera sees further out is lit withou
 _CASTERS = 30.0  # [m] towards the light from what is seen: what casts shadows on it
 
 
-def matrices(poses: np.ndarray) -> np.ndarray:
+def matrices(poses: NDArray[Any]) -> NDArray[Any]:
     """Return (n, 4, 4) of poses (n, 7): position [m], quaternion x, y, z, w."""
     x, y, z, w = poses[:, 3:].T
     result = np.zeros((len(poses), 4, 4))
@@ -31,7 +34,7 @@ def matrices(poses: np.ndarray) -> np.ndarray:
     return result
 
 
-def projection(lens: Lens) -> np.ndarray:
+def projection(lens: Lens) -> NDArray[Any]:
     """Return the pinhole."""
     near, far = lens.near, lens.far
     across = 2.0 * lens.focal_length / lens.width
@@ -43,7 +46,7 @@ def projection(lens: Lens) -> np.ndarray:
     ])
 
 
-def camera_view(eye: np.ndarray) -> np.ndarray:
+def camera_view(eye: NDArray[Any]) -> NDArray[Any]:
     """Return the matrix from the world to OpenGL's camera that stands at `eye` (4, 4)."""
     turned = eye[:3, :3].T
     inverse = np.eye(4)
@@ -51,7 +54,7 @@ def camera_view(eye: np.ndarray) -> np.ndarray:
     return _TO_CAMERA @ inverse
 
 
-def light_axes(direction: np.ndarray) -> np.ndarray:
+def light_axes(direction: NDArray[Any]) -> NDArray[Any]:
     """Return the axes (3, 3) of a light that shines along `direction`: right, up, backward."""
     backward = -direction
     right = np.cross((0.0, 1.0, 0.0) if abs(backward[1]) < 0.9 else (1.0, 0.0, 0.0), backward)
@@ -59,7 +62,7 @@ def light_axes(direction: np.ndarray) -> np.ndarray:
     return np.stack([right, np.cross(backward, right), backward])
 
 
-def seen_ball(eye: np.ndarray, lens: Lens) -> tuple[np.ndarray, float]:
+def seen_ball(eye: NDArray[Any], lens: Lens) -> tuple[NDArray[Any], float]:
     """Return middle and radius of a ball around what a camera sees up to SHADOWED [m]."""
     reach = min(lens.far, SHADOWED)
     slope = np.hypot(1.0, lens.height / lens.width) * np.tan(min(lens.field_of_view, WIDEST) / 2.0)
@@ -68,7 +71,9 @@ def seen_ball(eye: np.ndarray, lens: Lens) -> tuple[np.ndarray, float]:
     return eye[:3, 3] + middle * eye[:3, 0], max(middle, reach * slope)
 
 
-def shadow_view(axes: np.ndarray, middle: np.ndarray, radius: float, texel: float) -> np.ndarray:
+def shadow_view(
+    axes: NDArray[Any], middle: NDArray[Any], radius: float, texel: float
+) -> NDArray[Any]:
     """Return the matrix from the world to a shadow map that holds a ball.
 
     The map stands at a multiple of its texels [m], so that the edges of shadows stand still.

@@ -1,11 +1,13 @@
 """An OpenGL context without a display: on a graphics card, or else in software."""
 
 from ctypes.util import find_library
+from typing import Any
 
 import moderngl
 
 _DEVICES = 16  # as many are tried
 _SOFTWARE = ('llvmpipe', 'softpipe', 'swrast')
+_EGL: dict[str, Any] = {'backend': 'egl'}
 LIBRARIES = {'libgl': ('GL', 'libgl1'), 'libegl': ('EGL', 'libegl1')}
 
 
@@ -27,7 +29,7 @@ def open_context() -> tuple[moderngl.Context, str, bool]:
     for number in range(_DEVICES):
         try:
             context = moderngl.create_context(
-                require=330, standalone=True, backend='egl', device_index=number)
+                require=330, standalone=True, **_EGL | {'device_index': number})
         except Exception as error:  # whatever a driver raises: the next one may do
             reason = str(error)
             if 'out of range' in reason or 'requested device index' in reason:

@@ -1,6 +1,9 @@
 """What a camera does to a picture: distortion, noise, and the encoding of its pixels."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .values import BAYER, BGR, GREY8, GREY16, RGB16, Lens
 
@@ -12,7 +15,7 @@ class Development:
         self._lens = lens
         self._distortion = _Distortion(lens) if any(lens.distortion) else None
 
-    def finish(self, pixels: np.ndarray, seed: int) -> np.ndarray:
+    def finish(self, pixels: NDArray[Any], seed: int) -> NDArray[Any]:
         """Return the picture in the camera's encoding.
 
         Args:
@@ -29,15 +32,15 @@ class Development:
         if lens.encoding == GREY8:  # as Gazebo: the red channel
             return np.ascontiguousarray(pixels[:, :, 0])
         if lens.encoding == GREY16:
-            return pixels[:, :, 0].astype('<u2') * 257
+            return np.asarray(np.multiply(pixels[:, :, 0], 257, dtype='<u2'))
         if lens.encoding == RGB16:
-            return pixels[:, :, :3].astype('<u2') * 257
+            return np.asarray(np.multiply(pixels[:, :, :3], 257, dtype='<u2'))
         if lens.encoding in BAYER:
             return _mosaic(pixels, BAYER[lens.encoding])
         return np.ascontiguousarray(pixels[:, :, :3])
 
 
-def _mosaic(pixels: np.ndarray, channels: tuple[int, int, int, int]) -> np.ndarray:
+def _mosaic(pixels: NDArray[Any], channels: tuple[int, int, int, int]) -> NDArray[Any]:
     result = np.empty(pixels.shape[:2], 'u1')
     for number, channel in enumerate(channels):
         row, column = divmod(number, 2)
@@ -45,13 +48,13 @@ def _mosaic(pixels: np.ndarray, channels: tuple[int, int, int, int]) -> np.ndarr
     return result
 
 
-def _with_noise(pixels: np.ndarray, lens: Lens, seed: int) -> np.ndarray:
+def _with_noise(pixels: NDArray[Any], lens: Lens, seed: int) -> NDArray[Any]:
     """Add the same to all channels of a pixel, as Gazebo does."""
     generator = np.random.Generator(np.random.Philox(seed))
     shape = pixels.shape[:2]
     added = generator.standard_normal(shape, 'f4') * np.float32(255.0 * lens.noise_stddev)
     noisy = pixels[:, :, :3] + (added + np.float32(255.0 * lens.noise_mean))[:, :, None]
-    return np.clip(np.rint(noisy), 0.0, 255.0).astype('u1')
+    return np.asarray(np.clip(np.rint(noisy), 0.0, 255.0), 'u1')
 
 
 class _Distortion:
@@ -81,28 +84,28 @@ class _Distortion:
         self._shares = [share[:, :, None] for share in (
             (1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down)]
 
-    def apply(self, pixels: np.ndarray) -> np.ndarray:
+    def apply(self, pixels: NDArray[Any]) -> NDArray[Any]:
         """Return the lens's picture (height, width, 4) of the pinhole's."""
         read = sum(share * pixels[corner]
                    for share, corner in zip(self._shares, self._corners, strict=True))
-        result = np.rint(read).astype('u1')
+        result: NDArray[Any] = np.rint(read).astype('u1')
         result[self._outside] = pixels[0, 0] // 4  # Gazebo reads there halfway over both edges
         return result
 
-    def _inverse(self, shown: np.ndarray) -> np.ndarray:
+    def _inverse(self, shown: NDArray[Any]) -> NDArray[Any]:
         """Return the points that are shown there, by fixed-point iteration."""
-        points = shown.copy()
+        points: NDArray[Any] = shown.copy()
         with np.errstate(all='ignore'):  # points far outside may have none
             for _ in range(50):
                 radial, tangential = self._terms(points)
                 points = (shown - tangential) / radial
         return points
 
-    def _shown(self, points: np.ndarray) -> np.ndarray:
+    def _shown(self, points: NDArray[Any]) -> NDArray[Any]:
         radial, tangential = self._terms(points)
-        return points * radial + tangential
+        return np.asarray(points * radial + tangential)
 
-    def _terms(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _terms(self, points: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
         k1, k2, k3, p1, p2 = self._coefficients
         x, y = points
         square = x * x + y * y

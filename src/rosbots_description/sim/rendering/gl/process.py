@@ -6,6 +6,7 @@ import os
 import signal
 import socket
 from multiprocessing.connection import Connection
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -13,7 +14,7 @@ from PIL import Image
 from .context import NoContextError, open_context
 from .development import Development
 from .renderer import Renderer
-from .values import Lens, Light, Look, Scene, ScenePart
+from .values import Colour, Lens, Light, Look, Scene, ScenePart
 
 LARGEST_IMAGE = 2048  # [pixels] along an edge; larger ones are made smaller
 NICENESS = 2  # where processors are scarce, the clock comes first
@@ -23,7 +24,7 @@ def main(handle: int) -> None:
     """Serve who holds the other end of the socket `handle`; end when it is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is for who started us, whose end is ours
     os.nice(NICENESS)
-    connection = Connection(handle)
+    connection: Connection[Any, Any] = Connection(handle)
     try:
         context, name, is_software = open_context()
     except NoContextError as error:
@@ -37,7 +38,7 @@ def main(handle: int) -> None:
 class _Service:
     """Does what the messages say; each is a tuple of a verb and its arguments."""
 
-    def __init__(self, connection: Connection, renderer: Renderer) -> None:
+    def __init__(self, connection: 'Connection[Any, Any]', renderer: Renderer) -> None:
         self._connection = connection
         self._renderer = renderer
         self._cameras: dict[int, _Camera] = {}
@@ -59,13 +60,16 @@ class _Service:
             pixels = np.asarray(image.convert('RGBA' if 'A' in image.getbands() else 'RGB'))
         self._renderer.add_image(path, pixels)
 
-    def _scene(self, parts: list, lights: list, *rest: object) -> None:
+    def _scene(
+        self, parts: list[Any], lights: list[Any], ambient: Colour, background: Colour,
+        shadows: bool,
+    ) -> None:
         self._renderer.set_scene(Scene(
             tuple(ScenePart(key, body, matrix, Look(*look), *others)
                   for key, body, matrix, look, *others in parts),
-            tuple(Light(*light) for light in lights), *rest))
+            tuple(Light(*light) for light in lights), ambient, background, shadows))
 
-    def _camera(self, number: int, lens: tuple, size: int) -> None:
+    def _camera(self, number: int, lens: tuple[Any, ...], size: int) -> None:
         """Take a camera, and the shared memory that is sent along."""
         stream = socket.socket(fileno=os.dup(self._connection.fileno()))
         with stream:

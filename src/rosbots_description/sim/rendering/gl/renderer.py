@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from .cameras import camera_view, matrices, projection
 from .shaders import (
@@ -14,7 +16,7 @@ from .shaders import (
     SURFACE_VERTEX,
     surface_fragment,
 )
-from .shadows import Shadows
+from .shadows import Shadows, uniform
 from .values import DIRECTIONAL, Lens, Look, Scene, ScenePart
 
 SAMPLES = 4  # per pixel, of edges
@@ -30,7 +32,7 @@ class Renderer:
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
         context.front_face = 'cw'  # pictures are drawn upside down, see `cameras`
-        self._meshes: dict[str, tuple[moderngl.Buffer, np.ndarray]] = {}
+        self._meshes: dict[str, tuple[moderngl.Buffer, NDArray[Any]]] = {}
         self._images: dict[str, moderngl.Texture] = {}
         self._targets: dict[tuple[int, int, str], _Target] = {}
         self._placed = _PlacedPrograms(context)
@@ -40,13 +42,13 @@ class Renderer:
         self._surfaces: dict[tuple[bool, bool], moderngl.Program] = {}
         self.set_scene(Scene(()))
 
-    def add_mesh(self, key: str, triangles: np.ndarray) -> None:
+    def add_mesh(self, key: str, triangles: NDArray[Any]) -> None:
         """Take triangles: (3 n, 8) float32 of position [m], normal, texture coordinates."""
         corners = triangles[:, :3]
         bounds = np.stack([corners.min(0), corners.max(0)])
         self._meshes[key] = (self._context.buffer(np.ascontiguousarray(triangles, 'f4')), bounds)
 
-    def add_image(self, key: str, pixels: np.ndarray) -> None:
+    def add_image(self, key: str, pixels: NDArray[Any]) -> None:
         """Take an image (height, width, 3 or 4) uint8, its first row on top."""
         pixels = np.ascontiguousarray(pixels[::-1])
         height, width, channels = pixels.shape
@@ -76,7 +78,7 @@ class Renderer:
             for part in scene.parts
         ]
         self._still_bodies = sorted({part.body for part in scene.parts if part.still})
-        self._stood: np.ndarray | None = None  # where what stands still was last
+        self._stood: NDArray[Any] | None = None  # where what stands still was last
         self._write_surfaces()
 
     def _write_surfaces(self) -> None:
@@ -95,28 +97,28 @@ class Renderer:
             textured = bool(drawable.part.look.texture)
             drawable.set_surfaces([self._surfaces[textured, moving] for moving in (False, True)])
 
-    def _draw_shadows(self, frame: '_Shot', poses: np.ndarray) -> None:
+    def _draw_shadows(self, shadows: Shadows, frame: '_Shot', poses: NDArray[Any]) -> None:
         stands = poses[self._still_bodies]
         if self._stood is None or not np.array_equal(stands, self._stood):
             self._stood = stands
-            self._shadows.forget()
+            shadows.forget()
         casters = [one for one in self._drawables if one.casts_shadow]
-        light = np.array(self._lights[self._sun].direction)
         low = min(one.low for one in self._drawables)
-        self._shadows.draw(
+        light = shadows.direction
+        shadows.draw(
             frame.eye, frame.lens, [one for one in casters if one.part.still],
             [one for one in casters
              if not one.part.still and frame.may_see_shadow(one, light, low)])
-        frame.shadows_move = self._shadows.move
+        frame.shadows_move = shadows.move
 
-    def _drop(self, kept: dict, used: set[str]) -> None:
+    def _drop(self, kept: dict[str, Any], used: set[str]) -> None:
         for key in [key for key in kept if key not in used]:
             resource = kept.pop(key)
             (resource[0] if isinstance(resource, tuple) else resource).release()
 
     def colours(
-        self, lens: Lens, eye: np.ndarray, poses: np.ndarray
-    ) -> np.ndarray:
+        self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]
+    ) -> NDArray[Any]:
         """Return the picture (height, width, 4) uint8, before what a lens adds.
 
         Args:
@@ -125,7 +127,7 @@ class Renderer:
         """
         frame = self._frame(lens, eye, poses)
         if self._shadows is not None:
-            self._draw_shadows(frame, poses)
+            self._draw_shadows(self._shadows, frame, poses)
         samples = SAMPLES if lens.width * lens.height <= MAX_SMOOTHED else 0
         target = self._target(lens, 'colour', samples)
         target.use()
@@ -136,20 +138,20 @@ class Renderer:
         self._draw_surfaces(frame)
         return target.read()
 
-    def depths(self, lens: Lens, eye: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    def depths(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> NDArray[Any]:
         """Return distances along the optical axis (height, width) float32 [m]; none is inf."""
         frame = self._frame(lens, eye, poses)
         target = self._target(lens, 'depth', 0)
         target.use()
         self._context.clear(np.inf, 0.0, 0.0, 1.0, depth=1.0)
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        self._placed.depth['view'].write(_gl(frame.view))
+        uniform(self._placed.depth, 'view').write(_gl(frame.view))
         for drawable in frame.visible:
             self._cull(drawable)
             drawable.draw_depth()
         return target.read()
 
-    def _frame(self, lens: Lens, eye: np.ndarray, poses: np.ndarray) -> '_Shot':
+    def _frame(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> '_Shot':
         eye_matrix = matrices(np.asarray(eye, dtype=float)[None])[0]
         frame = _Shot(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
                        matrices(poses))
@@ -167,7 +169,7 @@ class Renderer:
         return self._targets[key]
 
     def _set_frame(self, program: moderngl.Program, frame: '_Shot') -> None:
-        program['view'].write(_gl(frame.view))
+        uniform(program, 'view').write(_gl(frame.view))
         _set(program, 'eye', tuple(frame.eye[:3, 3]))
         _set(program, 'scene_ambient', self._scene.ambient)
         lights = self._lights
@@ -216,7 +218,7 @@ class _Shot:
     shadows_move = False
 
     def __init__(
-        self, lens: Lens, eye: np.ndarray, view: np.ndarray, bodies: np.ndarray
+        self, lens: Lens, eye: NDArray[Any], view: NDArray[Any], bodies: NDArray[Any]
     ) -> None:
         self.lens, self.eye, self.view, self.bodies = lens, eye, view, bodies
         rows = view[3] + np.array([view[0], -view[0], view[1], -view[1], view[2]])
@@ -227,7 +229,7 @@ class _Shot:
         return bool((self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
                      > -drawable.radius).all())
 
-    def may_see_shadow(self, drawable: '_Drawable', light: np.ndarray, low: float) -> bool:
+    def may_see_shadow(self, drawable: '_Drawable', light: NDArray[Any], low: float) -> bool:
         """Tell whether a drawable's shadow reaches into the pyramid of sight.
 
         Args:
@@ -263,7 +265,7 @@ class _Drawable:
         context: moderngl.Context,
         part: ScenePart,
         buffer: moderngl.Buffer,
-        bounds: np.ndarray,
+        bounds: NDArray[Any],
         placed: _PlacedPrograms,
         image: moderngl.Texture | None,
     ) -> None:
@@ -306,23 +308,23 @@ class _Drawable:
         """Draw the surface in its colours."""
         surface = self._surfaces[shadows_move]
         program = surface.program
-        program['placement'].write(self._placement)
+        uniform(program, 'placement').write(self._placement)
         if 'normal_placement' in program:
-            program['normal_placement'].write(_gl(self._turn @ self._normals))
-        for uniform, value in self._looks[shadows_move]:
-            uniform.write(value)
+            uniform(program, 'normal_placement').write(_gl(self._turn @ self._normals))
+        for place, value in self._looks[shadows_move]:
+            place.write(value)
         if self._image is not None:
             self._image.use(0)
         surface.render()
 
     def draw_depth(self) -> None:
         """Draw how far away it is."""
-        self._depth.program['placement'].write(self._placement)
+        uniform(self._depth.program, 'placement').write(self._placement)
         self._depth.render()
 
     def draw_shadow(self) -> None:
         """Draw it as the light sees it."""
-        self._shadow.program['placement'].write(self._placement)
+        uniform(self._shadow.program, 'placement').write(self._placement)
         self._shadow.render()
 
     def release(self) -> None:
@@ -355,7 +357,7 @@ class _Target:
         """Draw into it from now on."""
         self._drawn.use()
 
-    def read(self) -> np.ndarray:
+    def read(self) -> NDArray[Any]:
         """Return what was drawn; it is overwritten by the next picture."""
         dtype, channels = self._form
         if self._samples:
@@ -375,16 +377,16 @@ def _look_values(look: Look) -> dict[str, bytes]:
 
 
 def _look_uniforms(program: moderngl.Program, look: Look) -> list[tuple[moderngl.Uniform, bytes]]:
-    return [(program[name], value) for name, value in _look_values(look).items()
+    return [(uniform(program, name), value) for name, value in _look_values(look).items()
             if name in program]
 
 
 def _set(program: moderngl.Program, name: str, value: object) -> None:
     """Set what the compiler has not found useless."""
     if name in program:
-        program[name].write(np.array(value, 'f4').tobytes())
+        uniform(program, name).write(np.array(value, 'f4').tobytes())
 
 
-def _gl(matrix: np.ndarray) -> bytes:
+def _gl(matrix: NDArray[Any]) -> bytes:
     """Return a matrix as OpenGL takes it: columns first, float32."""
     return matrix.T.astype('f4').tobytes()

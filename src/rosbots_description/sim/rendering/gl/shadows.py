@@ -7,10 +7,11 @@ shadows, so that the same world gives the same picture, whatever was drawn befor
 """
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any, Protocol, cast
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from .cameras import light_axes, seen_ball, shadow_view
 from .values import Lens
@@ -21,10 +22,15 @@ _CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # edge of the cubes in each of which one
 _MOST_MAPS = 4  # of what stands still, for cameras that see differently far
 
 
+def uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
+    """Return a uniform of a program, which has it."""
+    return cast(moderngl.Uniform, program[name])
+
+
 class Caster(Protocol):
     """What casts a shadow."""
 
-    middle: np.ndarray
+    middle: NDArray[Any]
     radius: float
 
     def draw_shadow(self) -> None:
@@ -35,10 +41,11 @@ class Shadows:
     """The shadow maps of one light."""
 
     def __init__(
-        self, context: moderngl.Context, program: moderngl.Program, direction: np.ndarray
+        self, context: moderngl.Context, program: moderngl.Program, direction: NDArray[Any]
     ) -> None:
         self._context = context
         self._program = program
+        self.direction = direction
         self._axes = light_axes(direction)
         self._moving = _Map(context, MOVING_SIZE)
         self._still: dict[float, _Map] = {}  # by the radius of what is seen
@@ -56,7 +63,7 @@ class Shadows:
             one.place = None
 
     def draw(
-        self, eye: np.ndarray, lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
+        self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
     ) -> None:
         """Draw what has changed for a camera's picture."""
         middle, radius = seen_ball(eye, lens)
@@ -83,11 +90,11 @@ class Shadows:
             if f'{name}_shadows' in program:
                 one.texture.use(unit)
                 program[f'{name}_shadows'] = unit
-                program[f'{name}_view'].write(one.view)
+                uniform(program, f'{name}_view').write(one.view)
                 program[f'{name}_texel'] = one.texel
 
 
-def _ball_around(casters: Sequence[Caster]) -> tuple[np.ndarray, float]:
+def _ball_around(casters: Sequence[Caster]) -> tuple[NDArray[Any], float]:
     """Return middle and radius of a ball around casters [m]."""
     middles = np.array([one.middle for one in casters])
     reach = np.array([one.radius for one in casters])[:, None]
@@ -102,7 +109,7 @@ class _Map:
         self._context = context
         self.size = size
         self.texel = 1.0  # [m]
-        self.place: np.ndarray | None = None
+        self.place: NDArray[Any] | None = None
         self.view = np.zeros((4, 4), 'f4').tobytes()
         self.texture = context.depth_texture((size, size))
         self.texture.compare_func = '<='
@@ -114,7 +121,7 @@ class _Map:
         self.texture.release()
 
     def draw(
-        self, program: moderngl.Program, axes: np.ndarray, middle: np.ndarray, radius: float,
+        self, program: moderngl.Program, axes: NDArray[Any], middle: NDArray[Any], radius: float,
         casters: Sequence[Caster],
     ) -> None:
         """Draw what casts shadows into a ball."""
@@ -124,6 +131,6 @@ class _Map:
         self._buffer.use()
         self._buffer.clear(depth=1.0)
         self._context.enable_only(moderngl.DEPTH_TEST)
-        program['view'].write(self.view)
+        uniform(program, 'view').write(self.view)
         for caster in casters:
             caster.draw_shadow()
