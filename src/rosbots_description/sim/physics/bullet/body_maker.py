@@ -11,11 +11,11 @@ from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
 from .collision_filter import CollisionFilter
 from .compiler import CompiledFace, CompiledTree
+from .contact_stiffness import contact_spring, is_rigid, parting_rate
 from .friction_axes import EVENLY
 from .friction_filter import FrictionFilter, Side
 from .generated_urdf import AUXILIARY_MASS, Tree, filtered_links
 from .springs import compliance
-from .surfaces import contact_spring, is_rigid, parting_rate
 from .tuning import Tuning
 
 ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100

@@ -15,15 +15,14 @@ from ...description.inertia import principal_axes
 from ...meshes import HeldFile, MeshStore
 from ..compiled_model import CompiledModel, bare
 from .body import FrictionAxes
+from .contact_stiffness import compliant, jointed_mass, restitution
 from .faces import Face, faces, slab
-from .friction_axes import friction_scales, restitution
+from .friction_axes import friction_scales
 from .friction_filter import Side
 from .generated_urdf import MeshFile, Tree, describe_tree, kinematic_trees
 from .size_limits import MAX_JOINTS, excess_of_joints, excess_of_parts
 from .surfaces import (
     Groups,
-    compliant,
-    jointed_mass,
     rolling_arm,
     surface_groups,
     with_occluded_first,

@@ -18,12 +18,12 @@ from .body_states import BodyStates
 from .client import pybullet
 from .compiler import BulletModel, compile_model
 from .contact_slip import Slipping
+from .contact_stiffness import overlap_share
 from .contacts import Surroundings
 from .friction_axes import can_slip
 from .snapshot import BulletSnapshot, Snapshots
 from .solver_iterations import CHECK, SolverEffort
 from .springs import Springs
-from .surfaces import overlap_share
 from .tuning import Tuning
 
 _TOGETHER = 20  # steps in one call, which costs less than a call each

@@ -1,4 +1,4 @@
-"""In which directions a surface holds how much, and what it gives back, in PyBullet's terms."""
+"""In which directions a surface holds how much, in PyBullet's terms."""
 
 import math
 from typing import Any
@@ -9,8 +9,6 @@ from .body import Body, FrictionAxes
 from .friction_filter import MAX_FRICTION
 
 EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part
-_PARTS_FREELY = 1.0  # [m/s] a max_vel from which on things may bounce
-_FASTEST_IMPACT = 100.0  # [m/s] a threshold beyond which nothing bounces
 
 
 def directions(collision: Collision) -> tuple[Any, ...]:
@@ -64,18 +62,6 @@ def friction_scales(
 def _is_even(surface: Surface, most: float) -> bool:
     """Tell whether a surface holds alike in all directions up to a friction coefficient."""
     return min(surface.mu, surface.mu2) >= min(most, surface.greatest_mu)
-
-
-def restitution(surface: Surface) -> float:
-    """Return PyBullet's restitution of a surface: those of a pair are multiplied.
-
-    Gazebo takes the lesser of a pair, and lets nothing part faster than `max_vel`, which is 0.01
-    m/s unless somebody sets it. The root gives the same for equal ones, and for a pair of which
-    one has none.
-    """
-    if surface.max_vel < _PARTS_FREELY or surface.threshold > _FASTEST_IMPACT:
-        return 0.0
-    return math.sqrt(min(1.0, max(0.0, surface.restitution)))
 
 
 def can_slip(body: Body, link: str, axle: Vector) -> bool:

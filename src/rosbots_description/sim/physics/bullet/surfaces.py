@@ -11,25 +11,18 @@ from operator import not_
 from typing import Any
 
 from ...core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
-from ...description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane, Surface
-from .friction_axes import directions, restitution
+from ...description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane
+from .contact_stiffness import restitution
+from .friction_axes import directions
 from .generated_urdf import MeshFile, Tree
 from .occluded_shapes import occluded_shapes
 from .split_edge_contacts import split_edges
 
 Groups = list[tuple[Collision, ...]]  # of a link: its own, then those of its auxiliary links
 
-_GRAVITY = 9.8  # [m/s^2]
-_STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
-
 # Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
 # enough to keep a can, a barrel and a robot on free wheels in their place.
 _ROLLING_RESISTANCE = 0.005
-
-# Deflection of one contact under all of a robot's weight [m]. Which of more than three rigid points
-# carry is undetermined; with this the load spreads as the shapes say.
-_DEFLECTION = 1e-3
-_PARTING_SPEED = 1.0  # [m/s] at which bodies part that overlap by all of their size
 
 # Width of a wheel's crest [m]. PyBullet takes a margin of 1 mm off each end of a cylinder, so what
 # is left of this one touches exactly in its middle.
@@ -165,51 +158,3 @@ def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> flo
     if len(radii) < len(collisions) or any(_wheel(one, joint) for one in collisions):
         return 0.0
     return _ROLLING_RESISTANCE * max(radii, default=0.0)
-
-
-def overlap_share(step_size: float, rate: float) -> float:
-    """Return the share of an overlap that contacts take away in a step.
-
-    Args:
-        step_size: duration of the step [s].
-        rate: at which bodies are pushed apart [1/s].
-    """
-    return min(0.2, rate * step_size)
-
-
-def parting_rate(reach: float, push_out: float) -> float:
-    """Return the rate at which contacts take away an overlap [1/s].
-
-    Args:
-        reach: the size of what overlaps [m]; nothing can overlap by more.
-        push_out: the rate for small things [1/s].
-    """
-    return min(push_out, _PARTING_SPEED / max(reach, _LEVEL))
-
-
-def jointed_mass(tree: Tree) -> float:
-    """Return the mass [kg] of links that move on joints; 0 if the root is fixed."""
-    if tree.fixed_base or all(joint is None or joint.type == FIXED for joint in tree.joints):
-        return 0.0
-    return sum(link.inertial.mass for link in tree.links if link.inertial)
-
-
-def compliant(surface: Surface, mass: float) -> Surface:
-    """Return a surface that gives way at least as a robot of that mass [kg] does; 0 for none."""
-    stiffest = mass * _GRAVITY / _DEFLECTION
-    return replace(surface, kp=stiffest) if 0.0 < stiffest < surface.kp else surface
-
-
-def is_rigid(surface: Surface) -> bool:
-    """Tell whether nobody described how a surface gives way."""
-    return surface.kp >= _STIFFEST
-
-
-def contact_spring(surface: Surface, step_size: float, rate: float) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of a contact of a surface that gives way.
-
-    It gives way by force / kp at rest, and is damped so much that it parts bodies no faster than
-    other contacts do; a kd of a user's could shoot them away. `rate` as in `overlap_share`.
-    """
-    least = step_size * surface.kp * (1.0 / overlap_share(step_size, rate) - 1.0)
-    return surface.kp, max(surface.kd, least)

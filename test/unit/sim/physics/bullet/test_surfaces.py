@@ -21,7 +21,6 @@ from rosbots_description.sim.physics.bullet.friction_axes import (
     EVENLY,
     can_slip,
     friction_scales,
-    restitution,
 )
 from rosbots_description.sim.physics.bullet.surfaces import crowned, rolling_arm
 
@@ -93,16 +92,6 @@ def test_without_a_direction_the_first_mu_acts_along_the_models_y_axis():
     assert scales(side, mu=0.5, mu2=0.1) == pytest.approx((0.2, 0.2, 1.0))
     turned = from_rpy(0.0, 0.0, math.pi / 2.0)  # the part's y axis is the link's -x
     assert scales(turn=turned, mu=0.5, mu2=0.1) == pytest.approx((1.0, 0.2, 0.2))
-
-
-@pytest.mark.parametrize(('surface', 'expected'), [
-    ({'restitution': 0.64}, 0.0),  # the usual max_vel holds it
-    ({'restitution': 0.64, 'max_vel': 10.0}, 0.0),  # and so does the usual threshold
-    ({'restitution': 0.64, 'max_vel': 10.0, 'threshold': 0.1}, 0.8),
-    ({'restitution': 9.0, 'max_vel': 10.0, 'threshold': 0.1}, 1.0),
-])
-def test_a_pair_of_equal_surfaces_gives_back_their_restitution(surface, expected):
-    assert restitution(Surface(**surface)) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(('turns', 'can'), [((0.0, math.pi / 2), True), ((0.0, 0.3), False)])
