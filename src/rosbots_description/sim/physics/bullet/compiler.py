@@ -19,11 +19,11 @@ from .contact_stiffness import compliant, jointed_mass, restitution
 from .faces import Face, faces, slab
 from .friction_axes import friction_scales
 from .friction_filter import Side
+from .friction_rolling import rolling_arm
 from .generated_urdf import MeshFile, Tree, describe_tree, kinematic_trees
 from .size_limits import MAX_JOINTS, excess_of_joints, excess_of_parts
 from .surfaces import (
     Groups,
-    rolling_arm,
     surface_groups,
     with_occluded_first,
     with_split_edges,

@@ -20,10 +20,6 @@ from .split_edge_contacts import split_edges
 
 Groups = list[tuple[Collision, ...]]  # of a link: its own, then those of its auxiliary links
 
-# Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
-# enough to keep a can, a barrel and a robot on free wheels in their place.
-_ROLLING_RESISTANCE = 0.005
-
 # Width of a wheel's crest [m]. PyBullet takes a margin of 1 mm off each end of a cylinder, so what
 # is left of this one touches exactly in its middle.
 _CREST = 0.002
@@ -82,7 +78,7 @@ def crowned(
     A cylinder touches a floor along a line, and PyBullet finds one end of it. The crests, at both
     ends and in the middle, share the load.
     """
-    wheel = _wheel(collision, joint)
+    wheel = wheel_shape(collision, joint)
     if wheel is None:
         return (collision,)
     axis = rotate(collision.pose.orientation, UP)
@@ -99,7 +95,7 @@ def crowned(
     )
 
 
-def _wheel(collision: Collision, joint: JointSpec | None) -> Cylinder | None:
+def wheel_shape(collision: Collision, joint: JointSpec | None) -> Cylinder | None:
     """Return the cylinder that a collision is if a joint turns it about its own axis, else None."""
     shape = collision.geometry
     if joint is None or joint.type != REVOLUTE or not isinstance(shape, Cylinder):
@@ -145,16 +141,3 @@ def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
         key = (surface.kp, surface.kd, restitution(surface), directions(collision))
         groups.setdefault((surface.greatest_mu, *key), []).append(collision)
     return [tuple(group) for group in groups.values()]
-
-
-def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> float:
-    """Return PyBullet's rolling friction of a body [m]: how far before the axle the ground pushes.
-
-    Only cylinders need it. One that lies has an edge at each end, and PyBullet finds but one of
-    them in a step; the other pushes from where it was, from behind, and a can at rest would roll
-    away faster and faster. Wheels do not: they touch in one place (`crowned`, `touching_end`).
-    """
-    radii = [one.geometry.radius for one in collisions if isinstance(one.geometry, Cylinder)]
-    if len(radii) < len(collisions) or any(_wheel(one, joint) for one in collisions):
-        return 0.0
-    return _ROLLING_RESISTANCE * max(radii, default=0.0)
