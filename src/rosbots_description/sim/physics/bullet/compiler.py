@@ -21,13 +21,13 @@ from .friction_axes import friction_scales
 from .friction_filter import Side
 from .friction_rolling import rolling_arm
 from .generated_urdf import MeshFile, Tree, describe_tree, kinematic_trees
-from .size_limits import MAX_JOINTS, excess_of_joints, excess_of_parts
-from .surfaces import (
+from .shape_groups import (
     Groups,
     surface_groups,
     with_occluded_first,
     with_split_edges,
 )
+from .size_limits import MAX_JOINTS, excess_of_joints, excess_of_parts
 
 _MASSLESS = Inertial(0.0)
 
@@ -115,7 +115,7 @@ def _require(spec: ModelSpec, excess: str | None) -> None:
 
 
 def grouped(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> tuple[list[Groups], bool]:
-    """Return the groups of a tree's links (surfaces.py) anew: of the root first what lies inside.
+    """Return the groups of a tree's links anew: of the root first what lies inside.
 
     And whether there is something inside. What takes time about it is remembered.
     """

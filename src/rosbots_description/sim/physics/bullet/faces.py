@@ -8,7 +8,7 @@ from ...core import Pose, compose, normalise
 from ...description import Box, Collision, Plane
 from .friction_filter import Kind, Role, Side, coefficient, roles
 from .generated_urdf import Tree
-from .surfaces import Groups, is_floor
+from .shape_groups import Groups, is_floor
 
 # The box below a plane, 1000 km to each side [m].
 _SLAB = Box((2e6, 2e6, 1e6))
@@ -28,7 +28,7 @@ def faces(
     """Return what each link of a tree touches with; the first face is the link's own.
 
     Args:
-        groups: of each link, from surfaces.py.
+        groups: of each link, from shape_groups.py.
         occluded_first: whether the first group of the root lies between the others.
         max_parts: that the tree may have. If it would have more, every surface is there once, and
             two of them, both smoother than 1, hold with the product of their mu.

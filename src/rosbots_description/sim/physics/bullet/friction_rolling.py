@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from ...description import Collision, Cylinder, JointSpec
-from .surfaces import wheel_shape
+from .shape_groups import wheel_shape
 
 # Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
 # enough to keep a can, a barrel and a robot on free wheels in their place.

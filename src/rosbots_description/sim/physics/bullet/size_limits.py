@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ...description import ModelSpec
 from .generated_urdf import Tree
-from .surfaces import Groups
+from .shape_groups import Groups
 
 # PyBullet handles a tree of more joints only up to the first question about it.
 MAX_JOINTS = 127
@@ -38,7 +38,7 @@ def excess_of_joints(tree: Tree, groups: Sequence[Groups]) -> str | None:
     """Return in a sentence that a tree needs more joints than there can be; None if it does not.
 
     Args:
-        groups: of each link, from surfaces.py.
+        groups: of each link, from shape_groups.py.
     """
     joints = len(tree.links) - 1
     if joints > MAX_JOINTS:

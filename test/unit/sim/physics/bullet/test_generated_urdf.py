@@ -6,7 +6,7 @@ from support import robot_spec
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.physics.bullet.generated_urdf import describe_tree, kinematic_trees
-from rosbots_description.sim.physics.bullet.surfaces import surface_groups
+from rosbots_description.sim.physics.bullet.shape_groups import surface_groups
 
 
 def test_no_picture_is_made_of_what_touches():

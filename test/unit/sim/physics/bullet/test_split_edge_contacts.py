@@ -20,8 +20,8 @@ from rosbots_description.sim.description.model_spec import (
 )
 from rosbots_description.sim.physics.bullet.compiler import grouped
 from rosbots_description.sim.physics.bullet.generated_urdf import Tree
+from rosbots_description.sim.physics.bullet.shape_groups import surface_groups
 from rosbots_description.sim.physics.bullet.split_edge_contacts import split_edges
-from rosbots_description.sim.physics.bullet.surfaces import surface_groups
 
 AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 QUARTER = math.pi / 2.0

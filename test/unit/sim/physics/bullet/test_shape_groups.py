@@ -15,7 +15,7 @@ from rosbots_description.sim.description.model_spec import (
     JointSpec,
     LinkSpec,
 )
-from rosbots_description.sim.physics.bullet.surfaces import crowned
+from rosbots_description.sim.physics.bullet.shape_groups import crowned
 
 TYRE = Collision('tyre', Cylinder(0.1, 0.05))
 AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')

@@ -1,4 +1,4 @@
-"""What the links of a tree touch with: shapes grouped by surface, and surfaces in PyBullet's terms.
+"""What the links of a tree touch with: their shapes, grouped by surface; crests for wheels.
 
 PyBullet knows one friction, and one pair of axes for it, for each body of its own.
 """
