@@ -13,7 +13,7 @@ from .collision_filter import CollisionFilter
 from .compiler import CompiledFace, CompiledTree
 from .contact_stiffness import contact_spring, is_rigid, parting_rate
 from .friction_axes import EVENLY
-from .friction_filter import FrictionFilter, Side
+from .friction_pairs import FrictionPairs, Side
 from .generated_urdf import AUXILIARY_MASS, Tree, filtered_links
 from .springs import compliance
 from .tuning import Tuning
@@ -52,7 +52,7 @@ class BodyMaker:
         self._client = client
         self._tuning = tuning
         self._collision_filter = CollisionFilter(client)
-        self._friction_filter = FrictionFilter()
+        self._friction_pairs = FrictionPairs()
         self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
         # What gives way, how, and the rate at which its overlaps are taken away [1/s].
         self._soft: dict[Place, tuple[Surface, float]] = {}
@@ -149,7 +149,7 @@ class BodyMaker:
         """Remove everything."""
         pybullet.resetSimulation(physicsClientId=self._client)
         self._collision_filter.clear()
-        self._friction_filter.clear()
+        self._friction_pairs.clear()
         self._sides.clear()
         self._soft.clear()
 
@@ -239,10 +239,10 @@ class BodyMaker:
     def _set_filter(self, place: Place, side: Side) -> None:
         """Let a part meet those it is to meet; a new mu changes whom others meet."""
         self._sides[place] = side, (0, 0)
-        changed = list(self._sides) if self._friction_filter.add(side.mu) else [place]
+        changed = list(self._sides) if self._friction_pairs.add(side.mu) else [place]
         for one in changed:
             of_one, before = self._sides[one]
-            now = self._friction_filter.group_and_mask(of_one)
+            now = self._friction_pairs.group_and_mask(of_one)
             if now != before:
                 self._sides[one] = of_one, now
                 pybullet.setCollisionFilterGroupMask(*one, *now, self._client)

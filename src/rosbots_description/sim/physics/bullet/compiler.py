@@ -18,7 +18,7 @@ from .body import FrictionAxes
 from .contact_stiffness import compliant, jointed_mass, restitution
 from .faces import Face, faces, slab
 from .friction_axes import friction_scales
-from .friction_filter import Side
+from .friction_pairs import Side
 from .friction_rolling import rolling_arm
 from .generated_urdf import MeshFile, Tree, describe_tree, kinematic_trees
 from .shape_groups import (

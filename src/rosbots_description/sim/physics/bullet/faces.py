@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ...core import Pose, compose, normalise
 from ...description import Box, Collision, Plane
-from .friction_filter import Kind, Role, Side, coefficient, roles
+from .friction_pairs import Kind, Role, Side, coefficient, roles
 from .generated_urdf import Tree
 from .shape_groups import Groups, is_floor
 

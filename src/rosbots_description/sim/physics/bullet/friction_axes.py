@@ -6,7 +6,7 @@ from typing import Any
 from ...core import ALONG, Quaternion, Vector, conjugate, rotate
 from ...description import Collision, LinkSpec, Surface
 from .body import Body, FrictionAxes
-from .friction_filter import MAX_FRICTION
+from .friction_pairs import MAX_FRICTION
 
 EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part
 

@@ -9,7 +9,7 @@ from support.scenes import ball
 
 from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy
 from rosbots_description.sim.physics.bullet.client import pybullet
-from rosbots_description.sim.physics.bullet.friction_filter import FrictionFilter, Kind, Role, Side
+from rosbots_description.sim.physics.bullet.friction_pairs import FrictionPairs, Kind, Role, Side
 
 SECOND = 1000  # steps
 GRAVITY = 9.8
@@ -143,13 +143,13 @@ def test_a_robot_of_very_many_slippery_links_moves_all_the_same():
 
 
 def test_more_surfaces_than_can_be_told_apart_still_meet():
-    filters = FrictionFilter()
+    pairs = FrictionPairs()
     coefficients = [0.01 * k for k in range(60)]
     for mu in coefficients:
-        filters.add(mu)
-    floor = filters.group_and_mask(Side(Kind.PLANE, Role.ONE, 10.0))
+        pairs.add(mu)
+    floor = pairs.group_and_mask(Side(Kind.PLANE, Role.ONE, 10.0))
     for mu in coefficients:
-        group, mask = filters.group_and_mask(Side(Kind.MOVING, Role.OWN, mu))
+        group, mask = pairs.group_and_mask(Side(Kind.MOVING, Role.OWN, mu))
         assert group & floor[1] and floor[0] & mask
         assert max(group, mask) < 1 << 31
 

@@ -70,8 +70,8 @@ def roles(mu: float, is_static: bool) -> tuple[Role, ...]:
     return (Role.OWN, Role.ONE)
 
 
-class FrictionFilter:
-    """PyBullet's collision groups and masks of surfaces.
+class FrictionPairs:
+    """The collision groups and masks by which each pair of surfaces gets its lesser mu.
 
     Two surfaces meet if the group of each is in the mask of the other (PyBullet's mode 0).
     """
