@@ -17,10 +17,10 @@ from .body_maker import BodyMaker
 from .body_states import BodyStates
 from .client import pybullet
 from .compiler import BulletModel, compile_model
-from .contact_slip import Slipping
 from .contact_stiffness import overlap_share
 from .contacts import Surroundings
 from .friction_axes import can_slip
+from .friction_slip import Slipping
 from .snapshot import BulletSnapshot, Snapshots
 from .solver_iterations import CHECK, SolverEffort
 from .springs import Springs

@@ -9,7 +9,7 @@ from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_o
 from rosbots_description.ros_api.reconfigure import wheel_slip
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.description.model_spec import Element
-from rosbots_description.sim.physics.bullet.slip_compliance import MIN_SHARE, Touch, shares
+from rosbots_description.sim.physics.bullet.friction_slip_compliance import MIN_SHARE, Touch, shares
 from rosbots_description.sim.plugins.force.wheel_slip import WheelSlip
 
 AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)

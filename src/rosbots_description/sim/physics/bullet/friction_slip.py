@@ -9,7 +9,7 @@ from ...description import ModelSpec
 from .body import Body, Place
 from .client import pybullet
 from .friction_axes import EVENLY, axes_along, can_slip, first_direction
-from .slip_compliance import NONE_SLIPS, Touch, shares, velocity_at
+from .friction_slip_compliance import NONE_SLIPS, Touch, shares, velocity_at
 
 Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances [m/s per N]
 
