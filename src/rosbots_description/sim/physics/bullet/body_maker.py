@@ -10,7 +10,7 @@ from ...description.inertia import is_balanced
 from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
 from .collision_filter import CollisionFilter
-from .compiler import CompiledFace, CompiledTree
+from .compiler import CompiledContactPart, CompiledTree
 from .contact_stiffness import contact_spring, is_rigid, parting_rate
 from .friction_axes import EVENLY
 from .friction_pairs import FrictionPairs, Side
@@ -101,12 +101,12 @@ class BodyMaker:
                 localInertiaDiagonal=compiled.moments[i],
                 physicsClientId=self._client,
             )
-            places = [part.index, *(index_of[f'l{i}a{k}']
-                                    for k in range(1, len(compiled.bodies[0].faces[i])))]
+            contact_parts = compiled.bodies[0].contact_parts[i]
+            places = [part.index, *(index_of[f'l{i}a{k}'] for k in range(1, len(contact_parts)))]
             self._set_auxiliary_inertias(number, places[1:])
             body.surfaces[link.name] = []
-            for index, face in zip(places, compiled.bodies[0].faces[i], strict=True):
-                self._set_face(body, link.name, Place(number, index), face)
+            for index, touching in zip(places, contact_parts, strict=True):
+                self._set_contact_part(body, link.name, Place(number, index), touching)
             if joint is not None and joint.type != FIXED:
                 body.joints[joint.name] = (number, part.index)
                 body.joint_axes[joint.name] = joint.axis_in_child, joint.type != PRISMATIC
@@ -119,7 +119,8 @@ class BodyMaker:
         if not tree.is_static:
             body.masses[number] = _masses(tree, body, compiled.moments)
         for other, one in zip(also, compiled.bodies[1:], strict=True):
-            self._set_face(body, tree.links[0].name, Place(other, -1), one.faces[0][0])
+            self._set_contact_part(
+                body, tree.links[0].name, Place(other, -1), one.contact_parts[0][0])
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Let those links of a model pass through each other that do so in Gazebo."""
@@ -192,32 +193,34 @@ class BodyMaker:
                 physicsClientId=self._client,
             )
 
-    def _set_face(self, body: Body, link: str, place: Place, face: CompiledFace | None) -> None:
-        """Set up a part of a body that touches with a face, and note it in `body`."""
-        if face is None:
+    def _set_contact_part(
+        self, body: Body, link: str, place: Place, part: CompiledContactPart | None
+    ) -> None:
+        """Set up what a link touches with at a place of a body, and note it in `body`."""
+        if part is None:
             return
         body.surfaces[link].append(place)
         pybullet.changeDynamics(
             *place,
-            lateralFriction=face.friction,
+            lateralFriction=part.friction,
             spinningFriction=0.0,
-            rollingFriction=face.rolling_friction,
-            restitution=face.restitution,
+            rollingFriction=part.rolling_friction,
+            restitution=part.restitution,
             physicsClientId=self._client,
         )
-        if face.restitution:
+        if part.restitution:
             # Else PyBullet brakes what is about to touch, and nothing is left to be given back.
             pybullet.changeDynamics(
                 *place, contactProcessingThreshold=0.0, physicsClientId=self._client
             )
-        self._set_filter(place, face.side)
-        if not is_rigid(face.surface):
-            self._soft[place] = face.surface, self._parting_rate(place)
+        self._set_filter(place, part.side)
+        if not is_rigid(part.surface):
+            self._soft[place] = part.surface, self._parting_rate(place)
             self._set_spring(place)
-        body.shapes[place] = face.shapes
-        body.friction_axes[place] = face.axes
-        if face.axes.scales != EVENLY:
-            self.scale_friction(place, face.axes.scales)
+        body.shapes[place] = part.shapes
+        body.friction_axes[place] = part.axes
+        if part.axes.scales != EVENLY:
+            self.scale_friction(place, part.axes.scales)
 
     def _set_spring(self, place: Place) -> None:
         """Let a part give way as its surface does in steps of the present size."""

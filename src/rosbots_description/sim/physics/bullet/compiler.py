@@ -15,8 +15,8 @@ from ...description.inertia import principal_axes
 from ...meshes import HeldFile, MeshStore
 from ..compiled_model import CompiledModel, bare
 from .body import FrictionAxes
+from .contact_parts import ContactPart, contact_parts, slab
 from .contact_stiffness import compliant, jointed_mass, restitution
-from .faces import Face, faces, slab
 from .friction_axes import friction_scales
 from .friction_pairs import Side
 from .friction_rolling import rolling_arm
@@ -33,7 +33,7 @@ _MASSLESS = Inertial(0.0)
 
 
 @dataclass(frozen=True)
-class CompiledFace:
+class CompiledContactPart:
     """What a part touches with, in PyBullet's terms."""
 
     shapes: tuple[Collision, ...]
@@ -47,13 +47,13 @@ class CompiledFace:
 
 @dataclass(frozen=True)
 class CompiledBody:
-    """One of PyBullet's bodies: the URDF it is read from, and the faces of each link.
+    """One of PyBullet's bodies: the URDF it is read from, and the contact parts of each link.
 
-    The first face is the link's own, the others are its auxiliary links'; None: nothing touches.
+    The first one is the link's own, the others are its auxiliary links'; None: nothing touches.
     """
 
     text: str
-    faces: tuple[tuple[CompiledFace | None, ...], ...]
+    contact_parts: tuple[tuple[CompiledContactPart | None, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -133,47 +133,47 @@ def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> Com
     moments, axes = zip(*map(principal_axes, inertials), strict=True)
     coms = tuple(Pose(inertial.pose.position, orientation)
                  for inertial, orientation in zip(inertials, axes, strict=True))
-    found = faces(tree, *grouped(tree, groups, mesh_file), MAX_JOINTS + 1)
-    # A static tree is a rigid body for each of its faces.
-    bodies = [[[face]] for face in (*found[0], *slab(tree))] if tree.is_static else [found]
+    found = contact_parts(tree, *grouped(tree, groups, mesh_file), MAX_JOINTS + 1)
+    # A static tree is a rigid body for each of its parts.
+    bodies = [[[part]] for part in (*found[0], *slab(tree))] if tree.is_static else [found]
     return CompiledTree(tree, moments, coms, tuple(
         CompiledBody(
-            describe_tree(tree, coms, [[face.shapes for face in of_link] for of_link in body],
+            describe_tree(tree, coms, [[part.shapes for part in of_link] for of_link in body],
                           mesh_file),
-            _compiled_faces(tree, coms, body),
+            _compiled_contact_parts(tree, coms, body),
         ) for body in bodies
     ))
 
 
-def _compiled_faces(
-    tree: Tree, coms: Sequence[Pose], body: list[list[Face]]
-) -> tuple[tuple[CompiledFace | None, ...], ...]:
-    """Return the faces of each link of a body of a tree."""
+def _compiled_contact_parts(
+    tree: Tree, coms: Sequence[Pose], body: list[list[ContactPart]]
+) -> tuple[tuple[CompiledContactPart | None, ...], ...]:
+    """Return the contact parts of each link of a body of a tree."""
     mass = jointed_mass(tree)
     compiled = []
     for link, joint, com, of_link in zip(tree.links, tree.joints, coms, body, strict=True):
         # An auxiliary link has the frame of the joint above its link.
         auxiliary = joint.pose.orientation if joint else NO_ROTATION
         compiled.append(tuple(
-            _compiled_face(face, link, joint, mass, auxiliary if k else com.orientation)
-            for k, face in enumerate(of_link)
+            _compiled_contact_part(part, link, joint, mass, auxiliary if k else com.orientation)
+            for k, part in enumerate(of_link)
         ))
     return tuple(compiled)
 
 
-def _compiled_face(
-    face: Face, link: LinkSpec, joint: JointSpec | None, mass: float, turn: Quaternion
-) -> CompiledFace | None:
-    """Return a face of a link; `turn` turns the axes of the part that has it into the link's."""
-    if not face.shapes:
+def _compiled_contact_part(
+    part: ContactPart, link: LinkSpec, joint: JointSpec | None, mass: float, turn: Quaternion
+) -> CompiledContactPart | None:
+    """Return a contact part of a link; `turn` turns the axes it has in PyBullet into the link's."""
+    if not part.shapes:
         return None
-    surface = compliant(face.shapes[0].surface, mass)
-    return CompiledFace(
-        face.shapes,
-        face.side,
-        face.friction,
-        rolling_arm(face.shapes, joint),
+    surface = compliant(part.shapes[0].surface, mass)
+    return CompiledContactPart(
+        part.shapes,
+        part.side,
+        part.friction,
+        rolling_arm(part.shapes, joint),
         restitution(surface),
         surface,
-        FrictionAxes(turn, friction_scales(face.shapes[0], link, turn, face.friction)),
+        FrictionAxes(turn, friction_scales(part.shapes[0], link, turn, part.friction)),
     )

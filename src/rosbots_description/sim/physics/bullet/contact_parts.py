@@ -14,7 +14,7 @@ from .shape_groups import Groups, is_floor
 _SLAB = Box((2e6, 2e6, 1e6))
 
 
-class Face(NamedTuple):
+class ContactPart(NamedTuple):
     """Shapes of equal surface, whom they meet, and the friction that PyBullet is to use there."""
 
     shapes: tuple[Collision, ...]
@@ -22,10 +22,10 @@ class Face(NamedTuple):
     friction: float
 
 
-def faces(
+def contact_parts(
     tree: Tree, groups: Sequence[Groups], occluded_first: bool, max_parts: int
-) -> list[list[Face]]:
-    """Return what each link of a tree touches with; the first face is the link's own.
+) -> list[list[ContactPart]]:
+    """Return what each link of a tree touches with; the first one is the link's own.
 
     Args:
         groups: of each link, from shape_groups.py.
@@ -38,14 +38,14 @@ def faces(
     for i, of_link in enumerate(groups):
         kinds = [Kind.OCCLUDED if occluded_first and not i and not k else kind
                  for k in range(len(of_link))]
-        found.append([face for group, one in zip(of_link, kinds, strict=True)
-                      for face in _in_roles(group, one, tree.is_static)])
+        found.append([part for group, one in zip(of_link, kinds, strict=True)
+                      for part in _in_roles(group, one, tree.is_static)])
     if sum(map(len, found)) <= max_parts:
         return found
-    return [[*{face.shapes: _in_both(face) for face in of_link}.values()] for of_link in found]
+    return [[*{part.shapes: _in_both(part) for part in of_link}.values()] for of_link in found]
 
 
-def slab(tree: Tree) -> list[Face]:
+def slab(tree: Tree) -> list[ContactPart]:
     """Return what boxes meet instead of a floor of planes, in the roles it is needed in.
 
     Of a box above a plane PyBullet finds one corner in a step, and a box that falls flat would be
@@ -71,15 +71,15 @@ def _kind(tree: Tree) -> Kind:
     return Kind.BOXES if only_boxes else Kind.MOVING
 
 
-def _in_roles(group: tuple[Collision, ...], kind: Kind, is_static: bool) -> list[Face]:
+def _in_roles(group: tuple[Collision, ...], kind: Kind, is_static: bool) -> list[ContactPart]:
     mu = coefficient(group[0].surface.greatest_mu) if group else 1.0
-    return [Face(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
+    return [ContactPart(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
             for role in roles(mu, is_static)]
 
 
-def _in_both(face: Face) -> Face:
-    kind, _, mu = face.side
-    return Face(face.shapes, Side(kind, Role.BOTH, 1.0), min(1.0, mu))
+def _in_both(part: ContactPart) -> ContactPart:
+    kind, _, mu = part.side
+    return ContactPart(part.shapes, Side(kind, Role.BOTH, 1.0), min(1.0, mu))
 
 
 def _tilt(plane: Plane) -> Pose:
