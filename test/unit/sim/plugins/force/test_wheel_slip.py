@@ -1,19 +1,15 @@
-"""Which tyres slip by how much, and what is left of their friction for it."""
+"""Which tyres slip by how much."""
 
 import threading
 
 import pytest
 from dynamic_reconfigure.encoding import Config
-from support.fake_drive import STEP, fake_model, load_plugin, run, turn, wheel_of
+from support.fake_drive import fake_model, load_plugin, run, turn, wheel_of
 
 from rosbots_description.ros_api.reconfigure import wheel_slip
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.description.model_spec import Element
-from rosbots_description.sim.physics.bullet.friction_slip_compliance import MIN_SHARE, Touch, shares
 from rosbots_description.sim.plugins.force.wheel_slip import WheelSlip
-
-AXLE, AHEAD = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
-LOAD, LIMIT = 10.0, 8.0  # [N]
 
 
 def wheel(name='left_link', **numbers):
@@ -27,14 +23,6 @@ def load(*wheels, model=None, namespace=None):
     named = (Element('robotNamespace', namespace),) if namespace is not None else ()
     element = Element('plugin', children=(*named, *wheels))
     return load_plugin(WheelSlip, model or fake_model(wheel_of(0.1)), element)
-
-
-def touch(force=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), load=LOAD):
-    return Touch((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), load, force, velocity, LIMIT)
-
-
-def held(*touches, slips=(0.01, 0.0)):
-    return shares(touches, AXLE, slips, STEP, lambda _: 1.0)
 
 
 def test_slip_grows_with_the_speed_of_the_rim_and_shrinks_with_the_normal_force():
@@ -96,28 +84,3 @@ def test_dynamic_reconfigure_hands_its_numbers_to_the_plugin(monkeypatch):
     server._reconfigure(
         Config({wheel_slip.LATERAL: 3.0, wheel_slip.LONGITUDINAL: -1.0}), 0)
     assert (plugin.wheels[0].lateral, plugin.wheels[0].longitudinal) == (3.0, 0.25)
-
-
-def test_a_tyre_in_the_air_is_left_alone():
-    assert held() is None
-    assert held(touch(load=0.0)) is None
-
-
-def test_friction_that_is_left_is_the_force_that_belongs_to_the_slip():
-    lateral, _ = held(touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.04, 0.0)))
-    assert lateral == pytest.approx(4.0 / LIMIT)  # v = s F already
-
-
-def test_a_tyre_that_holds_without_slip_lets_go_and_one_that_slides_too_fast_is_held():
-    assert held(touch(force=(0.0, -4.0, 0.0)))[0] < 4.0 / LIMIT
-    assert held(touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.06, 0.0)))[0] > 4.0 / LIMIT
-
-
-def test_friction_is_never_more_than_there_is_nor_nothing():
-    assert held(touch(velocity=(0.0, 100.0, 0.0)))[0] == 1.0
-    assert held(touch())[0] == MIN_SHARE
-
-
-def test_without_compliance_all_of_the_friction_is_held():
-    _, ahead = held(touch(force=(4.0, 0.0, 0.0), velocity=(-0.5, 0.0, 0.0)))
-    assert ahead == 1.0
