@@ -3,7 +3,7 @@
 from .empty_world import add_empty_world
 from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
-from .plugin_life import Plugin, SensorLife
+from .plugin import Plugin, SensorLife
 from .population import populate
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .world import WORLD_FRAMES, Entity, World

@@ -19,7 +19,7 @@ from ..description import Collision, JointSpec, LinkSpec, ModelSpec
 from ..physics import CompiledModel, EngineBody, JointState, PhysicsEngine
 from ..plugin_registry import library_name
 from .outputs import JointStates
-from .plugin_life import ModelPart, Plugin, SensorLife
+from .plugin import ModelPart, Plugin, SensorLife
 
 
 class Link:

@@ -40,7 +40,7 @@ from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
 from .model import CollisionFrame, Joint, Link, Model
 from .nested_model import InnerModel, inner_models
-from .plugin_life import ModelPart, Plugin
+from .plugin import ModelPart, Plugin
 from .scheduler import Schedule
 from .world_state import SavedState
 

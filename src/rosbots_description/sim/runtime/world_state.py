@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core import SimError
 from .outputs import Output
-from .plugin_life import ModelPart
+from .plugin import ModelPart
 from .scheduler import Hook
 
 if TYPE_CHECKING:
