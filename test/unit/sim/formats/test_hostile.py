@@ -17,7 +17,8 @@ from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.sdf.world_file import open_world
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.meshes.store import MeshStore, check_mesh
+from rosbots_description.sim.meshes.engine_files import EngineFiles
+from rosbots_description.sim.meshes.loader import check_mesh
 from rosbots_description.sim.physics.bullet.compiler import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
 
@@ -59,7 +60,7 @@ def read(case, folder):
                            find_package=package_directory)
     else:
         spec, _ = load_urdf(text, 'hostile', find_package=package_directory)
-    with closing(MeshStore()) as meshes:
+    with closing(EngineFiles()) as meshes:
         return compile_model(spec, meshes)
 
 

@@ -13,16 +13,10 @@ import numpy as np
 import pytest
 
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.meshes import loader
-from rosbots_description.sim.meshes import store as mesh_store
-from rosbots_description.sim.meshes.loader import GREY, read_mesh
+from rosbots_description.sim.meshes import engine_files, loader
+from rosbots_description.sim.meshes.engine_files import HULL_DIRECTIONS, EngineFiles
+from rosbots_description.sim.meshes.loader import GREY, check_mesh, read_mesh, visual_parts
 from rosbots_description.sim.meshes.stl import read_stl
-from rosbots_description.sim.meshes.store import (
-    HULL_DIRECTIONS,
-    MeshStore,
-    check_mesh,
-    visual_parts,
-)
 
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 ASCII_STL = ('solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n'
@@ -70,8 +64,8 @@ def write(tmp_path):
 
 
 @pytest.fixture
-def store():
-    made = MeshStore()
+def files():
+    made = EngineFiles()
     yield made
     made.close()
 
@@ -264,14 +258,14 @@ def sphere(count):
     return '\n'.join(lines + [f'f {i} {i + 1} {i + 2}' for i in range(1, count - 1)])
 
 
-def test_the_hull_of_few_points_is_exact_and_scaled(write, store):
-    points = read_hull(store.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
+def test_the_hull_of_few_points_is_exact_and_scaled(write, files):
+    points = read_hull(files.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
     assert points.tolist() == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
 
 
-def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, store):
+def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, files):
     path = write('ball.obj', sphere(6000))
-    points = read_hull(store.collision_hull(path))
+    points = read_hull(files.collision_hull(path))
     assert len(points) <= HULL_DIRECTIONS + 6
     full, _ = read_mesh(path).triangles()
     np.testing.assert_allclose(points.max(axis=0), full.max(axis=0), rtol=1e-6)
@@ -284,51 +278,51 @@ def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, s
 def test_points_that_coincide_count_once():
     random = np.random.default_rng(1)
     points = random.integers(-2, 3, size=(200, 3)).astype(float)
-    np.testing.assert_array_equal(mesh_store._distinct(points), np.unique(points, axis=0))
-    assert len(mesh_store._distinct(points[:1])) == 1
+    np.testing.assert_array_equal(engine_files._distinct(points), np.unique(points, axis=0))
+    assert len(engine_files._distinct(points[:1])) == 1
 
 
-def test_the_hull_leaves_out_points_no_triangle_uses(write, store):
+def test_the_hull_leaves_out_points_no_triangle_uses(write, files):
     path = write('m.obj', 'v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n')
-    assert read_hull(store.collision_hull(path)).max() == 1.0
+    assert read_hull(files.collision_hull(path)).max() == 1.0
 
 
-def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, store):
+def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, files):
     path = write('m.obj', TRIANGLE)
-    points, faces = read_obj(store.collision_surface(path, (-1.0, 1.0, 1.0)))
+    points, faces = read_obj(files.collision_surface(path, (-1.0, 1.0, 1.0)))
     a, b, c = points[faces[0]]
     assert sorted(points.tolist()) == [[-1, 0, 0], [0, 0, 0], [0, 1, 0]]
     assert np.cross(b - a, c - a)[2] == 1.0
 
 
-def test_a_file_is_written_once_for_the_same_content_in_several_places(write, store, tmp_path):
-    first = store.collision_hull(write('m.obj', TRIANGLE))
+def test_a_file_is_written_once_for_the_same_content_in_several_places(write, files, tmp_path):
+    first = files.collision_hull(write('m.obj', TRIANGLE))
     written = os.stat(first).st_mtime_ns
     other = tmp_path / 'elsewhere'
     other.mkdir()
     (other / 'n.obj').write_text(TRIANGLE)
-    assert store.collision_hull(str(other / 'n.obj')) == first
+    assert files.collision_hull(str(other / 'n.obj')) == first
     assert os.stat(first).st_mtime_ns == written
     assert len(os.listdir(os.path.dirname(first))) == 1
 
 
-def test_a_file_that_someone_deleted_is_made_again(write, store):
+def test_a_file_that_someone_deleted_is_made_again(write, files):
     path = write('m.obj', TRIANGLE)
-    shutil.rmtree(os.path.dirname(store.collision_hull(path)))
-    assert os.path.isfile(store.collision_hull(path))
+    shutil.rmtree(os.path.dirname(files.collision_hull(path)))
+    assert os.path.isfile(files.collision_hull(path))
 
 
-def test_scale_kind_and_content_have_files_of_their_own(write, store):
+def test_scale_kind_and_content_have_files_of_their_own(write, files):
     path = write('m.obj', TRIANGLE)
-    files = {store.collision_hull(path), store.collision_surface(path),
-             store.collision_hull(path, (1.0, 1.0, math.pi)),
-             store.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n'))}
-    assert len(files) == 4
+    made = {files.collision_hull(path), files.collision_surface(path),
+            files.collision_hull(path, (1.0, 1.0, math.pi)),
+            files.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n'))}
+    assert len(made) == 4
 
 
-def test_a_file_stays_as_long_as_somebody_holds_it(write, store):
+def test_a_file_stays_as_long_as_somebody_holds_it(write, files):
     path = write('m.obj', TRIANGLE)
-    first, second = store.collision_hull(path), store.collision_hull(path)
+    first, second = files.collision_hull(path), files.collision_hull(path)
     name = str(first)
     del first
     assert os.path.isfile(name)
@@ -337,15 +331,15 @@ def test_a_file_stays_as_long_as_somebody_holds_it(write, store):
     assert os.listdir(os.path.dirname(name)) == []
 
 
-def test_threads_that_come_and_go_never_lose_a_file_that_they_hold(write, store):
+def test_threads_that_come_and_go_never_lose_a_file_that_they_hold(write, files):
     paths = [write('m.obj', TRIANGLE), write('n.obj', TRIANGLE + 'f 3 2 1\n')]
 
     def come_and_go(number):
         for i in range(100):
-            file = store.collision_hull(paths[(i + number) % 2])
+            file = files.collision_hull(paths[(i + number) % 2])
             assert os.path.getsize(file) > 0
 
     with ThreadPoolExecutor(4) as threads:
         list(threads.map(come_and_go, range(4)))
-    file = store.collision_hull(paths[0])
+    file = files.collision_hull(paths[0])
     assert os.listdir(os.path.dirname(file)) == [os.path.basename(file)]

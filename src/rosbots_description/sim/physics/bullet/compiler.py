@@ -12,7 +12,7 @@ from functools import partial
 from ...core import NO_ROTATION, ModelError, Pose, Quaternion, Vector
 from ...description import Collision, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from ...description.inertia import principal_axes
-from ...meshes import HeldFile, MeshStore
+from ...meshes import EngineFiles, HeldFile
 from ..compiled_model import CompiledModel, bare
 from .body import FrictionAxes
 from .contact_parts import ContactPart, contact_parts, slab
@@ -76,7 +76,7 @@ class BulletModel(CompiledModel):
     trees: tuple[CompiledTree, ...]
 
 
-def compile_model(spec: ModelSpec, meshes: MeshStore) -> BulletModel:
+def compile_model(spec: ModelSpec, meshes: EngineFiles) -> BulletModel:
     """Make a model ready for the engine.
 
     Args:

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 from ...core import Pose, Vector
 from ...description import ModelSpec, PhysicsSettings
-from ...meshes import MeshStore
+from ...meshes import EngineFiles
 from ..engine import Contact, PhysicsEngine, Points, RayHits
 from .body import Body
 from .body_maker import BodyMaker
@@ -44,7 +44,7 @@ class Engine(BodyStates):
         Args:
             tuning: other choices than the usual ones, to measure what they do.
         """
-        self._meshes = MeshStore()
+        self._meshes = EngineFiles()
         self._tuning = tuning or Tuning()
         super().__init__(pybullet.connect(pybullet.DIRECT))
         self._maker = BodyMaker(self._client, self._tuning)

@@ -21,7 +21,7 @@ from rosbots_description.sim.description.model_spec import (
     Visual,
 )
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
-from rosbots_description.sim.meshes.store import MeshStore
+from rosbots_description.sim.meshes.engine_files import EngineFiles
 from rosbots_description.sim.physics.bullet import size_limits
 from rosbots_description.sim.physics.bullet.compiler import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
@@ -37,7 +37,7 @@ LIMIT = '<axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="0" upper="1"/>
 
 @pytest.fixture(name='meshes')
 def fixture_meshes():
-    with closing(MeshStore()) as meshes:
+    with closing(EngineFiles()) as meshes:
         yield meshes
 
 

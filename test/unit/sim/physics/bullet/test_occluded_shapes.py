@@ -17,7 +17,7 @@ from rosbots_description.sim.description.model_spec import (
     Plane,
     Sphere,
 )
-from rosbots_description.sim.meshes.store import MeshStore
+from rosbots_description.sim.meshes.engine_files import EngineFiles
 from rosbots_description.sim.physics.bullet.occluded_shapes import occluded_shapes
 
 PLATES = [
@@ -74,7 +74,7 @@ def test_absurd_sizes_are_no_fault(size):
 
 
 def test_of_the_robot_of_the_article_plates_and_caster_touch():
-    collisions, meshes = robot_spec().links[0].collisions, MeshStore()
+    collisions, meshes = robot_spec().links[0].collisions, EngineFiles()
     files = {one.geometry: meshes.engine_file(one.geometry, exact=False)
              for one in collisions if isinstance(one.geometry, Mesh)}
     marks = occluded_shapes(collisions, files.__getitem__)

@@ -16,18 +16,16 @@ from ..core.arrays import FloatArray, IntArray
 from ..description import Mesh
 from ..description.inertia import settle
 from ..resources import HeldFile, HeldFiles
-from .loader import MeshData, check_mesh, read_mesh, visual_parts
+from .loader import MeshData, read_mesh
 from .stl import write_stl
 from .support_points import support_points
-
-__all__ = ['MeshStore', 'check_mesh', 'visual_parts']
 
 # The hull of more vertices than this is that of its extreme points in as many directions: no
 # direction is more than 0.12 rad from one of them, so a ball loses less than 0.7 % of its radius.
 HULL_DIRECTIONS = 512
 
 
-class MeshStore:
+class EngineFiles:
     """Makes the engine's mesh files, each as long as it is held. Any thread may ask for files."""
 
     def __init__(self) -> None:
