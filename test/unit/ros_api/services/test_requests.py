@@ -19,7 +19,6 @@ from rosbots_description.ros_api.services.joints import changed_spec, set_joint_
 from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties
 from rosbots_description.ros_api.topics.performance import Pace
-from rosbots_description.ros_api.topics.states import clock_frequency
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description.model_spec import (
@@ -121,18 +120,6 @@ def test_a_refused_change_of_a_joint_changes_nothing(fields, words):
     joint, sentence = _set_joint(**fields)
     assert words in sentence
     assert (joint.motor, joint.spec) == ((1.0, 2.0), HINGE)
-
-
-@pytest.mark.parametrize(('value', 'frequency'), [(0, 0), (100, 100), (100.0, 100), ('50', 50)])
-def test_the_clocks_frequency_is_a_whole_number(value, frequency, caplog):
-    assert clock_frequency(value) == frequency
-    assert not caplog.text
-
-
-@pytest.mark.parametrize('value', ['abc', 0.5, math.nan, math.inf, [1], None])
-def test_another_frequency_of_the_clock_is_named_and_not_used(value, caplog):
-    assert clock_frequency(value) == 0
-    assert f'~pub_clock_frequency is {value!r}; it must be a whole number [Hz]' in caplog.text
 
 
 def test_pace_is_simulated_per_wall_time_and_survives_a_reset():

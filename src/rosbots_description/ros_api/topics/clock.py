@@ -1,0 +1,89 @@
+"""The topic of simulated time, published before anything that happens at the time it tells.
+
+Publishes:
+    /clock (rosgraph_msgs/Clock): simulated time, every step or at ~pub_clock_frequency [Hz].
+"""
+
+import contextlib
+import logging
+from collections.abc import Iterator
+
+import numpy as np
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from ...sim.core import NANOSECONDS
+from ...sim.runtime import NEVER, PreRunPublisher
+from ..server import Server
+from ..transport import publish_serialized
+from .topic import Topic
+
+logger = logging.getLogger(__name__)
+
+# /clock on the wire; `size` is that of what follows [bytes].
+_CLOCK = np.dtype([('size', '<u4'), ('secs', '<u4'), ('nsecs', '<u4')])
+_CLOCK_SIZE = 8
+
+
+class ClockTopic(Topic, PreRunPublisher):
+    """/clock, at every step or, with a frequency, at the first step a period after the last one."""
+
+    def __init__(self, server: Server, frequency: int) -> None:
+        super().__init__(server, '/clock', Clock)
+        self._period_ns = NANOSECONDS // frequency if frequency > 0 else 0
+        self._last_ns = 0
+
+    def publish_ahead(self, last: int) -> None:
+        """Publish the times of all steps that want it, up to `last`."""
+        clock, due = self._world.clock, np.arange(self.due, last + 1)
+        if self._period_ns:
+            due = np.fromiter(self._due_until(last), np.int64)
+        # of all at once: one by one takes 1 us each
+        times = clock.ns_at(0) + due * clock.step_ns
+        messages = np.empty(len(times), _CLOCK)
+        messages['size'] = _CLOCK_SIZE
+        messages['secs'], messages['nsecs'] = np.divmod(times, NANOSECONDS)
+        publish_serialized(self._publisher, messages.tobytes())
+        self._last_ns = int(times[-1])
+        self.due = self._first_after(int(due[-1]))
+
+    def _due_until(self, last: int) -> Iterator[int]:
+        """Yield the steps that are a period apart."""
+        step = self.due
+        while step <= last:
+            yield step
+            self._last_ns = self._world.clock.ns_at(step)
+            step = self._first_after(step)
+
+    def schedule(self) -> None:
+        """Publish when the period has passed, if there is anyone to read it."""
+        super().schedule()
+        clock = self._world.clock
+        # Time that jumped back counts as never published: upstream would stay silent for long.
+        self._last_ns = self._last_ns if self._last_ns <= clock.now_ns else 0
+        if self.due != NEVER:
+            self.due = self._first_after(clock.steps)
+
+    def _first_after(self, step: int) -> int:
+        """Return the first step after `step` that is a period after the last one told of."""
+        clock = self._world.clock
+        if not self._period_ns:
+            return step + 1
+        return max(step + 1, clock.first_step_after(self._last_ns + self._period_ns - 1))
+
+
+def advertise_clock(server: Server) -> None:
+    """Publish /clock, before anything that happens at the time it tells."""
+    topic = ClockTopic(server, clock_frequency(rospy.get_param('~pub_clock_frequency', 0)))
+    server.world.schedule.add_pre_run_publisher(topic)
+    server.world.listeners.append(topic)
+    topic.schedule()
+
+
+def clock_frequency(value: object) -> int:
+    """Return the parameter's value [Hz]; 0, every step, if it is no whole number, with an error."""
+    with contextlib.suppress(ValueError, OverflowError):
+        if isinstance(value, int | float | str) and int(value) == float(value):
+            return int(value)
+    logger.error('~pub_clock_frequency is %r; it must be a whole number [Hz]. 0 is used', value)
+    return 0
