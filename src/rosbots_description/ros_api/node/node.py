@@ -48,8 +48,8 @@ from ..transport import (
     wait_for_answers,
     watch_master,
 )
-from ..views.camera import advertise_view
 from ..views.frames import advertise_frames
+from ..views.overview_picture import advertise_view
 from ..views.visuals import advertise_visuals
 from .packages import find_model, find_package
 from .world_loading import fill_world, held_records, read_world, replay

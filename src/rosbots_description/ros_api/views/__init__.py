@@ -1,3 +1,3 @@
-"""What people look at: markers and frames for RViz, and pictures by a camera."""
+"""What people look at: markers and frames for RViz, and overview pictures."""
 
-__all__ = ['camera', 'frames', 'markers', 'visuals']
+__all__ = ['frames', 'markers', 'overview_picture', 'visuals']

@@ -1,4 +1,4 @@
-"""Pictures of the world by the simulator's own camera, for machines without a screen.
+"""Overview pictures of the world by the simulator's own camera, for machines without a screen.
 
 Publishes:
     ~view/image_raw (sensor_msgs/Image, rgb8): while someone subscribes, `RATE` times a second of
@@ -31,18 +31,18 @@ def advertise_view(server: Server) -> None:
     """Offer pictures; nothing is drawn while nobody looks."""
     publisher = rospy.Publisher('~view/image_raw', Image, queue_size=1)
     view = View(server.world)
-    camera = Camera()
-    camera.read()
+    viewpoint = Viewpoint()
+    viewpoint.read()
 
     def show() -> None:
         if publisher.get_num_connections() == 0:
             view.close()
-            camera.rest()
+            viewpoint.rest()
             return
-        camera.read_soon(server.registrar)
-        if not camera.ready:
+        viewpoint.read_soon(server.registrar)
+        if not viewpoint.ready:
             return
-        pixels = view.picture(*camera.sight)
+        pixels = view.picture(*viewpoint.sight)
         height, width, _ = pixels.shape
         image = Image(height=height, width=width, encoding='rgb8', step=3 * width)
         image.header.frame_id = 'world'
@@ -53,7 +53,7 @@ def advertise_view(server: Server) -> None:
     server.loop.every(1.0 / RATE, show)
 
 
-class Camera:
+class Viewpoint:
     """Keeps what the parameters said last, so that no picture waits for the ROS master.
 
     `ready` tells whether they have been asked since someone began to look.

@@ -6,7 +6,7 @@ import pytest
 import rospy
 
 from rosbots_description.ros_api.messages.validity import RequestError
-from rosbots_description.ros_api.views.camera import Camera, line_of_sight
+from rosbots_description.ros_api.views.overview_picture import Viewpoint, line_of_sight
 from rosbots_description.sim.rendering.camera import EYE, TARGET
 
 
@@ -49,16 +49,16 @@ def test_an_eye_in_its_target_sees_nothing():
 
 
 def test_bad_parameters_leave_the_camera_where_it_was(parameters, caplog):
-    camera = Camera()
-    camera.read()
-    assert camera.sight == (EYE, TARGET)
+    viewpoint = Viewpoint()
+    viewpoint.read()
+    assert viewpoint.sight == (EYE, TARGET)
     parameters['~view/eye'] = [3, 0, 1]
-    camera.read()
-    assert camera.sight == ((3.0, 0.0, 1.0), TARGET)
+    viewpoint.read()
+    assert viewpoint.sight == ((3.0, 0.0, 1.0), TARGET)
     parameters['~view/eye'] = 'here'
-    camera.read()
-    camera.read()
-    assert camera.sight == ((3.0, 0.0, 1.0), TARGET)
+    viewpoint.read()
+    viewpoint.read()
+    assert viewpoint.sight == ((3.0, 0.0, 1.0), TARGET)
     assert caplog.text.count("eye is 'here'") == 1
 
 
@@ -67,37 +67,37 @@ def test_without_a_master_the_camera_stays_where_it_was(monkeypatch):
         raise ConnectionRefusedError
 
     monkeypatch.setattr('rospy.get_param', refused)
-    camera, registrar = Camera(), FakeRegistrar()
-    camera.read_soon(registrar)
+    viewpoint, registrar = Viewpoint(), FakeRegistrar()
+    viewpoint.read_soon(registrar)
     registrar.jobs.pop()()
-    assert camera.sight == (EYE, TARGET)
-    camera.read_soon(registrar)
+    assert viewpoint.sight == (EYE, TARGET)
+    viewpoint.read_soon(registrar)
     assert len(registrar.jobs) == 1
 
 
 def test_the_registrar_reads_and_is_asked_once_at_a_time(parameters):
     parameters['~view/target'] = [0, 0, 9]
-    camera, registrar = Camera(), FakeRegistrar()
-    camera.read_soon(registrar)
-    camera.read_soon(registrar)
-    assert camera.sight == (EYE, TARGET)
+    viewpoint, registrar = Viewpoint(), FakeRegistrar()
+    viewpoint.read_soon(registrar)
+    viewpoint.read_soon(registrar)
+    assert viewpoint.sight == (EYE, TARGET)
     assert len(registrar.jobs) == 1
     registrar.jobs.pop()()
-    assert camera.sight == (EYE, (0.0, 0.0, 9.0))
-    camera.read_soon(registrar)
+    assert viewpoint.sight == (EYE, (0.0, 0.0, 9.0))
+    viewpoint.read_soon(registrar)
     assert len(registrar.jobs) == 1
 
 
 def test_what_was_set_before_someone_looks_counts_for_the_first_picture(parameters):
-    camera, registrar = Camera(), FakeRegistrar()
-    camera.read()
-    camera.rest()
+    viewpoint, registrar = Viewpoint(), FakeRegistrar()
+    viewpoint.read()
+    viewpoint.rest()
     parameters['~view/eye'] = [3, 0, 1]
-    camera.read_soon(registrar)
-    assert not camera.ready
+    viewpoint.read_soon(registrar)
+    assert not viewpoint.ready
     registrar.jobs.pop()()
-    assert camera.ready
-    assert camera.sight == ((3.0, 0.0, 1.0), TARGET)
+    assert viewpoint.ready
+    assert viewpoint.sight == ((3.0, 0.0, 1.0), TARGET)
 
 
 def test_pictures_come_also_without_a_master(monkeypatch):
@@ -105,7 +105,7 @@ def test_pictures_come_also_without_a_master(monkeypatch):
         raise ConnectionRefusedError
 
     monkeypatch.setattr(rospy, 'get_param', gone)
-    camera = Camera()
-    camera.read()
-    assert camera.ready
-    assert camera.sight == (EYE, TARGET)
+    viewpoint = Viewpoint()
+    viewpoint.read()
+    assert viewpoint.ready
+    assert viewpoint.sight == (EYE, TARGET)
