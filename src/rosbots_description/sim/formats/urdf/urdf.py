@@ -90,14 +90,19 @@ def load_urdf(
         location=location(robot),
     )
     pose = _robot_origin(robot)
+    _log(name, source, [*notes, *tags.left_out.warnings, *_reduction_notes(reduction)], tags)
+    return spec, pose
+
+
+def _log(name: str, source: str, warnings: list[str], tags: GazeboTags) -> None:
+    """Tell what of a description is simulated otherwise than written, or not at all."""
     for sentence in tags.left_out.errors():
         logger.error("model '%s' (%s): %s", name, source, sentence)
-    for sentence in [*notes, *tags.left_out.warnings, *_reduction_notes(reduction)]:
+    for sentence in warnings:
         logger.warning("model '%s' (%s): %s", name, source, sentence.removeprefix(f'{source}, '))
     if tags.idle:
         idle = ', '.join(dict.fromkeys(tags.idle))
         logger.debug("model '%s' (%s): without effect here: %s", name, source, idle)
-    return spec, pose
 
 
 def _read(
