@@ -3,9 +3,10 @@
 from .empty_world import add_empty_world
 from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
-from .plugin import Plugin, SensorLife
+from .plugin import Plugin
 from .population import populate
 from .scheduler import NEVER, Hook, PreRunPublisher
+from .sensor import SensorLife
 from .world import WORLD_FRAMES, Entity, World
 from .world_state import SavedState
 

@@ -18,8 +18,10 @@ from ..core import (
 from ..description import Collision, JointSpec, LinkSpec, ModelSpec
 from ..physics import CompiledModel, EngineBody, JointState, PhysicsEngine
 from ..plugin_registry import library_name
+from .model_part import ModelPart
 from .outputs import JointStates
-from .plugin import ModelPart, Plugin, SensorLife
+from .plugin import Plugin
+from .sensor import SensorLife
 
 
 class Link:

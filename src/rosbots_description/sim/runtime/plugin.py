@@ -1,43 +1,9 @@
-"""What a world asks of the plugins and sensors of its models."""
+"""What a world asks of a plugin of a model."""
 
 from collections.abc import Iterable
 
-from ..description import PluginSpec, SensorSpec
-from .scheduler import Hook
-
-
-class ModelPart(Hook):
-    """Something that lives with a model and runs in the steps it asks for."""
-
-    def start(self) -> None:
-        """Load and begin.
-
-        Raises:
-            PluginError: it cannot work; the model then lives on without it.
-        """
-        raise NotImplementedError
-
-    def reset(self) -> None:
-        """Go on where the world stands now; all models are back at their spawn poses."""
-
-    def restart(self) -> None:
-        """Begin as after `start`: time may be zero again, and all joints are new."""
-        self.reset()
-
-    def count_readers(self) -> None:
-        """Take note of which outputs have readers; they may have come or gone."""
-
-    def shared(self) -> Iterable[object]:
-        """Return what it holds that is no part of its state, beside the world's parts.
-
-        Such are its description, outputs, since their readers come from outside, and what never
-        changes. All else that its attributes lead to is copied when the state of the world is
-        saved.
-        """
-        return ()
-
-    def unload(self) -> None:
-        """Let go of what it holds; the model is about to be deleted."""
+from ..description import PluginSpec
+from .model_part import ModelPart
 
 
 class Plugin(ModelPart):
@@ -48,14 +14,3 @@ class Plugin(ModelPart):
     def shared(self) -> Iterable[object]:
         """Return the description."""
         return (self.spec,)
-
-
-class SensorLife(ModelPart):
-    """What a <sensor> is: it measures, where it is fixed to a link."""
-
-    spec: SensorSpec
-    name: str
-    scoped_name: str  # with those of its model and link
-    measures: bool  # False: it is of a type that is not simulated
-    count = 0  # of the readings that it has given
-    last_ns = 0  # when it gave the last one [ns]

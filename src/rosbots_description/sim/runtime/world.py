@@ -39,8 +39,9 @@ from ..plugin_registry import (
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
 from .model import CollisionFrame, Joint, Link, Model
+from .model_part import ModelPart
 from .nested_model import InnerModel, inner_models
-from .plugin import ModelPart, Plugin
+from .plugin import Plugin
 from .scheduler import Schedule
 from .world_state import SavedState
 

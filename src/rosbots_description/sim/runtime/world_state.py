@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..core import SimError
+from .model_part import ModelPart
 from .outputs import Output
-from .plugin import ModelPart
 from .scheduler import Hook
 
 if TYPE_CHECKING:
