@@ -50,7 +50,7 @@ def topics_of(node='/gazebo'):
 SENSOR_BOX = """<robot name="box">
 <link name="body"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
   <collision><geometry><mesh filename="file:///nowhere/nope.stl"/></geometry></collision></link>
-<gazebo reference="body"><sensor name="camera1" type="camera"/></gazebo>
+<gazebo reference="body"><sensor name="sonar1" type="sonar"/></gazebo>
 <gazebo><plugin name="imu" filename="libgazebo_ros_imu.so"/></gazebo>
 </robot>"""
 

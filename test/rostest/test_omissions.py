@@ -8,7 +8,7 @@ import rostest
 from rosbots_msgs.srv import GetModelOmissions
 from simulator import SENSOR_BOX, SimulatorTest, proxy, spawn_model
 
-PARTS = ["mesh 'file:///nowhere/nope.stl'", "plugin 'libgazebo_ros_imu.so'", "camera 'camera1'"]
+PARTS = ["mesh 'file:///nowhere/nope.stl'", "plugin 'libgazebo_ros_imu.so'", "sonar 'sonar1'"]
 
 
 class OmissionsTest(SimulatorTest):
