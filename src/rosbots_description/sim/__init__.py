@@ -1,6 +1,6 @@
-"""The simulator: plain values and physics, without ROS. Here are the names that a script needs.
+"""The simulator: plain values and physics, without ROS. These are the names that a script needs.
 
-Each is loaded when it is asked for: who needs a pose or an error does not wait for the engine.
+Each is imported on first use: a script that needs only poses or errors does not load the engine.
 """
 
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""Types of numpy arrays. Whoever needs none does not wait for numpy either."""
+"""Types of numpy arrays, in a module of their own: modules without arrays need not import numpy."""
 
 from typing import Any
 

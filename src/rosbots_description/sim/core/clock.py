@@ -1,19 +1,19 @@
 """Simulated time: a whole number of steps, so that it never drifts and always repeats."""
 
 NANOSECONDS = 1_000_000_000  # per second
-END = 1 << 32  # [s] from which on a stamp's 32 bits hold no time any more: some 136 years
+END = 1 << 32  # [s] the 32 bits of a stamp's seconds overflow here, after some 136 years
 
 
 class SimClock:
     """Counts steps; the time is `steps` times the step size since the last change of that size.
 
-    `now_ns` [ns] is exact and the one to stamp and compare with; `now` [s] is for people.
+    Stamp and compare with `now_ns` [ns], which is exact; `now` [s] is for display.
     """
 
     def __init__(self, step_size: float) -> None:
         self.steps = 0
         self.step_ns = nanoseconds(step_size)
-        self._origin_ns = 0  # the time at which the present step size began to count
+        self._origin_ns = 0  # time at which the current step size took effect
         self._origin_steps = 0
 
     @property
@@ -27,7 +27,7 @@ class SimClock:
         return self.now_ns / NANOSECONDS
 
     def ns_at(self, step: int) -> int:
-        """Return the time [ns] of a step to come, or of one since the last change of step size."""
+        """Return the time [ns] of a step, past or future, since the last change of step size."""
         return self._origin_ns + (step - self._origin_steps) * self.step_ns
 
     def last_step(self) -> int:
@@ -35,7 +35,7 @@ class SimClock:
         return self.first_step_after(END * NANOSECONDS - 1) - 1
 
     def set_step_size(self, step_size: float) -> None:
-        """Let every step from now on last `step_size` [s]."""
+        """Use `step_size` [s] for every step from now on."""
         self._origin_ns, self._origin_steps = self.now_ns, self.steps
         self.step_ns = nanoseconds(step_size)
 
@@ -44,7 +44,7 @@ class SimClock:
         return self._origin_steps + (time_ns - self._origin_ns) // self.step_ns + 1
 
     def reset(self) -> None:
-        """Begin again at time zero."""
+        """Return to time zero."""
         self.steps = self._origin_ns = self._origin_steps = 0
 
 

@@ -1,16 +1,16 @@
-"""What can go wrong in the simulator, each with a sentence that names place, fault and cure."""
+"""The simulator's exceptions. Each message names the location, the fault and the cure."""
 
-_HEAD, _TAIL = 1200, 600  # characters of a long sentence that are shown; the cure stands at the end
+_HEAD, _TAIL = 1200, 600  # characters shown of a long message; its cure comes last
 
 
 class SimError(Exception):
-    """Any fault the simulator reports to its user; `str()` is the sentence to show.
+    """Any fault the simulator reports to its user; `str()` is the message to show.
 
-    It is one printable line of bearable length, whatever a user's text brought into it.
+    The message is one printable line of limited length, whatever user input it quotes.
     """
 
     def __str__(self) -> str:
-        """Return the sentence."""
+        """Return the message."""
         return one_line(super().__str__())
 
 
@@ -19,13 +19,13 @@ class ModelError(SimError):
 
 
 class AbsentError(ModelError):
-    """A file that a description names is not where it says; a shape can be left out for it."""
+    """A file that a description names does not exist; the shape that needs it can be left out."""
 
 
 class ShapeError(ModelError):
-    """A shape that cannot be made; as in Gazebo the model stands without it.
+    """A shape that cannot be created; as in Gazebo the model is spawned without it.
 
-    `uri` is what names the mesh that is no good, '' where it is no mesh.
+    `uri` is the address of the unusable mesh, '' if the shape is not a mesh.
     """
 
     def __init__(self, sentence: str, uri: str = '') -> None:
@@ -38,11 +38,11 @@ class NotFoundError(SimError):
 
 
 class PluginError(SimError):
-    """A plugin that cannot do its work; the model lives on without it."""
+    """A plugin that cannot be loaded; the model is spawned without it."""
 
 
 def one_line(text: str) -> str:
-    """Return a text with its unprintable characters escaped, and without a long one's middle."""
+    """Return a text with unprintable characters escaped, and its middle cut out if it is long."""
     if len(text) > _HEAD + _TAIL:
         text = f'{text[:_HEAD]} … {text[-_TAIL:]}'
     if text.isprintable():

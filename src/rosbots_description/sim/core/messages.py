@@ -1,4 +1,4 @@
-"""How a complaint is worded: where in a description, what is wrong, and what would be right."""
+"""The form of messages: where in a description, what is wrong, and what would be right."""
 
 from collections.abc import Callable, Collection
 from difflib import get_close_matches
@@ -11,12 +11,12 @@ from .errors import ModelError
 if TYPE_CHECKING:
     from lxml import etree
 
-MAX_NOTES = 40  # sentences about one description; who needs more does not read them
+MAX_NOTES = 40  # messages about one description; nobody reads more
 
-_ANY_BYTES = 'surrogateescape'  # in the name of a file that is not UTF-8
-_EXPANDED = '#xacro'  # behind the source in a tree's URL; a # of the source itself is quoted there
+_ANY_BYTES = 'surrogateescape'  # for file names that are not UTF-8
+_EXPANDED = '#xacro'  # after the source in a tree's URL; a # in the source itself is quoted
 
-# Elements with a name of their own, which a message should mention.
+# Elements with a name of their own, for messages to mention.
 _OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'name',
            'plugin': 'name', 'sensor': 'name', 'material': 'name'}
 
@@ -24,19 +24,19 @@ _OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'nam
 def fault(
     element: 'etree._Element', sentence: str, kind: type[ModelError] = ModelError
 ) -> ModelError:
-    """Return the error to raise about `element`: source, line and owner before the sentence."""
+    """Return the error to raise about `element`: source, line and owner, then the sentence."""
     return kind(f'{location(element)}: {sentence}')
 
 
 def location(element: 'etree._Element') -> str:
-    """Return where an element stands, e.g. "robot_description, line 12: joint 'j1'"."""
+    """Return the location of an element, e.g. "robot_description, line 12: joint 'j1'"."""
     where = f'{source_of(element)}, {line_of(element)}'
     called = owner(element)
     return f'{where}: {called}' if called else where
 
 
 def owner(element: 'etree._Element') -> str:
-    """Return what an element belongs to or is, e.g. "link 'base'"; '' where nothing has a name."""
+    """Return the closest named element, e.g. "link 'base'": this or an ancestor; '' if none."""
     for candidate in (element, *element.iterancestors()):
         name = candidate.get(_OWNERS[candidate.tag]) if candidate.tag in _OWNERS else None
         if name:
@@ -48,32 +48,32 @@ def owner(element: 'etree._Element') -> str:
 
 
 def document_url(source: str, is_expanded_xacro: bool) -> str:
-    """Return the base URL of a tree, from which `source_of` and `line_of` read it again."""
+    """Return the base URL of a tree, which `source_of` and `line_of` decode."""
     return quote(source, errors=_ANY_BYTES) + (_EXPANDED if is_expanded_xacro else '')
 
 
 def source_of(element: 'etree._Element') -> str:
-    """Return the source that was given to `parse_xml`, as it was written."""
+    """Return the source as it was given to `parse_xml`."""
     return _read_url(element)[0]
 
 
 def line_of(element: 'etree._Element') -> str:
-    """Return where an element stands in its source: 'line 12', or 'line 12 of the expanded xacro'.
+    """Return the line of an element in its source: 'line 12', or 'line 12 of the expanded xacro'.
 
-    What xacro wrote has other lines than the file that its user did.
+    The lines of xacro's output differ from those of the file that the user wrote.
     """
     line = f'line {element.sourceline}'
     return f'{line} of the expanded xacro' if _read_url(element)[1] else line
 
 
 def _read_url(element: 'etree._Element') -> tuple[str, str]:
-    """Return the source and, where xacro wrote the document, a mark."""
+    """Return the source, and a mark if xacro wrote the document."""
     source, mark, _ = str(element.getroottree().docinfo.URL).partition(_EXPANDED)
     return unquote(source, errors=_ANY_BYTES), mark
 
 
 def suggestion(name: str, known: Collection[str]) -> str:
-    """Return "; did you mean 'x'?" where a known name is close, else the known ones, if few."""
+    """Return "; did you mean 'x'?" if a known name is close, else the known names, if few."""
     near = [other for other in islice(known, 1000) if abs(len(other) - len(name)) < 10]
     close = get_close_matches(name, near, n=1) if len(name) <= 100 else []
     if close:
@@ -91,8 +91,8 @@ def shortened(text: str, most: int = 600) -> str:
 
 
 def note(notes: list[str], sentence: Callable[[], str]) -> None:
-    """Add what `sentence` returns, unless so much has been noted already that no one reads it."""
+    """Add what `sentence` returns, unless there are too many notes already."""
     if len(notes) < MAX_NOTES:
         notes.append(sentence())
     elif len(notes) == MAX_NOTES:
-        notes.append('there is more of that kind, which is not listed')
+        notes.append('more warnings of this kind are not listed')

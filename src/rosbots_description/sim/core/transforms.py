@@ -1,8 +1,8 @@
 """Rigid poses as plain tuples: position (x, y, z) [m], orientation quaternion (x, y, z, w).
 
 Tuples of floats, not arrays: a pose has seven numbers, and at that size plain arithmetic is
-several times faster than numpy. The algebra is that of `reference A + B`: `compose(frame, pose)`
-is `pose`, given in `frame`, seen from where `frame` is given.
+several times faster than numpy. With T_ab the pose of frame b in frame a,
+`compose(T_ab, T_bc)` is T_ac, `relative(T_ac, T_ab)` is T_bc and `inverse(T_ab)` is T_ba.
 """
 
 import math
@@ -15,20 +15,20 @@ Quaternion = tuple[float, float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
 UP: Vector = (0.0, 0.0, 1.0)
 NO_ROTATION: Quaternion = (0.0, 0.0, 0.0, 1.0)
-ALONG = 0.999  # cosine of the angle to an axis, from which on a direction is that axis
+ALONG = 0.999  # cosine of the angle to an axis; a direction above it counts as that axis
 
-_SMALL, _LARGE = 1e-150, 1e150  # between these, squares neither vanish nor overflow
+_SMALL, _LARGE = 1e-150, 1e150  # between these, squares neither underflow nor overflow
 
 
 class Pose(NamedTuple):
-    """Where something is: position [m] and orientation (x, y, z, w), a unit quaternion."""
+    """Position [m] and orientation, a unit quaternion (x, y, z, w)."""
 
     position: Vector = ZERO
     orientation: Quaternion = NO_ROTATION
 
 
 class Twist(NamedTuple):
-    """How something moves: linear [m/s] and angular [rad/s] velocity."""
+    """Linear [m/s] and angular [rad/s] velocity."""
 
     linear: Vector = ZERO
     angular: Vector = ZERO
@@ -74,7 +74,7 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def normalise(q: Quaternion) -> Quaternion:
-    """Return the unit quaternion along `q`; all zeros mean no rotation, as in Gazebo."""
+    """Return `q` normalised to unit length; all zeros mean no rotation, as in Gazebo."""
     length = _length(q)
     if not _SMALL < length < _LARGE:
         largest = max(map(abs, q))
@@ -107,7 +107,7 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Vector) -> Vector:
-    """Return `v` turned by the unit quaternion `q`."""
+    """Return `v` rotated by the unit quaternion `q`."""
     x, y, z, w = q
     tx = 2.0 * (y * v[2] - z * v[1])
     ty = 2.0 * (z * v[0] - x * v[2])
@@ -120,7 +120,7 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
 
 
 def compose(frame: Pose, pose: Pose) -> Pose:
-    """Return `pose`, given relative to `frame`, in the frame that `frame` is given in."""
+    """Return `pose`, given in `frame`, in the parent frame of `frame`."""
     return Pose(
         add(frame.position, rotate(frame.orientation, pose.position)),
         multiply(frame.orientation, pose.orientation),
@@ -128,14 +128,14 @@ def compose(frame: Pose, pose: Pose) -> Pose:
 
 
 def inverse(pose: Pose) -> Pose:
-    """Return the pose that undoes `pose`: compose(pose, inverse(pose)) is the identity."""
+    """Return the inverse of `pose`: compose(pose, inverse(pose)) is the identity."""
     back = conjugate(pose.orientation)
     x, y, z = rotate(back, pose.position)
     return Pose((-x, -y, -z), back)
 
 
 def relative(pose: Pose, frame: Pose) -> Pose:
-    """Return `pose` as seen from `frame`, both given in the same frame."""
+    """Return `pose` relative to `frame`, both given in the same frame."""
     return compose(inverse(frame), pose)
 
 

@@ -1,4 +1,4 @@
-"""The models every world can count on: ground_plane and sun, built in."""
+"""The built-in models of every world: ground_plane and sun."""
 
 from ..core import Pose
 from .materials import gazebo_material

@@ -1,4 +1,4 @@
-"""Mass properties: put them together, turn them to their principal axes, keep them turnable."""
+"""Mass properties: merge them, diagonalise them, and replace what a body cannot have."""
 
 import math
 from collections.abc import Sequence
@@ -21,20 +21,20 @@ from ..core import (
 from ..core.arrays import FloatArray
 from .model_spec import REVOLUTE, Inertial, JointSpec, LinkSpec
 
-# A body without any resistance to turning cannot be simulated. It gets that of a solid ball of
-# this radius [m] about the axes in question.
+# A body with a zero principal moment cannot be simulated. It gets that of a solid sphere of this
+# radius [m] about the axes in question.
 STAND_IN_RADIUS = 0.1
 
-# By how much of itself the greatest principal moment may exceed the sum of the others: so much does
-# that of a flat plate if two digits are written, each number being off by up to a twentieth.
+# Relative amount by which the greatest principal moment may exceed the sum of the other two. A flat
+# plate written with two digits does: each number is off by up to a twentieth.
 ROUNDING = 0.1
 
-# Significant digits that every linear algebra library agrees on.
+# Significant digits on which all linear algebra libraries agree.
 _DIGITS = 12
 
-# A moment smaller than this, in parts of the greatest, is zero but for rounding.
+# A moment smaller than this fraction of the greatest is zero up to rounding.
 _NEARLY_ZERO = 1e-9
-# Share of its moment about an axis, by which a wheel may be out of balance.
+# Imbalance that a wheel may have, as a fraction of its moment about the axis.
 _UNEVEN = 0.02
 
 # Principal moments below this [m^2], times the mass, count as zero.
@@ -44,9 +44,9 @@ _ZERO_RADIUS_SQUARED = 1e-12
 def principal_axes(inertial: Inertial) -> tuple[Vector, Quaternion]:
     """Return the principal moments [kg m^2] and the orientation of their axes in the link's frame.
 
-    A tensor that is diagonal already keeps the axes of `inertial.pose`, in their order. The
-    others get right-handed axes, each as near as can be to the old one, so that equal input gives
-    equal output and small off-diagonal terms give small turns.
+    A diagonal tensor keeps the axes of `inertial.pose`, in their order. Other tensors get
+    right-handed axes, each as close as possible to the old one, so that equal input gives equal
+    output and small off-diagonal terms give small rotations.
     """
     own = inertial.pose.orientation
     if inertial.ixy == 0.0 and inertial.ixz == 0.0 and inertial.iyz == 0.0:
@@ -62,9 +62,9 @@ def principal_axes(inertial: Inertial) -> tuple[Vector, Quaternion]:
 
 
 def settle(values: FloatArray) -> FloatArray:
-    """Return `values` without the digits that depend on the machine's linear algebra library.
+    """Return `values` rounded to the digits on which all linear algebra libraries agree.
 
-    What is left is the same on every machine, and so is the motion that follows from it.
+    They are then the same on every machine, and so is the simulated motion.
     """
     largest = float(np.max(np.abs(values)))
     if largest == 0.0:
@@ -82,14 +82,14 @@ def tensor(inertial: Inertial) -> FloatArray:
 
 
 def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
-    """Return the mass properties of parts that move as one (parallel axis theorem).
+    """Return the mass properties of rigidly connected parts (parallel axis theorem).
 
     Args:
-        parts: for each part the pose of its link in the common frame, and its inertial; the
-            masses are greater than zero. A single part in place is returned as it is.
+        parts: for each part the pose of its link in the common frame, and its inertial; masses
+            are greater than zero. A single part at the identity is returned unchanged.
 
     Returns:
-        The sum, its tensor in the axes of the common frame.
+        The sum, with its tensor in the axes of the common frame.
     """
     if len(parts) == 1 and parts[0][0] == IDENTITY:
         return parts[0][1]
@@ -124,12 +124,12 @@ def in_link_axes(inertial: Inertial) -> Inertial:
 
 
 def possible(inertial: Inertial) -> Inertial:
-    """Return `inertial` with the nearest tensor that a body can have; unchanged where it is one.
+    """Return `inertial` with the nearest physically possible tensor; unchanged if it is one.
 
-    The principal moments of a body are sums of two of its second moments, J1 = s2 + s3 and so on,
-    s >= 0; so none is greater than the other two together. Nearest is meant in the Frobenius norm:
-    the axes stay, and the moments are projected onto the cone of those sums. A tensor that fails by
-    no more than ROUNDING of its greatest moment is that of a body, written with few digits.
+    Principal moments are sums of two second moments, J1 = s2 + s3 and so on, with s >= 0; hence the
+    triangle inequality J1 <= J2 + J3. Nearest is meant in the Frobenius norm: the axes stay, and
+    the moments are projected onto the cone of those sums. A violation of at most ROUNDING of the
+    greatest moment is accepted, as it comes from writing few digits.
     """
     moments, axes = np.linalg.eigh(tensor(inertial))
     greatest = max(map(abs, moments))
@@ -145,11 +145,11 @@ def possible(inertial: Inertial) -> Inertial:
 
 
 def impossible(link: str, given: Inertial, used: Inertial) -> str:
-    """Return the sentence to warn with where `possible` has changed a link's tensor."""
+    """Return the warning for a link whose tensor `possible` has changed."""
     return (
-        f"link '{link}': no body has the inertia {_shown(given)} [kg m^2], as a principal moment "
-        'is greater than the other two together, or negative; the nearest that a body can have is '
-        f'used: {_shown(used)}'
+        f"link '{link}': the inertia {_shown(given)} [kg m^2] is physically impossible: "
+        'a principal moment is negative or greater than the sum of the other two; '
+        f'the nearest possible tensor is used: {_shown(used)}'
     )
 
 
@@ -160,10 +160,10 @@ def _shown(inertial: Inertial) -> str:
 
 
 def _sums_of_two(moments: FloatArray) -> FloatArray:
-    """Return the point nearest to `moments` among sums of two of three numbers that are >= 0.
+    """Return the point (s2 + s3, s1 + s3, s1 + s2), all s >= 0, nearest to `moments`.
 
-    Of the three numbers some are zero, and the others solve a least-squares problem (Karush, Kuhn
-    and Tucker); there are seven ways to choose them.
+    By the Karush-Kuhn-Tucker conditions some s are zero and the others solve a least-squares
+    problem; there are seven choices of the others.
     """
     sums, best = np.ones((3, 3)) - np.eye(3), np.zeros(3)
     for chosen in ([0], [1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]):
@@ -175,9 +175,9 @@ def _sums_of_two(moments: FloatArray) -> FloatArray:
 
 
 def turnable(inertial: Inertial) -> Inertial:
-    """Return `inertial` with each zero principal moment replaced by that of a small solid ball.
+    """Return `inertial` with each zero principal moment replaced by that of a small solid sphere.
 
-    2/5 m r^2 with r = STAND_IN_RADIUS. An inertial that can turn is returned unchanged.
+    2/5 m r^2 with r = STAND_IN_RADIUS. Other inertials are returned unchanged.
     """
     moments, axes = principal_axes(inertial)
     zero = _ZERO_RADIUS_SQUARED * inertial.mass
@@ -192,13 +192,13 @@ def turnable(inertial: Inertial) -> Inertial:
 
 
 def is_positive(inertial: Inertial) -> bool:
-    """Tell whether no principal moment is negative (rounding apart)."""
+    """Tell whether no principal moment is negative, up to rounding."""
     moments, _ = principal_axes(inertial)
     return min(moments) >= -_NEARLY_ZERO * max(abs(moment) for moment in moments)
 
 
 def is_balanced(inertial: Inertial, joint: JointSpec) -> bool:
-    """Tell whether a link has its mass evenly about the axis of a joint, as a wheel has."""
+    """Tell whether a link is balanced about the axis of a joint, as a wheel is."""
     if joint.type != REVOLUTE:
         return False
     axis = np.array(joint.axis_in_child)
@@ -206,14 +206,14 @@ def is_balanced(inertial: Inertial, joint: JointSpec) -> bool:
     turn = _matrix(inertial.pose.orientation)
     whole = turn @ tensor(inertial) @ turn.T
     along = axis @ whole @ axis
-    # Seen along the axis a balanced tensor is a circle, and does not lean to the axis.
+    # A balanced tensor has the axis as a principal axis, and equal moments across it.
     flat = whole - along * np.outer(axis, axis)
     uneven = flat - 0.5 * np.trace(flat) * (np.eye(3) - np.outer(axis, axis))
     return float(inertial.mass * arm @ arm + np.linalg.norm(uneven)) <= _UNEVEN * float(along)
 
 
 def _nearest_order(axes: FloatArray) -> list[int]:
-    """Return which column of `axes` to use as x, y and z: the one that points there most."""
+    """Return which column of `axes` to use as x, y and z: the most closely aligned one."""
     order: list[int] = []
     for row in np.abs(axes):
         free = [i for i in range(3) if i not in order]
@@ -222,10 +222,10 @@ def _nearest_order(axes: FloatArray) -> list[int]:
 
 
 def mobility(link: LinkSpec, place: Vector, turn: Quaternion) -> FloatArray:
-    """Return how a free link answers a wrench at a place (6x6): turning and moving, in its axes.
+    """Return the inverse inertia (6x6) of a free link at a point: wrench to spatial acceleration.
 
-    Both are in the frame of the link's model; so are the place [m], and what turns the link about
-    it.
+    Angular parts come first. All is in the axes of the model's frame, after the link was rotated
+    about the point [m] by `turn`.
     """
     inertial = link.mass_properties
     com = compose(link.pose, inertial.pose)
@@ -247,7 +247,7 @@ def _matrix(q: Quaternion) -> FloatArray:
 def _quaternion(matrix: FloatArray) -> Quaternion:
     """Return the rotation (x, y, z, w) of an orthonormal right-handed matrix.
 
-    The largest component is found first, so nothing is divided by something small (Shepperd 1978).
+    The largest component is computed first, which avoids a small divisor (Shepperd 1978).
     """
     m = matrix
     trace = m[0, 0] + m[1, 1] + m[2, 2]

@@ -24,7 +24,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Sphere:
-    """A ball centred on its origin; radius [m]."""
+    """A sphere centred on its origin; radius [m]."""
 
     radius: float
 
@@ -39,7 +39,7 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Plane:
-    """An endless plane through its origin; `normal` is a unit vector, `size` is for looks [m]."""
+    """An infinite plane through its origin; unit vector `normal`; `size` [m] is visual only."""
 
     normal: Vector = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (100.0, 100.0)
@@ -49,7 +49,7 @@ class Plane:
 class Mesh:
     """A triangle mesh read from `path` (an absolute file path) and scaled along its axes.
 
-    `uri` is what the description said, for messages and markers.
+    `uri` is the address in the description, for messages and markers.
     """
 
     path: str
@@ -62,7 +62,7 @@ Geometry = Box | Sphere | Cylinder | Plane | Mesh
 
 @dataclass(frozen=True)
 class Surface:
-    """How a collision touches others; defaults are those of SDF (sdformat 9)."""
+    """Contact properties of a collision; defaults are those of SDF (sdformat 9)."""
 
     mu: float = 1.0  # friction coefficient along the first direction
     mu2: float = 1.0  # along the second direction
@@ -73,8 +73,8 @@ class Surface:
     min_depth: float = 0.0  # penetration that is left uncorrected [m]
     max_contacts: int = 10
     laser_retro: float = 0.0
-    restitution: float = 0.0  # share of the speed of an impact that is given back
-    threshold: float = 1e5  # speed of an impact from which on it is [m/s]
+    restitution: float = 0.0  # coefficient of restitution
+    threshold: float = 1e5  # impact speed from which restitution applies [m/s]
     slip1: float = 0.0  # slip compliance along the first direction [m/s per N]
     slip2: float = 0.0  # along the second direction
 
@@ -86,7 +86,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Collision:
-    """A shape that touches, posed in its link's frame."""
+    """A collision shape, posed in its link's frame."""
 
     name: str
     geometry: Geometry
@@ -131,7 +131,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Visual:
-    """A shape that is only seen, posed in its link's frame.
+    """A visual shape, posed in its link's frame.
 
     A mesh keeps its own colours while `material` is None.
     """
@@ -161,7 +161,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class LinkSpec:
-    """A rigid body; `pose` is where it stands in the model frame with all joints at zero."""
+    """A rigid body; `pose` is its pose in the model frame with all joints at zero."""
 
     name: str
     pose: Pose = IDENTITY
@@ -170,7 +170,7 @@ class LinkSpec:
     visuals: tuple[Visual, ...] = ()
     gravity: bool = True
     self_collide: bool = False
-    kinematic: bool = False  # moved by its user only; forces and contacts do not move it
+    kinematic: bool = False  # moved by commands only, not by forces and contacts
     linear_damping: float = 0.0
     angular_damping: float = 0.0
     sensors: tuple[SensorSpec, ...] = ()
@@ -178,7 +178,7 @@ class LinkSpec:
 
     @property
     def mass_properties(self) -> Inertial:
-        """Return `inertial`, which every link has that moves."""
+        """Return `inertial`; every moving link has one."""
         assert self.inertial is not None, f"link '{self.name}' has no mass"
         return self.inertial
 
@@ -186,16 +186,16 @@ class LinkSpec:
 REVOLUTE = 'revolute'  # includes continuous: a revolute joint without limits
 PRISMATIC = 'prismatic'
 FIXED = 'fixed'
-WORLD = 'world'  # as the parent of a joint: the child is fixed to, or moves against, the world
+WORLD = 'world'  # as the parent of a joint: it connects the child to the world
 
 
 @dataclass(frozen=True)
 class JointSpec:
-    """A connection; its frame stands in the child link at `pose`, `axis` is a unit vector in it.
+    """A joint; its frame is at `pose` in the child link, `axis` is a unit vector in that frame.
 
-    Limits are None where there is none: position [rad or m], effort [N m or N], velocity
-    [rad/s or m/s]. Damping is [N m s/rad or N s/m], friction [N m or N], the stiffness of its
-    spring [N m/rad or N/m]; that pulls towards the reference [rad or m].
+    A limit is None if there is none: position [rad or m], effort [N m or N], velocity
+    [rad/s or m/s]. Damping is [N m s/rad or N s/m], friction [N m or N], spring stiffness
+    [N m/rad or N/m]; the spring pulls towards its reference [rad or m].
     """
 
     name: str
@@ -223,8 +223,8 @@ class JointSpec:
 class ModelSpec:
     """A whole model, ready to be simulated.
 
-    Links stand in the order of the description after lumping; the first one is canonical. Joints
-    connect them into one or more trees. The links and joints of a model within this one are called
+    Links are in the order of the description after fixed joint reduction; the first is canonical.
+    Joints connect them into one or more trees. Links and joints of a nested model are called
     `inner::name`.
     """
 
@@ -233,11 +233,11 @@ class ModelSpec:
     joints: tuple[JointSpec, ...] = ()
     plugins: tuple[PluginSpec, ...] = ()
     static: bool = False
-    # Link that a fixed joint made part of another -> that one, and where it stands in it.
+    # Reduced link -> its parent after reduction, and its pose in that.
     reduced: Mapping[str, tuple[str, Pose]] = field(default_factory=dict)
-    inner: Mapping[str, Pose] = field(default_factory=dict)  # model within -> pose of its frame
-    left_out: tuple[str, ...] = ()  # what it stands without, each in few words
-    # Where its description is, e.g. 'robot_description, line 1', to begin a complaint with.
+    inner: Mapping[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
+    left_out: tuple[str, ...] = ()  # parts that were left out, each in a few words
+    # Location of its description, e.g. 'robot_description, line 1', to begin messages with.
     location: str = field(default='', compare=False)
 
     def link(self, name: str) -> LinkSpec | None:

@@ -6,7 +6,7 @@ from dataclasses import astuple, dataclass, fields
 from ..core import SLOWEST_RATE, SimError, Vector
 
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 10.0  # [s]; the clock counts nanoseconds
-MOST_ITERATIONS = 10_000  # of the solver; more would only make a step take for ever
+MOST_ITERATIONS = 10_000  # of the solver; more would only stall the simulation
 MOST_CONTACTS = 10_000_000
 
 
@@ -14,10 +14,10 @@ MOST_CONTACTS = 10_000_000
 class PhysicsSettings:
     """Step, rate and gravity, and the ODE fields of gazebo_msgs/ODEPhysics.
 
-    The defaults are those that gazebo_ros 2.9.2 answers in an empty world of Gazebo 11. Of the
+    The defaults are those that gazebo_ros 2.9.2 reports in an empty world of Gazebo 11. Of the
     ODE fields the engine applies `sor_pgs_iters`; the others have no counterpart in PyBullet and
-    are kept. `friction_cone` tells whether friction is limited by its length (`cone_model` of SDF);
-    else it is so along the world's x and y axis each, as ODE's default has it.
+    are only stored. `friction_cone` selects `cone_model` of SDF, sqrt(Fx^2 + Fy^2) <= mu N; else
+    friction is limited along the world's x and y axes separately, as by ODE's default.
     """
 
     step_size: float = 0.001  # simulated time of one step [s]
@@ -37,10 +37,10 @@ class PhysicsSettings:
 
 
 def check_physics(physics: PhysicsSettings) -> None:
-    """Refuse settings that no world can have.
+    """Reject settings that are not valid.
 
     Raises:
-        SimError: a number is not finite or out of its range; the sentence says which.
+        SimError: a number is not finite or out of its range; the message says which.
     """
     for field, value in zip(fields(physics), astuple(physics), strict=True):
         if not all(map(math.isfinite, value if isinstance(value, tuple) else (value,))):

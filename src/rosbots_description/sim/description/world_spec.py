@@ -33,7 +33,7 @@ class LightSpec:
 
 @dataclass(frozen=True)
 class SceneSpec:
-    """How the world is lit and seen beside its lights."""
+    """Ambient light, background colour and shadows."""
 
     ambient: Colour = (0.4, 0.4, 0.4, 1.0)
     background: Colour = (0.7, 0.7, 0.7, 1.0)
@@ -42,7 +42,7 @@ class SceneSpec:
 
 @dataclass(frozen=True)
 class ModelState:
-    """Where a saved world had a model and its links; all poses are given in the world."""
+    """Poses of a model and its links in a saved world, in the world frame."""
 
     name: str
     pose: Pose | None = None
@@ -51,9 +51,9 @@ class ModelState:
 
 @dataclass(frozen=True)
 class WorldSpec:
-    """A whole world. Models stand in the order of the file, each with the pose it resets to.
+    """A whole world. Models are in the order of the file, each with the pose it resets to.
 
-    `states` and `time` [s] are those of a saved world's <state>. `faults` says which models were
+    `states` and `time` [s] are those of a saved world's <state>. `faults` tells which models were
     left out, and why.
     """
 

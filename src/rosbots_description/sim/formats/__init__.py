@@ -1,4 +1,4 @@
-"""From text to description: one folder for each language, each fault with file and line."""
+"""Parsers, one folder per format; each error names file and line."""
 
 from .sdf import load_sdf, load_sdf_light, open_world
 from .urdf import expand_xacro, load_urdf

@@ -1,4 +1,4 @@
-"""From mesh files to clean triangles, and to the files that a physics engine gets."""
+"""Read mesh files as validated triangles, and write the files for a physics engine."""
 
 from ..resources import HeldFile
 from .engine_files import EngineFiles

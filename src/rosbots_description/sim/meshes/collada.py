@@ -1,4 +1,4 @@
-"""Read what a Collada file shows: the triangles of its scene, node by node.
+"""Read the visible content of a Collada file: the triangles of its scene, node by node.
 
 To be imported late: pycollada takes a tenth of the simulator's start, and is seldom needed.
 """
@@ -23,7 +23,7 @@ _AMBIENT, _DIFFUSE, _BLACK = (0.4, 0.4, 0.4), (0.5, 0.5, 0.5), (0.0, 0.0, 0.0)
 
 
 class ColladaPart(NamedTuple):
-    """Triangles of one material, as a node shows them; each has three vertices of its own."""
+    """Triangles of one material of a node; no two triangles share vertices."""
 
     vertices: FloatArray  # (n, 3) in the file's unit, before the node's matrix
     faces: IntArray  # (m, 3), numbers of vertices
@@ -39,8 +39,8 @@ class ColladaPart(NamedTuple):
 def read_collada(content: bytes) -> tuple[list[ColladaPart], float]:
     """Return the parts of a Collada file, and the length of its unit [m].
 
-    What is broken is left out, as in RViz. Where nothing is left, or the file is none, whatever
-    pycollada raises tells why.
+    Broken parts are left out, as in RViz. If nothing is left, or the file is not Collada, the
+    exceptions of pycollada are passed on.
     """
     file = Collada(io.BytesIO(content), ignore=[DaeError])
     parts = [part for node in file.scene.nodes for part in _shown_by(node, np.eye(4))]

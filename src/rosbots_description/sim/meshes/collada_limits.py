@@ -1,7 +1,7 @@
-"""Look through a Collada file for what would make its reader wait or fill the memory.
+"""Reject Collada files that would make pycollada hang or exhaust the memory.
 
-pycollada believes a file: it makes as many corners as a polygon is said to have, follows nodes that
-name nodes as often as they are named, and lets its XML parser multiply entities.
+pycollada trusts its input: it allocates as many corners as a polygon declares, expands every
+instance of a node, and lets its XML parser expand entities.
 """
 
 import codecs
@@ -14,21 +14,21 @@ from ..core import ModelError
 from ..resources import check_xml_bounds
 
 MAX_COLLADA_ELEMENTS = 1_000_000
-MAX_INSTANCES = 10_000  # of geometries, all nodes expanded
+MAX_INSTANCES = 10_000  # of geometries, with all nodes expanded
 MAX_CORNERS = 15_000_000  # of all instances together
 
 _XML = re.compile(rb'\s*<\?xml\b[^>]*?(?:encoding\s*=\s*["\']([\w.-]+)["\'][^>]*?)?\?>')
 
 
 class ColladaError(ModelError):
-    """What is wrong with a file; the sentence goes behind the file's name."""
+    """A fault of a file; the message continues after the file's name."""
 
 
 def safe_collada(content: bytes) -> bytes:
-    """Return a Collada file's text in UTF-8, which may be parsed.
+    """Return a Collada file's text in UTF-8, safe to parse.
 
     Raises:
-        ColladaError: it is no text, no XML, or would hurt who reads it.
+        ColladaError: it is not text, not XML, or beyond the limits.
     """
     document = _in_utf8(content)
     if not document.startswith(b'<'):
@@ -48,7 +48,7 @@ def safe_collada(content: bytes) -> bytes:
 
 
 def _in_utf8(content: bytes) -> bytes:
-    """Return the text without declaration; another encoding could hide a document type."""
+    """Return the text without its declaration; another encoding could hide a document type."""
     declared = _XML.match(content)
     encoding = (declared[1] or b'utf-8').decode() if declared else 'utf-8'
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
@@ -63,7 +63,7 @@ def _in_utf8(content: bytes) -> bytes:
 
 
 def _refuse_unknown_positions(root: etree._Element, document: bytes) -> None:
-    """Refuse a NaN among the vertices, since pycollada takes it for zero."""
+    """Reject NaN vertices, which pycollada reads as zero."""
     if not re.search(rb'[\s>]-?nan\b', document, re.IGNORECASE):
         return
     positions = {
@@ -77,9 +77,9 @@ def _refuse_unknown_positions(root: etree._Element, document: bytes) -> None:
 
 
 def _refuse_promises(root: etree._Element, size: int) -> None:
-    """Refuse polygons that are said to have more corners than a file of `size` bytes can name.
+    """Reject polygons that declare more corners than a file of `size` bytes can hold.
 
-    A corner of a negative number is refused too, since pycollada counts it from the end.
+    Negative indices are rejected too, since pycollada counts them from the end.
     """
     for element in root.iterfind('.//{*}p'):
         if '-' in (element.text or ''):
@@ -97,7 +97,7 @@ def _refuse_promises(root: etree._Element, size: int) -> None:
 
 
 class _Nodes:
-    """Counts what the nodes show, nodes that name other nodes included."""
+    """Counts the geometries of a scene, with instances of nodes expanded."""
 
     def __init__(self, root: etree._Element) -> None:
         self._scene = root.find('.//{*}library_visual_scenes')
@@ -110,7 +110,7 @@ class _Nodes:
         self._open: set[etree._Element] = set()
 
     def refuse_multitudes(self) -> None:
-        """Refuse a file whose nodes multiply what there is beyond bounds, or name each other."""
+        """Reject a file with too many instances, or nodes that contain each other."""
         instances, corners = (0, 0) if self._scene is None else self._count(self._scene)
         if instances > MAX_INSTANCES or corners > MAX_CORNERS:
             raise ColladaError(
@@ -119,11 +119,11 @@ class _Nodes:
             )
 
     def _count(self, element: etree._Element) -> tuple[int, int]:
-        """Return how many geometries an element shows, and how many corners these have."""
+        """Return the number of geometries below an element, and of their corners."""
         if element in self._known:
             return self._known[element]
         if element in self._open:
-            raise ColladaError('is broken: its nodes name each other in a ring')
+            raise ColladaError('is broken: its nodes contain each other in a loop')
         self._open.add(element)
         instances = corners = 0
         for child in element.iterfind('{*}*'):

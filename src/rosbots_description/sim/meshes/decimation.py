@@ -1,4 +1,4 @@
-"""Meshes finer than anyone needs, made coarse enough to be simulated and shown."""
+"""Decimate meshes that are too fine to be simulated and shown."""
 
 import numpy as np
 
@@ -8,22 +8,22 @@ from ..core.arrays import FloatArray, IntArray
 def thinned(
     vertices: FloatArray, faces: IntArray, most: int
 ) -> tuple[FloatArray, IntArray, IntArray, float]:
-    """Return at most `most` triangles that look like many.
+    """Return at most `most` triangles that approximate a mesh.
 
-    Vertices that lie in one cell of a grid become the first of them; triangles that shrink to
-    nothing are left out.
+    Vertices in one cell of a grid are merged into the first of them (vertex clustering); degenerate
+    triangles are left out.
 
     Args:
         vertices: (n, 3) [m].
-        faces: (m, 3), numbers of vertices.
+        faces: (m, 3), indices of vertices.
 
     Returns:
-        Vertices, faces, the numbers that the vertices had, and the length of a cell [m]: no
-        vertex has moved by more than its diagonal.
+        Vertices, faces, the former indices of the vertices, and the edge of a cell [m]: no vertex
+        has moved by more than the diagonal of a cell.
     """
     low = vertices.min(axis=0)
     size = float((vertices.max(axis=0) - low).max())
-    # A flat surface crosses n^2 of n^3 cells, and has twice as many triangles as vertices.
+    # A surface crosses about n^2 of n^3 cells, and has twice as many triangles as vertices.
     count = max(2, int((most / 2.0) ** 0.5))
     while True:
         cell = size / count
@@ -41,5 +41,5 @@ def thinned(
             break
         count = int(count * min(0.8, (most / len(triangles)) ** 0.5))
     if not len(triangles):
-        triangles = faces[:1] * 0  # all of it is as small as a point
+        triangles = faces[:1] * 0  # the mesh degenerates to a point
     return vertices[first], triangles[:most], first, cell

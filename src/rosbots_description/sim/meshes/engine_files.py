@@ -1,7 +1,7 @@
-"""Mesh files for the physics engine: clean, reduced, written once and used again.
+"""Mesh files for the physics engine: validated, reduced, written once and shared.
 
-Collisions of moving bodies are convex hulls, those of standing ones exact surfaces. They are
-written as plain .stl and .obj files named by what they hold, so that all models share them, and
+Collisions of moving bodies are convex hulls, those of static ones exact surfaces. They are written
+as plain .stl and .obj files named by a hash of their content, so that models share them, and
 removed when no model uses them any more.
 """
 
@@ -20,13 +20,13 @@ from .loader import MeshData, read_mesh
 from .stl import write_stl
 from .support_points import support_points
 
-# The hull of more vertices than this is that of its extreme points in as many directions: no
-# direction is more than 0.12 rad from one of them, so a ball loses less than 0.7 % of its radius.
+# The hull of more vertices than this is that of its support points in as many directions: no
+# direction is more than 0.12 rad from one of them, so a sphere loses less than 0.7 % of its radius.
 HULL_DIRECTIONS = 512
 
 
 class EngineFiles:
-    """Makes the engine's mesh files, each as long as it is held. Any thread may ask for files."""
+    """Writes the engine's mesh files, each kept while it is held. Thread-safe."""
 
     def __init__(self) -> None:
         self._files = HeldFiles('rosbots_meshes_')
@@ -37,10 +37,10 @@ class EngineFiles:
         return make(mesh.path, mesh.scale)
 
     def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> HeldFile:
-        """Return the .stl file of the convex hull of the whole mesh, for bodies that move.
+        """Return the .stl file of the convex hull of the whole mesh, for moving bodies.
 
-        The file holds the points to be hulled, which the engine does itself; its faces only
-        make every point count. At most HULL_DIRECTIONS + 6 points, exact where there are few.
+        The file holds the points of which the engine computes the hull; its faces only ensure that
+        every point is used. At most HULL_DIRECTIONS + 6 points, exact for small meshes.
 
         Raises:
             ModelError: the mesh cannot be read (see `check_mesh`), or nothing can be written.
@@ -48,7 +48,7 @@ class EngineFiles:
         return self._file('hull', path, scale)
 
     def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> HeldFile:
-        """Return the .obj file of the mesh's exact triangles, for bodies that stand.
+        """Return the .obj file of the mesh's exact triangles, for static bodies.
 
         Raises:
             ModelError: the mesh cannot be read (see `check_mesh`), or nothing can be written.
@@ -62,7 +62,7 @@ class EngineFiles:
     def _file(self, kind: str, path: str, scale: Vector) -> HeldFile:
         mesh = read_mesh(path)
         key = hashlib.sha256(repr((kind, mesh.digest, *map(float, scale))).encode())
-        # Of an .obj PyBullet makes a compound with the hull in it, of a .stl the hull itself.
+        # PyBullet loads an .obj as a compound with the hull in it, a .stl as the hull itself.
         name = f'{kind}_{key.hexdigest()[:32]}.{"stl" if kind == "hull" else "obj"}'
         return self._files.get(name) or self._files.write(name, _converted(kind, mesh, scale), path)
 
@@ -80,7 +80,7 @@ def _converted(kind: str, mesh: MeshData, scale: Vector) -> bytes:
 
 
 def _hull(points: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return points that span nearly the hull of `points`, and triangles that use each of them."""
+    """Return points whose hull approximates that of `points`, and triangles that use them all."""
     points = _distinct(points)
     if len(points) > HULL_DIRECTIONS:
         points = points[support_points(points, _directions())]
@@ -91,7 +91,7 @@ def _hull(points: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 def _distinct(points: FloatArray) -> FloatArray:
-    """Return what `np.unique(points, axis=0)` returns, in an eighth of the time."""
+    """Return `np.unique(points, axis=0)`, computed eight times as fast."""
     points = points[np.lexsort(points.T[::-1])]
     distinct: FloatArray = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
     return distinct
@@ -101,8 +101,8 @@ def _distinct(points: FloatArray) -> FloatArray:
 def _directions() -> FloatArray:
     """Return evenly spread unit vectors (n, 3): the six axes and a spiral over the sphere.
 
-    The axes come along so that the hull is as long, wide and high as the mesh. Spiral: Fibonacci
-    lattice, equal steps in height, turning by the golden angle.
+    The axes make the hull as long, wide and high as the mesh. The spiral is a Fibonacci lattice:
+    equal steps in height, each turned by the golden angle.
     """
     i = np.arange(HULL_DIRECTIONS)
     height = 1.0 - (2.0 * i + 1.0) / HULL_DIRECTIONS

@@ -1,8 +1,8 @@
-"""Read mesh files (.dae, .stl, .obj) into plain triangles that nothing downstream can choke on.
+"""Read mesh files (.dae, .stl, .obj) into validated plain triangles.
 
-The physics engine dies of many malformed mesh files, so it never gets the user's. Units and node
-transforms of a Collada file are applied; its up_axis is not, since neither RViz nor PyBullet
-applies it and picture and physics must agree. Nothing here prints or opens the network.
+Many malformed mesh files crash the physics engine, so it never gets the user's files. Units and
+node transforms of a Collada file are applied; its up_axis is not, as neither RViz nor PyBullet
+applies it, and visuals and physics must agree. Nothing here prints or uses the network.
 """
 
 import hashlib
@@ -32,17 +32,17 @@ logger = logging.getLogger(__name__)
 
 MAX_MESH_BYTES = 120_000_000
 MAX_TRIANGLES = 3_000_000  # in the file; a binary STL of 120 MB has 2.4 million
-FINEST = 400_000  # triangles that are simulated and shown; more are thinned
+FINEST = 400_000  # triangles that are simulated and shown; larger meshes are decimated
 MAX_LIBRARY_BYTES = 1_000_000
 FORMATS = ('.dae', '.stl', '.obj')
 
 WHITE = Reflection()
 GREY: Colour = (0.7, 0.7, 0.7, 1.0)
 
-# A material this transparent is nearly always an exporter's slip: the part is shown.
+# A material this transparent is nearly always an exporter's mistake: the part is shown opaque.
 _INVISIBLE = 0.01
 
-# Filters of warnings belong to the whole process; two threads must not change them at a time.
+# Warning filters are global to the process; two threads must not change them at the same time.
 _SILENCE = threading.Lock()
 
 
@@ -54,7 +54,7 @@ class MeshPart:
     faces: IntArray  # (m, 3), numbers of vertices
     normals: FloatArray | None  # (n, 3), unit vectors at the vertices
     rgba: Colour
-    textured: bool = False  # a picture gives it more colours than this one
+    textured: bool = False  # it has a texture besides this colour
     reflection: Reflection = WHITE
     texcoords: FloatArray | None = None  # (n, 2), at the vertices
     image: str = ''  # path of what covers it
@@ -66,7 +66,7 @@ class MeshData:
 
     digest: str
     parts: tuple[MeshPart, ...]
-    textured: bool = False  # a part of it is
+    textured: bool = False  # whether any part is
 
     def triangles(self) -> tuple[FloatArray, IntArray]:
         """Return all parts as one: vertices (n, 3) [m] and faces (m, 3)."""
@@ -79,14 +79,14 @@ class MeshData:
 
 
 def check_mesh(path: str, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> None:
-    """Make sure that a mesh file can be simulated and shown.
+    """Check that a mesh file can be simulated and shown.
 
-    A file that was good stays good until it changes, so this costs nothing the second time.
+    The result is cached until the file changes.
 
     Args:
         scale: factors of x, y, z that it will be used with.
     Raises:
-        ModelError: the sentence names the file and what is wrong with it.
+        ModelError: the message names the file and its fault.
     """
     reach = _check(str(path), *_state(path)) * max(map(abs, scale))
     if reach > LONGEST:
@@ -97,16 +97,16 @@ def read_mesh(path: str) -> MeshData:
     """Return the triangles of a mesh file.
 
     Raises:
-        ModelError: the file is missing, of another format, too big, broken or empty.
+        ModelError: the file is missing, of an unknown format, too big, broken or empty.
     """
     return _read(str(path), *_state(path))  # a plain string: caches hold no file
 
 
 def visual_parts(path: str) -> tuple[tuple[FloatArray, IntArray, FloatArray | None, Colour], ...]:
-    """Return what a mesh file looks like, by colour: (vertices, faces, normals or None, rgba).
+    """Return the parts of a mesh file by colour: (vertices, faces, normals or None, rgba).
 
-    Vertices (n, 3) in metres, faces (m, 3), normals (n, 3). Colours are the diffuse ones of
-    Collada and of an .obj's .mtl; what has none is grey.
+    Vertices (n, 3) [m], faces (m, 3), normals (n, 3). Colours are the diffuse ones of Collada and
+    of an .obj's .mtl; parts without one are grey.
 
     Raises:
         ModelError: as `read_mesh`.
@@ -115,12 +115,12 @@ def visual_parts(path: str) -> tuple[tuple[FloatArray, IntArray, FloatArray | No
 
 
 def load_readers() -> None:
-    """Load what reading Collada files takes, so that the first one need not wait for it."""
+    """Import the Collada reader in advance, so that the first file is not delayed."""
     from . import collada  # noqa: F401  as it says
 
 
 def _state(path: str) -> tuple[int, int]:
-    """Return what changes when the file changes: time of change [ns] and size."""
+    """Return modification time [ns] and size, to detect changes of a file."""
     if not os.path.exists(path):
         raise _fault(
             path, 'does not exist or cannot be reached; check name and package', AbsentError)
@@ -150,7 +150,7 @@ def _fault(path: str, sentence: str, kind: type[ModelError] = ModelError) -> Mod
 
 
 def _parse(path: str, extension: str, content: bytes) -> list[MeshPart]:
-    # A broken file may raise anything, memory and interrupts apart: the parsers are not ours.
+    # Third-party parsers may raise anything on a broken file.
     try:
         with _SILENCE, warnings.catch_warnings(), np.errstate(all='ignore'):
             warnings.simplefilter('ignore')
@@ -173,7 +173,7 @@ def _parse_obj(content: bytes, path: str) -> list[MeshPart]:
     folder = os.path.dirname(path)
 
     def read_library(name: str) -> str:
-        """Return a file beside the mesh; whatever else an .obj names is not opened."""
+        """Return a file beside the mesh; no other path in an .obj is opened."""
         library = os.path.join(folder, name)
         if not within(library, folder):
             return ''
@@ -209,7 +209,7 @@ def _collada_part(part: 'ColladaPart', unit: float, path: str) -> MeshPart:
     linear, offset = part.matrix[:3, :3], part.matrix[:3, 3]
     vertices = (np.asarray(part.vertices, dtype=float) @ linear.T + offset) * unit
     if np.linalg.det(linear) < 0.0:
-        faces = faces[:, ::-1]  # a mirror turns the triangles inside out
+        faces = faces[:, ::-1]  # a reflection reverses the orientation of the triangles
     if normals is not None:
         normals = _turn_normals(np.asarray(normals, dtype=float), linear, len(vertices))
     texcoords = part.texcoords
@@ -233,7 +233,7 @@ def _image_file(name: str, path: str) -> str:
 
 
 def _turn_normals(normals: FloatArray, linear: FloatArray, count: int) -> FloatArray | None:
-    """Return unit normals after the transform, or None where they are not usable."""
+    """Return unit normals after the transform, or None if they are unusable."""
     if normals.shape != (count, 3) or abs(np.linalg.det(linear)) < 1e-300:
         return None
     normals = normals @ np.linalg.inv(linear)
@@ -269,7 +269,7 @@ def _check_parts(path: str, parts: list[MeshPart]) -> list[MeshPart]:
 
 
 def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
-    """Return the parts with no more triangles than are simulated and shown."""
+    """Return the parts, decimated to the number of triangles that is simulated and shown."""
     count = sum(len(part.faces) for part in parts)
     if count <= FINEST:
         return parts
@@ -283,14 +283,14 @@ def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
             part, vertices=vertices, faces=faces, normals=normals, texcoords=texcoords))
         widest = max(widest, cell)
     logger.warning(
-        "mesh file '%s' has %d triangles; %d are used, of points that lie %.2g m apart", path,
+        "mesh file '%s' has %d triangles; it is decimated to %d, on a grid of %.2g m", path,
         count, sum(len(part.faces) for part in thin), widest,
     )
     return thin
 
 
 def _by_colour(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
-    """Return the parts with those of equal colour joined, in order of first appearance."""
+    """Return the parts with equal colours merged, in order of first appearance."""
     groups: dict[tuple[Colour, Reflection, str], list[MeshPart]] = {}
     for part in parts:
         groups.setdefault((part.rgba, part.reflection, part.image), []).append(part)
@@ -302,7 +302,7 @@ def _by_colour(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
         texcoords = np.concatenate([part.texcoords for part in group]) if group[0].image else None
         for array in (vertices, faces, normals, texcoords):
             if array is not None:
-                array.setflags(write=False)  # it is shared by all who read the file
+                array.setflags(write=False)  # the cached array is shared by all callers
         joined.append(replace(
             group[0], vertices=vertices, faces=faces, normals=normals, texcoords=texcoords))
     return tuple(joined)

@@ -1,6 +1,6 @@
-"""Read Wavefront .obj files and the colours of their .mtl: polygons become triangles.
+"""Read Wavefront .obj files and the colours of their .mtl; polygons are triangulated.
 
-Read are v, vn, f, usemtl and mtllib; lines, curves, textures and groups are not.
+The keywords v, vn, f, usemtl and mtllib are read; lines, curves, textures and groups are not.
 """
 
 from array import array
@@ -15,7 +15,7 @@ import numpy as np
 from ..core.arrays import FloatArray, IntArray
 
 MAX_LIBRARIES = 8  # .mtl files of one .obj
-MAX_MATERIALS = 1000  # each a part of its own; what uses yet another has no colour
+MAX_MATERIALS = 1000  # each a part of its own; parts with further materials have no colour
 
 RGB = tuple[float, float, float]
 Look = tuple[RGB | None, bool]  # the colour of a material, and whether it has a texture
@@ -33,7 +33,7 @@ class ObjPart(NamedTuple):
 
 
 class _Faces:
-    """The polygons of one material; numbers count from 1."""
+    """The polygons of one material; indices count from 1."""
 
     def __init__(self) -> None:
         self.sizes = array('q')  # corners of each
@@ -41,10 +41,10 @@ class _Faces:
         self.normals = array('q')  # of each corner, 0 where it has none
 
     def add(self, line: str, vertices: int, normals: int) -> None:
-        """Take what an f line says, before which so many v and vn lines stood."""
+        """Add a face line, which follows `vertices` v lines and `normals` vn lines."""
         corners = line.split()
         self.sizes.append(len(corners))
-        if '/' not in line and '-' not in line:  # so in many files, and then quicker
+        if '/' not in line and '-' not in line:  # the common case has a fast path
             self.vertices.extend(map(int, corners))
             self.normals.extend(repeat(0, len(corners)))
             return
@@ -60,7 +60,7 @@ def read_obj(content: bytes, read_library: ReadLibrary) -> list[ObjPart]:
     Raises:
         ValueError, IndexError, OverflowError: the file is broken.
     """
-    # A file has millions of lines: they are decoded one by one, and numbers kept as such.
+    # A file may have millions of lines: decode them one by one, and store numbers, not strings.
     lines = TextIOWrapper(
         BytesIO(content.replace(b'\\\n', b' ')), 'utf-8', errors='replace', newline='\n')
     positions, normals = array('d'), array('d')
@@ -100,7 +100,7 @@ def _three(words: str) -> tuple[float, float, float]:
 
 
 def _from_start(number: int, count: int) -> int:
-    """Return a number counted from 1; a negative one counts back from the last of `count`."""
+    """Return an index that counts from 1; a negative one counts back from the last of `count`."""
     return count + 1 + number if -count <= number < 0 else number
 
 
@@ -119,13 +119,13 @@ def _part(
 
 
 def _renumbered(numbers: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the different ones of some numbers, and for each number which of them it is."""
+    """Return the unique numbers, and for each number its index among them."""
     used = np.unique(numbers)
     return used, np.searchsorted(used, numbers)
 
 
 def _checked(numbers: IntArray, count: int) -> IntArray:
-    """Return numbers counted from 1 if there are as many as the greatest of them says."""
+    """Return the indices, which count from 1, if none exceeds `count`."""
     if len(numbers) and (numbers.min() < 1 or numbers.max() > count):
         wrong = numbers[(numbers < 1) | (numbers > count)][0]
         raise IndexError(f'a face names number {wrong} of {count}, which does not exist')
@@ -153,7 +153,7 @@ def _read_looks(text: str) -> dict[str, Look]:
             try:
                 red, green, blue = map(float, rest.split()[:3])
             except ValueError:
-                continue  # a spectral curve, or nonsense: the part is grey
+                continue  # a spectral curve or invalid text: the part is grey
             looks[name] = (red, green, blue), looks.get(name, (None, False))[1]
         elif word == 'map_Kd':
             looks[name] = looks.get(name, (None, False))[0], True

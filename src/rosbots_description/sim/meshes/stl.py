@@ -1,4 +1,4 @@
-"""Read STL files, binary and text, and write binary ones: plain triangles, no colours."""
+"""Read binary and text STL files, and write binary ones: plain triangles without colours."""
 
 import re
 
@@ -19,12 +19,12 @@ def write_stl(corners: FloatArray) -> bytes:
 
 
 def read_stl(content: bytes) -> FloatArray:
-    """Return the corners of the triangles (n, 3, 3) in the file's unit, which ROS takes for metres.
+    """Return the corners of the triangles (n, 3, 3) in the file's unit, by ROS convention metres.
 
     All solids of a text file count as one.
 
     Raises:
-        ValueError: the file is cut off, or is no STL; the message goes behind 'it'.
+        ValueError: the file is truncated or not STL; the message is a clause.
     """
     promised = int.from_bytes(content[80:_HEADER], 'little')
     there = (len(content) - _HEADER) // _TRIANGLE.itemsize

@@ -1,7 +1,7 @@
-"""One part of a Collada file by its name, as a file of its own: what SDF calls a submesh.
+"""Extract a part of a Collada file by name into a file of its own: SDF's <submesh>.
 
-A part is what a <node> of that name shows, as in Gazebo. The rest of the file stays as it is, so
-units, transforms and colours do too.
+A part is the content of the <node> of that name, as in Gazebo. The rest of the file is kept, and so
+are units, transforms and colours.
 """
 
 import hashlib
@@ -19,15 +19,15 @@ _files = HeldFiles('rosbots_submeshes_')
 
 
 def submesh_file(path: str, name: str, center: bool) -> HeldFile:
-    """Return a file that shows only the part `name` of the mesh file `path`.
+    """Return a file with only the part `name` of the mesh file `path`.
 
-    It lies in a private folder as long as what is returned is held, as a model's spec does.
+    The file exists as long as the returned object is held, e.g. by a model's spec.
 
     Args:
-        center: move the middle of the part's bounding box into the origin.
+        center: move the centre of the part's bounding box to the origin.
     Raises:
-        ModelError: the file is no Collada that can be read, or has no such part; or there is no
-            room for what is made of it.
+        ModelError: the file is not readable Collada, or has no such part; or the new file cannot
+            be written.
     """
     state = regular_state(path, 'mesh file')
     if not path.lower().endswith('.dae') or state.st_size > MAX_MESH_BYTES:

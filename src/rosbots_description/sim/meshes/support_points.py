@@ -1,17 +1,17 @@
-"""The support points of a set: those that reach farthest in given directions."""
+"""The support points of a set: the extreme points in given directions."""
 
 import numpy as np
 
 from ..core.arrays import FloatArray
 
-_AT_ONCE = 1 << 14  # products, so that they stay near the processor
+_AT_ONCE = 1 << 14  # products, which fit in the processor's cache
 
 
 def support_points(points: FloatArray, directions: FloatArray) -> list[int]:
-    """Return the numbers of the points (n, 3) that reach farthest along any of directions (m, 3).
+    """Return the indices of the points (n, 3) that are extreme in any of the directions (m, 3).
 
-    Sums of three products each, not a product of matrices: that would take gigabytes for a large
-    mesh, and of two points equally far each library would take another.
+    It computes sums of three products, not a matrix product: that would take gigabytes for a large
+    mesh, and its ties would depend on the linear algebra library.
     """
     x, y, z = points.T.copy()
     count = max(1, _AT_ONCE // len(points))

@@ -1,4 +1,4 @@
-"""Physics engines, one folder each, and the protocol by which the simulator knows them."""
+"""Physics engines, one folder each, and the protocol through which the simulator uses them."""
 
 from .bullet import make_engine
 from .compiled_model import CompiledModel

@@ -1,4 +1,4 @@
-"""A model as a physics engine takes it, made once from its description."""
+"""A model compiled for a physics engine, once per description."""
 
 import os
 from dataclasses import dataclass, replace
@@ -10,9 +10,9 @@ from ..meshes import HeldFile
 
 @dataclass(frozen=True)
 class CompiledModel:
-    """A model ready for an engine. Its mesh files are there for as long as it is.
+    """A model ready for an engine. Its mesh files exist as long as this object.
 
-    Each engine adds what it needs to this.
+    Each engine extends this class.
     """
 
     spec: ModelSpec
@@ -21,15 +21,15 @@ class CompiledModel:
 
     @property
     def has_files(self) -> bool:
-        """Whether all mesh files are still there; somebody may have cleared the folder."""
+        """Whether all mesh files still exist; the folder may have been cleared."""
         return all(map(os.path.isfile, self.files))
 
     def bare(self) -> Self:
-        """Return what the engine sees of it: no name, looks, sensors and plugins."""
+        """Return only what the engine uses: no name, visuals, sensors and plugins."""
         return replace(self, spec=bare(self.spec))
 
 
 def bare(spec: ModelSpec) -> ModelSpec:
-    """Return what of a model moves and touches."""
+    """Return the parts of a model that are relevant to physics."""
     links = tuple(replace(link, visuals=(), sensors=(), parts=()) for link in spec.links)
     return ModelSpec('', links, spec.joints, static=spec.static)

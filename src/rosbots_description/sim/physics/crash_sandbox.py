@@ -1,10 +1,10 @@
-"""A last resort: what would crash the physics engine does so in a process of its own first.
+"""Test new models in a child process, so that none can crash the simulator.
 
-Descriptions are checked as they are read and compiled, so nothing that is known to kill an engine
-gets this far. For what nobody knows of yet, a model that is new to the simulator is tested in a
-child process, in an empty world. That costs 0.03 s of processor time, once for each content. A
-heavy model costs 0.15 s, or what it takes to add it and make one step. Only processor time
-counts: a machine that is busy with other things must not make a model look bad.
+Descriptions are checked as they are read and compiled, so nothing known to crash an engine gets
+this far. Against unknown faults a model that is new to the simulator is tested in a child process,
+in an empty world. That costs 0.03 s of processor time, once per content; a heavy model costs
+0.15 s, or the time to add it and make one step. Only processor time counts, so that the result does
+not depend on the load of the machine.
 """
 
 import errno
@@ -27,17 +27,17 @@ from .fork_server import LOOK, MAX_ASLEEP, ForkServer, Killed, Unwanted, Work
 logger = logging.getLogger(__name__)
 
 STEPS = 20  # enough for contacts to be found, solved and followed
-BUDGET = 0.15  # [s, processor] from which on a heavy model makes no further step
+BUDGET = 0.15  # [s, processor] after which a heavy model makes no further step
 
-# [s, processor] after which an engine hangs: some ten times what heavy models of its size take.
-# PyBullet makes room for contacts one by one, so its first step with n boxes in one place takes
+# [s, processor] after which an engine counts as hung: about ten times the need of heavy models.
+# PyBullet allocates contacts one by one, so its first step with n coincident boxes takes
 # 5e-7 s * n^4: 3 s for 50.
 MIN_ALLOWANCE, PER_PART, PER_BYTE = 2.0, 0.2, 1e-6
-MAX_ALLOWANCE = 60.0  # to add such a model would stop the world for as long
+MAX_ALLOWANCE = 60.0  # adding such a model would stall the world for as long
 
-REMEMBERED = 1000  # contents that passed; the one that passed first is forgotten first
+REMEMBERED = 1000  # contents that passed; the oldest is forgotten first
 
-# What a child reports: that, or what is wrong with the model, or with the system.
+# The report of a child: this, or a fault of the model or of the system.
 _PASSED = 'passed'
 _SYSTEM = 'system: '
 _HANDLES = 8  # more files than the engine has open at once
@@ -45,18 +45,18 @@ _KILLED = 'it killed the process (SIGKILL), as it does where memory runs out'
 
 
 class CrashSandbox:
-    """Tests models and remembers, by their content, those that passed. Any thread may ask."""
+    """Tests models, and remembers those that passed by their content. Thread-safe."""
 
     def __init__(self, engine: PhysicsEngine) -> None:
         """Start the process that tests models; do so before there are threads.
 
         Args:
-            engine: that of an empty world. It is copied, which costs less than opening another.
+            engine: one with an empty world. The fork copies it, which is faster than opening one.
         """
         self._children = ForkServer(partial(_prepared, engine), 'crash_sandbox')
         self._passed: dict[bytes, None] = {}
         self._under_way: set[bytes] = set()
-        self._changed = threading.Condition()  # of what passed and what is under way
+        self._changed = threading.Condition()  # guards the passed and the pending contents
 
     def __enter__(self) -> 'CrashSandbox':
         return self
@@ -74,16 +74,16 @@ class CrashSandbox:
         physics: PhysicsSettings,
         is_wanted: Callable[[], bool] = lambda: True,
     ) -> None:
-        """Return if the engine survives the model; takes long only if the content is new.
+        """Return if the engine survives the model; fast unless the content is new.
 
-        Where no process can be started the model passes, with a warning.
+        If no process can be started, the model passes with a warning.
 
         Args:
             physics: the settings to test it with.
-            is_wanted: asked now and then, from 5 s on, whether to go on.
+            is_wanted: polled after 5 s and later; whether to continue.
         Raises:
-            ModelError: the engine crashed, hung or failed, or the model diverged at once; the
-                operating system failed, which tells nothing about the model; or it is not wanted.
+            ModelError: the engine crashed, hung or failed, or the model diverged at once; or the
+                operating system failed, which says nothing about the model; or it is not wanted.
         """
         bare = model.bare()
         content = hashlib.sha256(repr(bare).encode()).digest()
@@ -142,7 +142,7 @@ def _allowance(model: CompiledModel) -> float:
 
 
 def _exit_reason(exit_code: int, allowance: float) -> str:
-    """Return what the end of a process says, as a clause."""
+    """Return the reason why a process ended, as a clause."""
     match -exit_code:
         case signal.SIGPROF:
             return ('the physics engine was not done with it after '
@@ -157,7 +157,7 @@ def _exit_reason(exit_code: int, allowance: float) -> str:
 
 
 def _prepared(engine: PhysicsEngine) -> Work:
-    """Return what adds a model and reports of it; runs in the process of its own."""
+    """Return the function that tests a model; called in the child process."""
     engine.add(engine.compile(GROUND_PLANE), IDENTITY)
     return partial(_report, engine)
 
@@ -179,7 +179,7 @@ def _report(engine: PhysicsEngine, payload: bytes) -> str:
 
 
 def _live(engine: PhysicsEngine, model: CompiledModel) -> None:
-    """Do with the model what a world does: add it, step, read, remove it."""
+    """Use the model as a world does: add it, step, read, remove it."""
     body = engine.add(model, _touching(model.spec))
     for _ in range(STEPS):
         engine.step(1)
@@ -195,7 +195,7 @@ def _live(engine: PhysicsEngine, model: CompiledModel) -> None:
 
 
 def _touching(spec: ModelSpec) -> Pose:
-    """Return a pose above the ground in which the model's lowest shape is half sunk into it."""
+    """Return a pose in which the model's lowest shape is half below the ground."""
     heights = [
         compose(link.pose, collision.pose).position[2]
         for link in spec.links
@@ -205,13 +205,13 @@ def _touching(spec: ModelSpec) -> Pose:
 
 
 def _shortage(error: BaseException) -> str | None:
-    """Return what the operating system could not give, if that is why a test failed."""
+    """Return which resource the operating system lacked, if that is why a test failed."""
     if isinstance(error, MemoryError):
         return os.strerror(errno.ENOMEM)
     try:
         if isinstance(error, OSError):
             raise error
-        for _ in range(_HANDLES):  # an engine may not say why it could not open a file
+        for _ in range(_HANDLES):  # an engine may not report why it could not open a file
             os.open(os.devnull, os.O_RDONLY)
     except OSError as fault:
         return fault.strerror or str(fault)
@@ -219,7 +219,7 @@ def _shortage(error: BaseException) -> str | None:
 
 
 def _read_fault(path: str) -> str | None:
-    """Return why a file cannot be read, if it cannot; an engine might not say."""
+    """Return why a file cannot be read, if so; an engine may not report it."""
     try:
         with open(path, 'rb'):
             return None

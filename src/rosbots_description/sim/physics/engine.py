@@ -1,4 +1,4 @@
-"""What a physics engine does for a world, its plugins and its sensors: the protocol, and values.
+"""The protocol of a physics engine, for the world, its plugins and its sensors; and its values.
 
 Units are SI. Poses and vectors are in the world's frame unless it says otherwise. Links, joints and
 collisions go by the names that the `ModelSpec` gives them.
@@ -26,7 +26,7 @@ class JointState(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion:
-    """Where a model is and how it moves.
+    """Pose and velocity of a whole model.
 
     Attributes:
         roots: pose and twist of each root link.
@@ -40,15 +40,15 @@ class Motion:
 
 
 class EngineBody(Protocol):
-    """A model in an engine. To the rest of the simulator it is these names, and a handle."""
+    """A model in an engine: a handle, and the names of its parts."""
 
     @property
     def roots(self) -> Sequence[str]:
-        """Links that no joint of the model carries."""
+        """Links that are not the child of any joint."""
 
     @property
     def fixed_roots(self) -> Collection[str]:
-        """Those of them that are fixed to the world."""
+        """Root links that are fixed to the world."""
 
     @property
     def joints(self) -> Collection[str]:
@@ -69,8 +69,8 @@ class Contact(NamedTuple):
     Attributes:
         position: on the surface of `one` [m].
         normal: unit vector from `other` to `one`.
-        depth: of the overlap [m]; negative where the engine holds them a hair apart.
-        force: on `one`, friction included [N]; `other` feels the opposite.
+        depth: penetration [m]; negative if the engine keeps a small gap.
+        force: on `one`, including friction [N]; the opposite acts on `other`.
     """
 
     one: CollisionName
@@ -82,11 +82,11 @@ class Contact(NamedTuple):
 
 
 class RayHits(NamedTuple):
-    """What rays met first.
+    """The first hits of rays.
 
     Attributes:
-        distances: (n,) from the start of each ray [m]; inf where it met nothing.
-        collisions: what each ray met, None for nothing; empty unless asked for.
+        distances: (n,) from the start of each ray [m]; inf if it hit nothing (REP-117).
+        collisions: what each ray hit, None for nothing; empty unless requested.
     """
 
     distances: FloatArray
@@ -101,7 +101,7 @@ class Wrench(NamedTuple):
 
 
 class Snapshot(Protocol):
-    """All of an engine's state at one moment; only the engine that took it understands it."""
+    """The complete state of an engine at one time; opaque to all but that engine."""
 
 
 class PhysicsEngine(Protocol):
@@ -118,42 +118,42 @@ class PhysicsEngine(Protocol):
 
     @property
     def needs_rebuild(self) -> bool:
-        """Whether so much of removed bodies is left behind that a `reset` would pay."""
+        """Whether removed bodies have leaked so much memory that a `reset` pays off."""
 
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
 
     def enable(self, enabled: bool) -> None:
-        """Let bodies move in steps from now on, or not; pushes are lost while they do not."""
+        """Enable or disable the motion of bodies; forces are lost while it is disabled."""
 
     def compile(self, spec: ModelSpec) -> CompiledModel:
         """Make a model ready to be added; any thread may ask.
 
         Raises:
-            ModelError: the engine cannot take it; the sentence says why.
+            ModelError: the engine cannot simulate it; the message says why.
         """
 
     def add(self, model: CompiledModel, pose: Pose) -> EngineBody:
-        """Put a model that this engine compiled into the world, all joints at zero.
+        """Add a model that this engine compiled to the world, all joints at zero.
 
         Args:
             pose: of its frame.
         """
 
     def remove(self, body: EngineBody) -> None:
-        """Take a model out of the world."""
+        """Remove a model from the world."""
 
     def overlap(self, one: EngineBody, other: EngineBody) -> float:
-        """Return how deep two models reach into each other [m]; 0 if they do not."""
+        """Return the penetration depth of two models [m]; 0 if they do not overlap."""
 
     def has_diverged(self, body: EngineBody) -> bool:
-        """Tell whether a model moves by numbers that are not finite, or too large for any world."""
+        """Tell whether a pose or velocity of a model is not finite, or beyond all limits."""
 
     def motion(self, body: EngineBody) -> Motion:
-        """Return where a model is and how it moves, all of it."""
+        """Return pose and velocity of a whole model."""
 
     def set_motion(self, body: EngineBody, motion: Motion) -> None:
-        """Let a model be where another one of the same links and joints was, moving as it did."""
+        """Give a model the motion of another one with the same links and joints."""
 
     def link_pose(self, body: EngineBody, link: str) -> Pose:
         """Return the pose of a link's frame."""
@@ -171,18 +171,18 @@ class PhysicsEngine(Protocol):
         """Return the states of all joints, in one read."""
 
     def set_root_poses(self, body: EngineBody, poses: Mapping[str, Pose]) -> None:
-        """Put root links at poses; what they carry comes along, velocities stay."""
+        """Set the poses of root links; their descendants move along, velocities stay."""
 
     def set_root_twist(self, body: EngineBody, link: str, twist: Twist) -> None:
-        """Let a root link move with this twist of its origin; joints go on, fixed roots stay."""
+        """Set the twist of a root link's origin; joint velocities and fixed roots stay."""
 
     def set_twist(self, body: EngineBody, twist: Twist) -> None:
-        """Let all roots move with this twist of their origins, joints at rest."""
+        """Set the twist of all roots' origins; joint velocities become zero."""
 
     def set_joint_position(
         self, body: EngineBody, joint: str, position: float, velocity: float = 0.0
     ) -> None:
-        """Put a joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
+        """Set a joint's `position` [rad or m] and `velocity` [rad/s or m/s]."""
 
     def motor(self, body: EngineBody, joint: str) -> tuple[float, float]:
         """Return the motor's target velocity [rad/s or m/s] and greatest effort [N m or N]."""
@@ -196,14 +196,14 @@ class PhysicsEngine(Protocol):
         self, body: EngineBody, link: str, force: Vector, torque: Vector,
         place: Vector | None = None,
     ) -> None:
-        """Apply a force [N] and a torque [N m] to a link during the next step, beside others.
+        """Apply a force [N] and a torque [N m] to a link during the next step, added to others.
 
         Args:
-            place: where the force acts [m], None for the centre of mass.
+            place: point at which the force acts [m], None for the centre of mass.
         """
 
     def push_joint(self, body: EngineBody, joint: str, effort: float) -> None:
-        """Apply an effort [N m or N] to a joint during the next step, beside its motor."""
+        """Apply an effort [N m or N] to a joint during the next step, added to its motor's."""
 
     def can_slip(self, body: EngineBody, link: str, axis: Vector) -> bool:
         """Tell whether a link can have a slip compliance along a unit vector of its frame."""
@@ -211,45 +211,45 @@ class PhysicsEngine(Protocol):
     def set_slip_compliance(
         self, body: EngineBody, link: str, axis: Vector, compliances: tuple[float, float]
     ) -> None:
-        """Let what a link touches slide at v = compliance * friction force, from now on.
+        """Set the slip compliance of a link: v = compliance * friction force, from now on.
 
         Args:
-            axis: unit vector in the link's frame, one that `can_slip`.
+            axis: unit vector in the link's frame for which `can_slip` holds.
             compliances: along the axis, and across it [m/s per N].
         """
 
     def contacts(self, body: EngineBody, link: str | None = None) -> list[Contact]:
-        """Return the contacts of a model, or of one link, in the last step; it is `one` in each.
+        """Return the contacts of a model, or of one link, in the last step, as `one` of each.
 
-        A contact within the model is there once, by its first link.
+        A contact within the model is listed once, with its first link as `one`.
         """
 
     def cast_rays(
         self, starts: Points, ends: Points, named: bool = False
     ) -> RayHits:
-        """Return what straight rays meet first; they see all collisions, the caster's too.
+        """Return the first hits of straight rays, on all collisions including the caster's own.
 
         Args:
             starts, ends: (n, 3) [m].
-            named: whether to tell the collisions, too, which takes time.
+            named: whether to return the collisions, too, which takes time.
         """
 
     def measure_reaction(self, body: EngineBody, joint: str, wanted: bool = True) -> None:
-        """Begin or end to measure what a joint passes on, from the next step on."""
+        """Start or stop measuring a joint's reaction wrench, from the next step on."""
 
     def joint_reaction(self, body: EngineBody, joint: str) -> Wrench:
-        """Return what the parent did to the child through a joint in the last step.
+        """Return the wrench of the parent on the child through a joint in the last step.
 
-        The motor's effort is in it, pushes, springs and dampers of the joint are not. The torque is
-        about the origin of the joint's frame; both are in the axes of the child link. Zero unless
-        `measure_reaction` asked for it before that step.
+        It includes the motor's effort, but not applied efforts, springs and dampers of the joint.
+        The torque is about the origin of the joint's frame; both are in the axes of the child link.
+        Zero unless `measure_reaction` was called before that step.
         """
 
     def snapshot(self) -> Snapshot:
         """Return the state of everything, between two steps.
 
-        From here on the world moves bit for bit as it does after each `restore` of it. To that end
-        the state becomes what can be restored, which may differ in contacts and the last bits.
+        From here on the world moves bit for bit as after each `restore` of it. To that end the
+        state is set to what can be restored, which may differ in contacts and the last bits.
         """
 
     def restore(self, snapshot: Snapshot) -> None:

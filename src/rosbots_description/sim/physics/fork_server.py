@@ -1,8 +1,8 @@
-"""Work in child processes that may die of it.
+"""Run work that may crash in child processes.
 
-The children are made by a small process, which is a copy of this one from before it had threads,
-sockets and models: a fork of many threads can find a lock held for ever, and one of a big process
-takes long. The library's own fork server imports everything anew, which takes 0.3 s and 25 MB.
+The children are forked from a small server process, itself forked from this one before there were
+threads, sockets and models: a fork of a threaded process can deadlock, and a fork of a big process
+is slow. The fork server of `multiprocessing` imports everything anew, which takes 0.3 s and 25 MB.
 """
 
 import contextlib
@@ -23,23 +23,23 @@ from typing import NoReturn
 
 Work = Callable[[bytes], str]
 
-LOOK = 0.5  # [s, wall] between two looks at a child and its caller
-# Looks in a row at which a child may sleep without having computed anything since the one before.
-# What waits for a processor or a disk does not sleep, however busy the machine is.
+LOOK = 0.5  # [s, wall] period of checking a child and its caller
+# Consecutive checks at which a child may be asleep without having used any processor time. A
+# process that waits for a processor or a disk is not asleep, however busy the machine is.
 MAX_ASLEEP = 20
-LOOKS_UNASKED = 10  # after which the caller is asked whether it still waits
+LOOKS_UNASKED = 10  # after which the caller is asked whether it still waits for the report
 
-ROOM = 4096  # [bytes] for a report, set aside before, so that a full machine cannot silence a child
+ROOM = 4096  # [bytes] for a report, allocated in advance in case memory runs out
 _REQUEST = struct.Struct('d')  # allowance
-_END = struct.Struct('?i')  # whether there was a child; its exit code, or else errno
+_END = struct.Struct('?i')  # whether a child was created; its exit code, else errno
 _PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15  # of <sys/prctl.h>
 _SLEEPING = b'S'
 _prctl = ctypes.CDLL(None).prctl
 _TICK = 1.0 / os.sysconf('SC_CLK_TCK')  # [s]
 
 
-class Killed(Exception):  # noqa: N818  no error of ours
-    """A child ended without a report: `exit_code` is as that of `subprocess`."""
+class Killed(Exception):  # noqa: N818  not an error
+    """A child ended without a report; `exit_code` as in `subprocess`."""
 
     def __init__(self, exit_code: int) -> None:
         super().__init__(exit_code)
@@ -47,19 +47,19 @@ class Killed(Exception):  # noqa: N818  no error of ours
 
 
 class Unwanted(Exception):  # noqa: N818  as above
-    """Nobody waits for the report any more; the child was ended."""
+    """The caller no longer wants the report; the child was killed."""
 
 
 class ForkServer:
-    """Makes child processes of this process as it is now. Any thread may use it."""
+    """Creates child processes as copies of this process as it is now. Thread-safe."""
 
     def __init__(self, prepare: Callable[[], Work], name: str) -> None:
-        """Fork the small process; do so before there are threads.
+        """Fork the server process; do so before there are threads.
 
         Args:
-            prepare: runs once in the small process and returns what its children do with each
-                payload; what that returns is the report.
-            name: of the process and its children, as `top` shows it; of 15 characters.
+            prepare: called once in the server process; returns the function that a child calls with
+                its payload and whose result is the report.
+            name: of the process and its children, as `top` shows it; at most 15 characters.
         """
         self._channel, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
         self._server = os.fork()
@@ -68,7 +68,7 @@ class ForkServer:
         theirs.close()
 
     def close(self) -> None:
-        """End the small process and its children."""
+        """End the server process and its children."""
         self._channel.close()
         if self._server:
             os.waitpid(self._server, 0)
@@ -77,16 +77,16 @@ class ForkServer:
     def run(
         self, payload: bytes, allowance: float, is_wanted: Callable[[], bool] = lambda: True
     ) -> str:
-        """Return what a child reports of a payload, at most `ROOM` bytes of it.
+        """Return a child's report on a payload, at most `ROOM` bytes.
 
         Args:
-            allowance: processor time [s] after which the child is ended by SIGPROF; one that
-                sleeps for long is ended by SIGALRM.
-            is_wanted: asked now and then, from 5 s on, whether the report is still wanted.
+            allowance: processor time [s] after which the child is killed by SIGPROF; one that
+                sleeps for long is killed by SIGALRM.
+            is_wanted: polled after 5 s and later; whether the report is still wanted.
         Raises:
-            OSError: no child could be made.
+            OSError: no child could be created.
             Killed: it ended without a report.
-            Unwanted: `is_wanted` said no.
+            Unwanted: `is_wanted` returned False.
         """
         caller, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
         with caller, open(os.memfd_create('report'), 'w+b', buffering=0) as report:
@@ -124,35 +124,35 @@ class ForkServer:
 
 
 def _no_answer() -> OSError:
-    return ChildProcessError(errno.ECHILD, 'the process that makes others does not answer')
+    return ChildProcessError(errno.ECHILD, 'the fork server does not answer')
 
 
 class _Child:
-    """A child process, as the small process sees it."""
+    """A child process, as the server process sees it."""
 
     def __init__(self, process: int, caller: socket.socket, life: int) -> None:
         """Watch a process.
 
         Args:
-            caller: who is told of its end; closed at the other side by who no longer wants it.
-            life: a pipe that ends when it does.
+            caller: socket that gets the result; the other end is closed if it is not wanted.
+            life: a pipe that is closed when the process ends.
         """
         self._process, self.caller, self.life = process, caller, life
         self._looks_asleep = 0  # in a row
         self._used = 0.0  # [s, processor] at the last look
 
     def kill(self, number: int = signal.SIGKILL) -> None:
-        """Let it end; it is there until `end`."""
+        """Send it a signal; it remains a zombie until `end`."""
         os.kill(self._process, number)
 
     def end(self) -> None:
-        """Tell the caller how it has ended."""
+        """Send its exit code to the caller."""
         os.close(self.life)
         code = os.waitstatus_to_exitcode(os.waitpid(self._process, 0)[1])
         _answer(self.caller, True, code)
 
     def look(self) -> None:
-        """Kill it if it sleeps for ever."""
+        """Kill it if it has been asleep for too long."""
         with open(f'/proc/{self._process}/stat', 'rb') as file:
             state, *fields = file.read().rpartition(b') ')[2].split()
         used = _TICK * (int(fields[10]) + int(fields[11]))  # in user mode and in the kernel
@@ -169,17 +169,17 @@ def _answer(caller: socket.socket, made: bool, number: int) -> None:
 
 
 def _be_the_server(prepare: Callable[[], Work], channel: socket.socket, name: str) -> NoReturn:
-    """Make children until nobody can ask for them any more; they die with this process."""
+    """Serve requests until the channel is closed; the children die with this process."""
     try:
         _leave_files(channel.fileno())
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)  # it ends with its parent, a child by itself
+            signal.signal(number, signal.SIG_IGN)  # it ends with its parent
         _prctl(_PR_SET_NAME, name.encode())
         faulthandler.disable()
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # a crash leaves no file behind
         logging.disable()
         gc.freeze()
-        gc.disable()  # what the parent's objects do at their end is not for us to do
+        gc.disable()  # the finalisers of the parent's objects must not run here
         _serve(prepare(), channel)
     finally:
         os._exit(0)
@@ -206,7 +206,7 @@ def _serve(work: Work, channel: socket.socket) -> None:
                 elif key.fd == child.life:
                     children.remove(child)
                     selector.unregister(child.life)
-                    with contextlib.suppress(KeyError):  # its caller had gone
+                    with contextlib.suppress(KeyError):  # its caller has gone
                         selector.unregister(child.caller)
                     child.end()
                 elif child in children:  # its caller has gone
@@ -219,10 +219,10 @@ def _serve(work: Work, channel: socket.socket) -> None:
 
 
 def _make_child(work: Work, allowance: float, files: list[int]) -> _Child | None:
-    """Return a child that works on a payload; None if none can be made.
+    """Return a child that works on a payload; None if none can be created.
 
     Args:
-        files: one that holds the payload and is to hold the report, and the caller's socket.
+        files: one with the payload, which will hold the report, and the caller's socket.
     """
     if len(files) < 2:  # there are no file handles left
         for file in files:
@@ -251,17 +251,17 @@ def _make_child(work: Work, allowance: float, files: list[int]) -> _Child | None
 def _be_the_child(
     work: Work, allowance: float, report: int, death: int, parent: int
 ) -> NoReturn:
-    """Work on the payload and write the report; `death` is closed by the end of the process."""
+    """Process the payload and write the report; the end of this process closes `death`."""
     try:
         _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() != parent:
-            os._exit(1)  # it was gone before
+            os._exit(1)  # the parent has ended already
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, allowance)
         _leave_files(report, death)
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as file:
-            file.write('1000')  # where memory runs out, this one is to go first
+            file.write('1000')  # if memory runs out, this process is to be killed first
         payload = os.pread(report, os.fstat(report).st_size - ROOM, ROOM)
         os.pwrite(report, work(payload).encode()[:ROOM], 0)
         os._exit(0)
@@ -270,11 +270,11 @@ def _be_the_child(
 
 
 def _leave_files(*kept: int) -> None:
-    """Print nowhere, and keep no file, pipe or connection open that somebody else closes."""
+    """Discard all output, and close all inherited files, pipes and sockets but `kept`."""
     nowhere = os.open(os.devnull, os.O_RDWR)
     for number in range(3):
         os.dup2(nowhere, number)
     for number in map(int, os.listdir('/proc/self/fd')):
         if number > 2 and number not in kept:
-            with contextlib.suppress(OSError):  # the listing's own is gone
+            with contextlib.suppress(OSError):  # that of the directory listing
                 os.close(number)

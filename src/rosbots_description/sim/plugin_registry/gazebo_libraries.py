@@ -1,13 +1,13 @@
-"""The plugin libraries that descriptions name, and what to say of those that are not here."""
+"""The plugin libraries of Gazebo, and the messages about those that are not available here."""
 
 from difflib import get_close_matches
 
 from .registry import known_filenames, library_name, sensor_plugin_class
 
 PAGE = 'doc/gazebo_compatibility.md'
-_CLOSE = 0.9  # similarity of a name that is misspelt; that of somebody else's library is less
+_CLOSE = 0.9  # similarity above which a name counts as misspelt
 
-# Of gazebo_ros_pkgs; those that are built in by now are looked for first.
+# Of gazebo_ros_pkgs; the built-in ones are looked up first.
 _OF_GAZEBO_ROS = (
     'skid_steer_drive', 'planar_move', 'tricycle_drive', 'joint_state_publisher',
     'joint_pose_trajectory', 'laser', 'gpu_laser', 'block_laser', 'range', 'camera',
@@ -25,9 +25,9 @@ def missing_libraries() -> list[str]:
 
 
 def library_remark(filename: str) -> str:
-    """Return what is to be said of a plugin's library that is not run where it is asked for.
+    """Return the remark about a plugin's library that is not loaded at its place.
 
-    One that Gazebo has reads differently from one that is misspelt, and from anybody else's.
+    It distinguishes Gazebo's libraries, misspelt names and third-party libraries.
     """
     name, missing = library_name(filename), missing_libraries()
     if name in missing:

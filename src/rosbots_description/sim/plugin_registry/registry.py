@@ -8,7 +8,7 @@ _SENSORS: dict[str, type] = {}  # by type
 
 
 def register(filename: str) -> Callable[[type], type]:
-    """Return a class decorator that makes a plugin loadable by the file name descriptions use."""
+    """Return a class decorator that registers a plugin under its library's file name."""
     return _adder(_PLUGINS, filename)
 
 

@@ -1,4 +1,4 @@
-"""Model plugins, chosen by the library name that a description gives; importing registers them."""
+"""Model plugins, selected by library name in a description; importing registers them."""
 
 from .base import ModelPlugin, PeriodicPlugin
 from .drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive

@@ -1,4 +1,4 @@
-"""What every model plugin is: tags, outputs, a life beside its model, and work at a rate."""
+"""Base classes of model plugins: tags, outputs, lifecycle, and an update rate."""
 
 import logging
 from collections.abc import Iterable, Mapping
@@ -16,18 +16,18 @@ logger = logging.getLogger(__name__)
 
 
 class ModelPlugin(Plugin):
-    """Code that lives with a model: load, run in the steps it asks for, reset, unload.
+    """Code that runs with a model: load, run in the requested steps, reset, unload.
 
-    A subclass reads its tags from `params` in `load`. `outputs` has by name what it gives out;
-    `is_read` tells whether anybody reads any of it.
+    A subclass reads its tags from `params` in `load`. `outputs` maps names to its outputs;
+    `is_read` tells whether any of them has a reader.
     """
 
-    prefix = ''  # how its log lines begin; {} stands for the namespace
+    prefix = ''  # of its log messages; {} is the namespace
     missing: Missing = staticmethod(says_default)
-    missing_level = logging.WARNING  # at which that is said
-    # The namespace where <robotNamespace> is absent, or empty; {} stands for the model's name.
+    missing_level = logging.WARNING  # log level of that message
+    # The namespace if <robotNamespace> is absent or empty; {} is the model's name.
     absent_namespace = empty_namespace = ''
-    hints: Mapping[str, str] = {}  # by a tag that is not read: what to say of it
+    hints: Mapping[str, str] = {}  # unread tag -> remark about it
 
     def __init__(self, world: 'World', model: 'Model', spec: PluginSpec) -> None:
         self.world = world
@@ -42,12 +42,12 @@ class ModelPlugin(Plugin):
         self.is_read = False
 
     def find_namespace(self, given: str | None) -> str:
-        """Return the namespace of its topics for the text of <robotNamespace>, None if absent."""
+        """Return the namespace of its topics, given the text of <robotNamespace> (None: absent)."""
         fallback = self.absent_namespace if given is None else self.empty_namespace
         return given or fallback.format(self.model.name)
 
     def start(self) -> None:
-        """Load and begin; say which tags are not read."""
+        """Load and start; log the tags that were not read."""
         self.load()
         unread = self.params.unread()
         if unread:
@@ -59,14 +59,14 @@ class ModelPlugin(Plugin):
         self.restart()
 
     def load(self) -> None:
-        """Read the tags and find what the plugin works on.
+        """Read the tags, and find the links and joints to work on.
 
         Raises:
-            PluginError: a tag makes no sense, or something is missing.
+            PluginError: a tag is not valid, or something is missing.
         """
 
     def output(self, name: str, asked_for: bool = True) -> Output[Any]:
-        """Return a new output; if the description asks for it, it has a place in `outputs`."""
+        """Return a new output; it is added to `outputs` if the description requests it."""
         made: Output[Any] = Output(self.count_readers)
         self._all_outputs.append(made)
         if asked_for:
@@ -74,19 +74,19 @@ class ModelPlugin(Plugin):
         return made
 
     def count_readers(self) -> None:
-        """Take note of which outputs have readers."""
+        """Determine which outputs have readers."""
         self.is_read = any(output.wanted for output in self._all_outputs)
         self.readers_changed()
 
     def readers_changed(self) -> None:
-        """Take note that an output has its first reader, or lost its last one."""
+        """Handle that an output got its first reader, or lost its last one."""
 
     def shared(self) -> Iterable[object]:
         """Return description, tags and outputs."""
         return (self.spec, self.params, *self._all_outputs)
 
     def link(self, tag: str) -> 'tuple[Link, Pose]':
-        """Return the link that a tag names, or what it was reduced into, and its pose in that.
+        """Return the link that a tag names, or its parent after reduction, and the pose in that.
 
         Raises:
             PluginError: the tag is missing, or there is no such link.
@@ -99,7 +99,7 @@ class ModelPlugin(Plugin):
                 f'{self.log_prefix}{tag}: {name} does not exist: {error}') from None
 
     def joint(self, name: str, what: str) -> 'Joint':
-        """Return a joint by its name; `what` it is stands in the message of the `PluginError`."""
+        """Return a joint by its name; `what` describes it in the message of the `PluginError`."""
         try:
             return self.model.joint(name)
         except NotFoundError as error:
@@ -109,16 +109,16 @@ class ModelPlugin(Plugin):
 
 
 class PeriodicPlugin(ModelPlugin):
-    """A plugin that works at a rate: `update` before physics, `report` after it.
+    """A plugin with an update rate: `update` before physics, `report` after it.
 
-    A subclass calls `set_rate` in `load`; without that it works in every step. One that does
-    nothing before physics only watches: it sleeps while nobody reads its outputs.
+    A subclass calls `set_rate` in `load`; by default it runs in every step. A plugin that does
+    nothing before physics is suspended while its outputs have no readers.
     """
 
-    # A period ends in the first step that is later than its end, as in most of Gazebo's plugins;
-    # False: also in a step at its end.
+    # True: due at the first step with t > t_last + period, as in most of Gazebo's plugins;
+    # False: with t >= t_last + period.
     later = True
-    keeps_rate = True  # the mean rate is exact; False: a period begins in the step that ended one
+    keeps_rate = True  # the mean rate is exact; False: a period starts where the last ended
     every_step = False  # also calls `before_each_step` and `after_each_step`
     _period_ns = 0
 
@@ -129,40 +129,40 @@ class PeriodicPlugin(ModelPlugin):
         self._acts = acts != (base.update, base.before_each_step)
 
     def set_rate(self, rate: float) -> None:
-        """Work at this rate [Hz] from the next period on; not above 0: in every step."""
+        """Set the update rate [Hz] from the next period on; <= 0: every step."""
         self._period_ns = round(NANOSECONDS / rate) if rate > 0.0 else 0
 
     def update(self, elapsed: float) -> None:
-        """Act before physics; the last time was `elapsed` [s] ago."""
+        """Act before physics; `elapsed` [s] is the time since the last update."""
 
     def report(self) -> None:
-        """Send readings of the state at the end of the step, which is that at its stamp.
+        """Send readings of the state at the end of the step, which is the state at its stamp.
 
-        It is called only if somebody reads an output.
+        It is called only if an output has a reader.
         """
 
     def before_each_step(self, now_ns: int) -> None:
         """Act before physics in every step, at the time `now_ns` [ns]."""
 
     def after_each_step(self, now_ns: int) -> None:
-        """Read in every step what physics made of it, at the time `now_ns` [ns]."""
+        """Read the state after physics in every step, at the time `now_ns` [ns]."""
 
     def wake(self) -> None:
-        """Begin to watch, after a time in which nobody read."""
+        """Resume after a time without readers."""
 
     def restart(self) -> None:
-        """Begin a period, and as `reset` begins."""
+        """Start a period, and reset."""
         self.begin_period()
         self.reset()
 
     def begin_period(self) -> None:
-        """Let a period begin now."""
+        """Start a period now."""
         self._last_ns = self.world.clock.now_ns
         self._reports = False
         self._set_due()
 
     def before_step(self) -> None:
-        """Do what is due before physics."""
+        """Run what is due before physics."""
         now_ns = self.world.clock.now_ns
         if self.every_step:
             self.before_each_step(now_ns)
@@ -176,14 +176,14 @@ class PeriodicPlugin(ModelPlugin):
         self._set_due()
 
     def after_step(self) -> None:
-        """Do what is due after physics."""
+        """Run what is due after physics."""
         if self.every_step:
             self.after_each_step(self.world.clock.now_ns)
         if self._reports and self.is_read:
             self.report()
 
     def readers_changed(self) -> None:
-        """Fall asleep, or wake up in the rhythm that there would be without having slept."""
+        """Suspend, or resume in the phase that it would have without the suspension."""
         if self.due == NEVER:
             behind = self.world.clock.now_ns - self._last_ns - self.later
             if self._period_ns and self.keeps_rate:

@@ -25,7 +25,7 @@ class Params:
         self, element: Element, prefix: str = '', missing: Missing | None = None,
         level: int = logging.WARNING,
     ) -> None:
-        """Read the tags of `element`; `missing` words what is said of one that is not there."""
+        """Read the tags of `element`; `missing` words the warning about a missing tag."""
         self.prefix = prefix
         self._element = element
         self._missing, self._level = missing or says_default, level
@@ -33,7 +33,7 @@ class Params:
         self.values: dict[str, str | float | bool] = {}
 
     def text(self, tag: str) -> str | None:
-        """Return the tag's text without surrounding blanks, or None; says nothing."""
+        """Return the tag's text without surrounding blanks, or None; logs nothing."""
         self._read.add(tag)
         child = self._element.child(tag)
         return None if child is None else child.text.strip()
@@ -42,9 +42,9 @@ class Params:
         """Return the tag's value in the type of `default`; a missing tag is a warning.
 
         Args:
-            shown: what the warning names as default where it is not the plain value.
+            shown: text of the default in the warning, if it is not the plain value.
         Raises:
-            PluginError: a number was expected and the text is none, or is not finite.
+            PluginError: a number was expected, and the text is not a finite number.
         """
         text = self.text(tag)
         value = default
@@ -75,7 +75,7 @@ class Params:
         return text
 
     def vector(self, tag: str) -> Vector:
-        """Return a tag's three numbers; zeros where it is missing, which is said as by `read`.
+        """Return a tag's three numbers; zeros if it is missing, with the warning of `read`.
 
         Raises:
             PluginError: the text is anything else.
@@ -99,10 +99,10 @@ class Params:
         return value
 
     def rate(self, tag: str, default: float) -> float:
-        """Return a rate [Hz], as `read` does; not above 0 means in every step.
+        """Return a rate [Hz], as `read` does; <= 0 means every step.
 
         Raises:
-            PluginError: that would be hardly ever.
+            PluginError: it is positive but below SLOWEST_RATE.
         """
         value = self.read(tag, default)
         if 0.0 < value < SLOWEST_RATE:
@@ -113,11 +113,11 @@ class Params:
         return value
 
     def ignore(self, *tags: str) -> None:
-        """Count `tags` as read: they are known to mean nothing here."""
+        """Mark `tags` as read: they are known to have no effect here."""
         self._read.update(tags)
 
     def unread(self) -> list[str]:
-        """Return the tags nobody asked for, in order, each once."""
+        """Return the tags that were not read, in order, each once."""
         return list(dict.fromkeys(c.tag for c in self._element.children if c.tag not in self._read))
 
     def _boolean(self, tag: str, text: str, default: bool) -> bool:

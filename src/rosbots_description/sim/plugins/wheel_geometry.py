@@ -1,4 +1,4 @@
-"""What a wheel is: its radius, its axle, and how two of them carry a robot."""
+"""Geometry of wheels: radius, axle, track."""
 
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def radius_of(joint: 'Joint') -> float | None:
-    """Return the radius of a wheel [m]; None if it is not a single cylinder or ball."""
+    """Return the radius of a wheel [m]; None if it is not a single cylinder or sphere."""
     collisions = _link(joint).collisions
     if len(collisions) != 1 or not isinstance(collisions[0].geometry, Cylinder | Sphere):
         return None
@@ -18,20 +18,20 @@ def radius_of(joint: 'Joint') -> float | None:
 
 
 def track_of(left: 'Joint', right: 'Joint') -> float:
-    """Return the distance of two wheels along their axle [m]; below 0 if their sides are swapped.
+    """Return the distance of two wheels along their axle [m]; negative if they are swapped.
 
-    A wheel that turns forward drives across its axle, so its axle points to the left.
+    The axle of a wheel that turns forward points to the left.
     """
     return dot(axle_of(left), subtract(_middle(left), _middle(right)))
 
 
 def drives_towards_x(joint: 'Joint') -> bool:
-    """Tell whether a wheel that turns forward drives the model towards its x axis, not away."""
+    """Tell whether positive rotation of a wheel drives the model towards +x."""
     return cross(axle_of(joint), UP)[0] >= 0.0
 
 
 def same_way(left: 'Joint', right: 'Joint') -> bool:
-    """Tell whether both wheels drive the same way when they turn forward."""
+    """Tell whether positive rotation of both wheels drives in the same direction."""
     return dot(axle_of(left), axle_of(right)) > 0.0
 
 

@@ -1,4 +1,4 @@
-"""The public face: a world with its file formats, plugins and engine, as a script wants it."""
+"""The public API: a world with its file formats, plugins and engine."""
 
 from .world import World
 

@@ -1,4 +1,4 @@
-"""From what a script names, a file, an address or a text, to a model."""
+"""Read a model from a file, an address or a text."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -24,7 +24,7 @@ Description = str | os.PathLike[str]
 
 
 class Descriptions:
-    """Reads models, and knows where package:// and model:// addresses lead."""
+    """Reads models, and resolves package:// and model:// addresses."""
 
     def __init__(self, package_path: Paths, model_path: Paths) -> None:
         self._package_path = tuple(package_path)
@@ -35,7 +35,7 @@ class Descriptions:
         ])
 
     def packages(self, inside: str | None = None) -> PackageSearch:
-        """Return the search for packages of a description that the file `inside` holds."""
+        """Return the package search for a description in the file `inside`."""
         return PackageSearch(self._package_path, inside)
 
     def read(
@@ -44,7 +44,7 @@ class Descriptions:
         """Return the model of a URDF, xacro or SDF, and the pose that the description gives it.
 
         Args:
-            name: of the model; '' for the one that the description gives it.
+            name: of the model; '' for the one in the description.
             arguments: for xacro.
         Raises:
             ModelError: it cannot be read or simulated.
@@ -64,14 +64,14 @@ class Descriptions:
                 else read_file(source, MAX_XML_BYTES, 'model file')
         tag = root_tag(text)
         if tag not in ('robot', 'sdf', 'gazebo'):
-            raise ModelError(f'{source}: it is no model; that is XML, and its outermost element is '
+            raise ModelError(f'{source}: it is not a model; a model is XML whose root element is '
                              f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}')
         load = load_urdf if tag == 'robot' else load_sdf
         return load(text, name or _own_name(text, source), source=source,
                     find_package=find_package, find_model=self.find_model)
 
     def _path(self, address: str) -> str:
-        """Return the file that an address or a path stands for."""
+        """Return the file of an address or a path."""
         if not address.startswith('package://'):
             return address
         package, _, inner = address.removeprefix('package://').partition('/')

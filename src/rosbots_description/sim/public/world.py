@@ -1,4 +1,4 @@
-"""The world of a script: models from files and texts, plugins, time, forces."""
+"""The world for scripts: models from files and texts, plugins, time, forces."""
 
 import math
 import os
@@ -42,7 +42,7 @@ class World(runtime.World):
         package_path: Paths = (),
         model_path: Paths = (),
     ) -> None:
-        """Open a world with nothing in it, not even a ground.
+        """Open an empty world, without even a ground.
 
         Args:
             physics: step size [s], gravity [m/s^2] and the rest; by default 1 ms and -9.8 along z.
@@ -62,7 +62,7 @@ class World(runtime.World):
         package_path: Paths = (),
         model_path: Paths = (),
     ) -> Self:
-        """Return what Gazebo's empty world is: a ground plane at z = 0, and the sun.
+        """Return Gazebo's empty world: a ground plane at z = 0, and the sun.
 
         The arguments are those of `World`.
         """
@@ -76,7 +76,7 @@ class World(runtime.World):
     ) -> Self:
         """Return the world that an SDF file describes.
 
-        A model that cannot be simulated is an error in the log, and the world is made without it.
+        A model that cannot be simulated is left out, with an error in the log.
 
         Args:
             path: of the file; or the name of one along GAZEBO_RESOURCE_PATH or among our own:
@@ -85,7 +85,7 @@ class World(runtime.World):
             model_path: see `World`.
         Raises:
             NotFoundError: there is no such file.
-            ModelError: it is no SDF with a <world>, or a number of the world itself is wrong.
+            ModelError: it is not SDF with a <world>, or a number of the world is not valid.
         """
         places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_LIBRARY)]
         file = find_world(os.fspath(path), places)
@@ -114,7 +114,7 @@ class World(runtime.World):
         self.close()
 
     def close(self) -> None:
-        """Free what the world holds; it cannot be used afterwards. A second time does nothing."""
+        """Free the world's resources; it cannot be used afterwards. Idempotent."""
         if not self._closed:
             self._closed = True
             super().close()
@@ -136,14 +136,14 @@ class World(runtime.World):
         yaw: float = 0.0,
         arguments: Mapping[str, str] | None = None,
     ) -> Model:
-        """Put a model into the world and load its plugins.
+        """Spawn a model and load its plugins.
 
         A plugin that fails is an error in the log, and the model is spawned without it.
 
         Args:
             model: a URDF, xacro or SDF: the path of a file, its package:// or model:// address, or
-                the text itself. A file whose name ends with .xacro is expanded. Or what `compile`
-                has made of one, which saves time where it is spawned again.
+                the text itself. A file whose name ends with .xacro is expanded. Or the result of
+                `compile`, which saves time for repeated spawns.
             name: of the model in this world; '' for the one in the description.
             pose: of the model's frame in the world, in place of x, y, z and yaw.
             x: position of the model's frame in the world [m].
@@ -153,7 +153,7 @@ class World(runtime.World):
             arguments: for a xacro file, as in `NAME:=VALUE`.
         Raises:
             ModelError: the description cannot be read or simulated, the name is taken, or the pose
-                is too far away. The sentence says where and why.
+                is too far away. The message says where and why.
             ValueError: a number is not finite, or both `pose` and one of x, y, z, yaw are given.
         """
         self._require_open()
@@ -173,7 +173,7 @@ class World(runtime.World):
         """Return the model of that name.
 
         Raises:
-            NotFoundError: there is none; the sentence names those that there are.
+            NotFoundError: there is none; the message lists the models that exist.
         """
         if name not in self.models:
             raise NotFoundError(f"there is no model '{name}' in this world; its models: "
@@ -181,7 +181,7 @@ class World(runtime.World):
         return self.models[name]
 
     def step(self, steps: int = 1) -> int:
-        """Advance by so many steps; see `run`."""
+        """Advance by `steps`; see `run`."""
         return self.run(steps)
 
     def run(self, steps: int | None = None, *, seconds: float | None = None) -> int:
@@ -191,10 +191,10 @@ class World(runtime.World):
             steps: how many, at least 0.
             seconds: or how long [s], rounded to whole steps.
         Returns:
-            how many steps were made: all, or fewer where time ends after 136 years.
+            the number of steps made: all, or fewer where time ends after 136 years.
 
         Raises:
-            ValueError: a number is negative or not finite, or not one of the two is given.
+            ValueError: a number is negative or not finite, or not exactly one of both is given.
         """
         self._require_open()
         if seconds is not None and steps is None:
@@ -214,7 +214,7 @@ class World(runtime.World):
         *,
         seconds: float = math.inf,
     ) -> None:
-        """Push a link from the next step on, beside all other forces.
+        """Apply a wrench to a link from the next step on, added to all other forces.
 
         Args:
             link: of a model in this world.
@@ -228,7 +228,7 @@ class World(runtime.World):
         self.external_forces.add(link, partial(link.push, force, torque), 0, _duration_ns(seconds))
 
     def apply_effort(self, joint: Joint, effort: float, *, seconds: float = math.inf) -> None:
-        """Push a joint from the next step on, beside its motor; its effort limit holds.
+        """Apply an effort to a joint from the next step on, added to its motor's; limits hold.
 
         Args:
             joint: of a model in this world.
@@ -241,7 +241,7 @@ class World(runtime.World):
         self.external_forces.add(joint, partial(joint.push, effort), 0, _duration_ns(seconds))
 
     def clear_forces(self, pushed: Link | Joint) -> None:
-        """End all that `apply_wrench` or `apply_effort` does to a link or joint."""
+        """End all forces of `apply_wrench` or `apply_effort` on a link or joint."""
         self.external_forces.cancel(lambda target: target is pushed)
 
     def _require_open(self) -> None:
@@ -255,7 +255,7 @@ def _require_finite(what: str, numbers: tuple[float, ...]) -> None:
 
 
 def _duration_ns(seconds: float) -> int:
-    """Return a duration in ns, negative for one without end."""
+    """Return a duration [ns], negative for an infinite one."""
     if math.isnan(seconds) or seconds < 0.0:
         raise ValueError(f'seconds is {seconds}; a push takes at least 0 s')
     return -1 if math.isinf(seconds) else round(seconds * NANOSECONDS)

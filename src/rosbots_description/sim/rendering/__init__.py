@@ -1,4 +1,4 @@
-"""What the world looks like: pictures without a screen, and meshes for a window."""
+"""Rendering: camera images without a display, and meshes for RViz."""
 
 from .camera import EYE, TARGET, View
 from .gl import BYTES, Lens

@@ -1,4 +1,4 @@
-"""A camera of the simulator's own: pictures of the world on machines without a screen."""
+"""An offscreen camera: images of the world on machines without a display."""
 
 import math
 from collections.abc import Iterator
@@ -16,14 +16,14 @@ EYE: Vector = (1.9, -1.9, 1.3)  # [m] a good look at a robot that stands at the 
 TARGET: Vector = (0.0, 0.1, 0.25)  # [m]
 SIZE = (640, 480)  # pixels
 FIELD_OF_VIEW = math.radians(45.0)
-GROUND_SHOWN = 20.0  # [m] edge of the piece of an endless plane that is drawn
+GROUND_SHOWN = 20.0  # [m] edge of the square of an infinite plane that is drawn
 _TILE = 0.5  # [m] edge of the squares it is drawn in
 
 
 class View:
-    """Pictures of a world, as it is at the moment of asking.
+    """Images of a world in its current state.
 
-    Costs nothing until the first picture; a picture of the article's robot takes about 0.1 s.
+    Free until the first image; an image of the article's robot takes about 0.1 s.
     """
 
     def __init__(self, world: World) -> None:
@@ -62,7 +62,7 @@ class View:
         return self._canvas.picture(size, eye, target, field_of_view)
 
     def _follow_world(self, canvas: Canvas) -> None:
-        """Take out what has left the world and put in what is new."""
+        """Remove deleted models and add new ones."""
         for name, (model, parts) in list(self._shown.items()):
             if self._world.models.get(name) is not model:
                 for _, _, numbers in parts:
@@ -82,7 +82,7 @@ class View:
 
 
 def _parts(visual: Visual) -> list[tuple[Triangles | Box | Sphere | Cylinder, Colour]]:
-    """Return the shapes of a visual; a mesh without a material has one for each own colour."""
+    """Return the shapes of a visual; a mesh without a material has one per colour of its own."""
     geometry, rgba = visual.geometry, (visual.material or Material()).rgba
     if isinstance(geometry, Mesh):
         return [

@@ -1,4 +1,4 @@
-"""Drawing: shapes that are only seen, and a camera to see them by."""
+"""Software rendering: visual shapes and a camera."""
 
 import math
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ _SUN = (2.0, -1.0, 4.0)  # direction towards the light, world axes
 
 @dataclass(frozen=True)
 class Triangles:
-    """A surface: vertices (n, 3) [m], and faces (m, 3), numbers of vertices."""
+    """A surface: vertices (n, 3) [m], and faces (m, 3), indices of vertices."""
 
     vertices: FloatArray
     faces: IntArray
 
 
 class Canvas:
-    """Things that are only seen, in a PyBullet world of their own, and a camera to see them by.
+    """Visual shapes in a PyBullet world of their own, and a camera.
 
-    Drawing is done in software, so it needs neither a display nor a graphics card.
+    It renders in software, so it needs neither a display nor a graphics card.
     """
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ class Canvas:
         pybullet.disconnect(self._client)
 
     def add(self, shape: Triangles | Box | Sphere | Cylinder, rgba: Colour) -> int:
-        """Put a shape into the picture; return the number to place and remove it by."""
+        """Add a shape; return its number, for `place` and `remove`."""
         match shape:
             case Triangles(vertices, faces):
                 kind = pybullet.GEOM_MESH
@@ -53,7 +53,7 @@ class Canvas:
         return number
 
     def remove(self, number: int) -> None:
-        """Take a shape out of the picture."""
+        """Remove a shape."""
         pybullet.removeBody(number, self._client)
 
     def place(self, number: int, pose: Pose) -> None:
@@ -63,7 +63,7 @@ class Canvas:
     def picture(
         self, size: tuple[int, int], eye: Vector, target: Vector, field_of_view: float
     ) -> ByteArray:
-        """Return what is seen from `eye` looking at `target` [m], z up: (height, width, 3) bytes.
+        """Return the view from `eye` towards `target` [m], z up: (height, width, 3) RGB bytes.
 
         Args:
             size: width and height in pixels.

@@ -1,4 +1,4 @@
-"""Visuals as mesh files that the sun of the window lights.
+"""Visuals as Ogre mesh files, which RViz shows lit by a sun.
 
 RViz has one light, at the eye, and markers cannot bring another. But the materials of an Ogre mesh
 file RViz takes by name, and `ogre_media` of the package rosbots_simulator defines ours: its vertex
@@ -33,7 +33,7 @@ Surface = tuple[FloatArray, IntArray, FloatArray]
 
 
 class SunlitMeshes:
-    """Makes the files, each as long as it is held. Any thread may ask for them."""
+    """Writes the files, each kept while it is held. Thread-safe."""
 
     def __init__(self) -> None:
         self._files = HeldFiles('rosbots_sunlit_')

@@ -1,4 +1,4 @@
-"""Where files are found by their addresses, and how they are opened."""
+"""Resolve the addresses of files, and open them safely."""
 
 from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 from .search_path import Directories, path_directories
 
 _MANIFEST = 'package.xml'
-# This package itself: its source tree, or where pip puts what belongs to it.
+# This package itself: its source tree, or the folder of its data as installed by pip.
 _OWN = (Path(__file__).resolve().parents[4], Path(sys.prefix, 'share', 'rosbots_description'))
 
 

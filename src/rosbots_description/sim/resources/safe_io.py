@@ -1,7 +1,7 @@
-"""Read files that a description names, and nothing else that has a path.
+"""Read regular files that a description names, and no other kind of file.
 
-A path from outside may lead to a pipe, a device or a folder: reading those can wait for ever, fill
-the memory or do something. Only regular files are opened, and no more is read than a bound allows.
+A path from user input may be a pipe, a device or a folder: reading those can block for ever, fill
+the memory or have side effects. Only regular files are opened, and read up to a limit.
 """
 
 import os
@@ -16,7 +16,7 @@ _OTHERS = {
 
 
 def regular_state(path: str, kind: str = 'file') -> os.stat_result:
-    """Return the state of a regular file, which is not opened.
+    """Return the status of a regular file without opening it.
 
     Args:
         kind: what the message calls it.
@@ -39,11 +39,11 @@ def read_file(path: str, most: int, kind: str = 'file') -> bytes:
         most: bytes that are accepted.
         kind: what the message calls it.
     Raises:
-        ModelError: it is no regular file, has more bytes, or cannot be read.
+        ModelError: it is not a regular file, has more bytes, or cannot be read.
     """
     regular_state(path, kind)  # before opening it, since a device may do something when opened
     try:
-        # Without waiting: another file may have taken its place in the meantime.
+        # Non-blocking: a pipe may have taken its place in the meantime.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
         with open(descriptor, 'rb') as file:
             state = os.fstat(descriptor)
@@ -53,7 +53,7 @@ def read_file(path: str, most: int, kind: str = 'file') -> bytes:
                     f"{kind} '{path}' has {state.st_size} bytes; at most {most} are accepted: "
                     'simplify it'
                 )
-            # What says it is empty is: files of the kernel would tell without end.
+            # Read no more than the size: files of the kernel claim 0 bytes and may never end.
             return file.read(state.st_size) if state.st_size else b''
     except OSError as error:
         raise ModelError(f"{kind} '{path}' cannot be read: {error.strerror}") from error
@@ -66,10 +66,10 @@ def _require_regular(state: os.stat_result, path: str, kind: str) -> None:
 
 
 def within(path: str, folder: str) -> bool:
-    """Tell whether a path, as it is written, lies in a folder or is it.
+    """Tell whether a path, as written, is in a folder or is the folder itself.
 
-    Links are not followed: in a workspace of links, as catkin makes them, what lies in a package
-    may well be stored elsewhere. Who may put a link into a package may put any file there too.
+    Symbolic links are not resolved: in a workspace of links, as catkin makes them, the files of a
+    package may be stored elsewhere. Whoever can add a link to a package can add any file, too.
     """
     path, folder = os.path.normpath(path), os.path.normpath(folder)
     return path == folder or path.startswith(folder.rstrip('/') + '/')

@@ -1,4 +1,4 @@
-"""Files that the simulator makes for itself: private, and gone when their owner is."""
+"""Temporary files of the simulator: private, and removed with their owner."""
 
 import contextlib
 import os
@@ -14,11 +14,10 @@ MEMORY = '/dev/shm'  # a folder that needs no disk; Linux has it
 
 
 class ScratchFolder:
-    """A private folder for files of ours, made when the first one is written.
+    """A private temporary folder, created when its first file is written.
 
-    It lies where temporary files do (TMPDIR), or in memory where nothing can be written there.
-    Without a file nothing is made, so a full or read-only disk harms nobody who needs none.
-    Any thread may use it.
+    It is in the folder for temporary files (TMPDIR), or in memory if that is not writable. A full
+    or read-only disk therefore matters only if a file is needed. Thread-safe.
     """
 
     def __init__(self, prefix: str) -> None:
@@ -29,16 +28,16 @@ class ScratchFolder:
         self._lock = threading.Lock()
 
     def write(self, name: str, content: bytes, source: str) -> Path:
-        """Write a file so that nobody ever sees a part of it; return its path.
+        """Write a file atomically; return its path.
 
         Args:
-            source: the mesh file that it is made from, for the message.
+            source: the mesh file that it is derived from, for the message.
         Raises:
-            ModelError: it can be written nowhere; the sentence names each place and its fault.
+            ModelError: it cannot be written; the message names each folder and its fault.
         """
         with self._lock:
             for folder in self._folders:
-                with contextlib.suppress(OSError):  # it was deleted, or its disk is full by now
+                with contextlib.suppress(OSError):  # it was deleted, or its disk is full
                     return _write(Path(folder.name), name, content)
             return self._write_anew(name, content, source)
 
@@ -49,7 +48,7 @@ class ScratchFolder:
                 self._folders.pop().cleanup()
 
     def _write_anew(self, name: str, content: bytes, source: str) -> Path:
-        """Write into a new folder, in the first place that takes the file."""
+        """Write into a new folder, in the first location that is writable."""
         faults = []
         for place in (_temporary_folder(), MEMORY):
             try:
@@ -72,29 +71,29 @@ class ScratchFolder:
 
 
 class HeldFile(str):
-    """The path of a file of ours, which stays as long as somebody holds this very object.
+    """The path of a temporary file, which exists as long as this object is referenced.
 
-    Caches keep plain strings of it.
+    Caches therefore store it as a plain string.
     """
 
 
 class HeldFiles:
-    """Files in a private folder, each as long as it is held. Any thread may ask for them."""
+    """Files in a private folder, each kept while its `HeldFile` is referenced. Thread-safe."""
 
     def __init__(self, prefix: str) -> None:
         """Begin the folder's name with `prefix`."""
         self._scratch = ScratchFolder(prefix)
         self._files: weakref.WeakValueDictionary[str, HeldFile] = weakref.WeakValueDictionary()
         self._uses: Counter[str] = Counter()  # objects that hold the file of a name
-        self._lock = threading.RLock()  # what is dropped while it is held may drop a file
+        self._lock = threading.RLock()  # reentrant: garbage collection may drop a file meanwhile
 
     def get(self, name: str) -> HeldFile | None:
-        """Return the file of that name; None if nobody holds it or it was deleted."""
+        """Return the file of that name; None if it is not held or was deleted."""
         file = self._files.get(name)
         return file if file is not None and os.path.isfile(file) else None
 
     def write(self, name: str, content: bytes, source: str) -> HeldFile:
-        """Write a file and return it; arguments and faults as of `ScratchFolder.write`."""
+        """Write a file and return it; arguments and errors as of `ScratchFolder.write`."""
         with self._lock:
             self._uses[name] += 1
             try:
@@ -111,7 +110,7 @@ class HeldFiles:
         self._scratch.close()
 
     def _drop(self, name: str, path: str) -> None:
-        """Remove a file when the last object is gone that held it."""
+        """Remove a file when the last object that held it is gone."""
         with self._lock:
             self._uses[name] -= 1
             if not self._uses[name]:
@@ -121,9 +120,9 @@ class HeldFiles:
 
 
 def _temporary_folder() -> str:
-    """Return where temporary files go, whether or not something can be written there now.
+    """Return the folder for temporary files, whether or not it is writable now.
 
-    Python's own answer, where it finds none that can be written, is an error.
+    Python's `tempfile` raises an error if none is writable.
     """
     try:
         return tempfile.gettempdir()

@@ -1,4 +1,4 @@
-"""Find models and worlds by name along search paths, and the description in a model's folder."""
+"""Find models and worlds along search paths, and the description in a model's folder."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -10,15 +10,15 @@ from ..core import AbsentError, NotFoundError, fault
 from .safe_io import read_file
 from .xml_parser import MAX_XML_BYTES, parse_xml
 
-# Path below the model path, e.g. 'box/meshes/box.dae' -> where it is, or None.
+# Path relative to the model path, e.g. 'box/meshes/box.dae' -> absolute path, or None.
 FindModel = Callable[[str], str | None]
-# A directory, or something to ask for directories each time (packages may come and go).
+# A directory, or a callable that returns directories each time (packages may come and go).
 Directories = Iterable[str | os.PathLike[str] | Callable[[], Iterable[str | os.PathLike[str]]]]
 
 _NEWEST = (1, 7)
 _MANIFESTS = ('model.config', 'manifest.xml')
 
-# Written here, not in files, so that they are found wherever the package is installed.
+# Written here, not in files, so that they are found however the package is installed.
 BUILT_IN_MODELS = {
     'ground_plane': """<sdf version="1.6">
   <model name="ground_plane">
@@ -53,9 +53,9 @@ BUILT_IN_MODELS = {
 
 
 class ModelSearch:
-    """Looks for model:// addresses along directories, first come first found.
+    """Looks for model:// addresses along directories; the first match counts.
 
-    An instance is called with the part behind model://.
+    An instance is called with the part after model://.
     """
 
     def __init__(self, directories: Directories = ()) -> None:
@@ -73,41 +73,41 @@ class ModelSearch:
         return None
 
     def directories(self) -> Iterator[str]:
-        """Yield the directories as they are now, in order; no more are asked for than it takes."""
+        """Yield the current directories in order, lazily."""
         for entry in self._directories:
             for path in entry() if callable(entry) else [entry]:
                 yield os.fspath(path)
 
 
 def searched(find_model: FindModel) -> str:
-    """Return where a search looks, for messages; '' where it does not tell."""
+    """Return the directories of a search, for messages; '' if they are unknown."""
     directories = getattr(find_model, 'directories', None)
     return ', '.join(directories()) if directories else ''
 
 
 def path_directories(value: str) -> list[str]:
-    """Return the directories of a search path such as GAZEBO_MODEL_PATH, empty ones left out."""
+    """Return the directories of a search path such as GAZEBO_MODEL_PATH, without empty ones."""
     return [part for part in value.split(os.pathsep) if part]
 
 
 def climbs(inner: str) -> bool:
-    """Tell whether a path below a search directory is none, or would leave that directory."""
+    """Tell whether a relative path would leave its search directory, or is absolute."""
     return not inner.strip('/') or os.path.isabs(inner) or '..' in inner.split('/')
 
 
 def below_model_path(uri: str) -> str:
-    """Return what stands behind model://; as in Gazebo any number of slashes may follow."""
+    """Return the part after model://; as in Gazebo any number of slashes may follow."""
     return uri.removeprefix('model://').lstrip('/')
 
 
 def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
-    """Return the absolute path that a model:// address stands for.
+    """Return the absolute path of a model:// address.
 
     Args:
-        element: what names it, for the message.
+        element: the element with the address, for the message.
     Raises:
         AbsentError: nothing is found there.
-        ModelError: it names no model, or climbs out (`..`) of the model path.
+        ModelError: it names no model, or leaves (`..`) the model path.
     """
     inner = below_model_path(uri)
     if not inner:
@@ -127,12 +127,12 @@ def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
 
 
 def description_file(path: str, element: etree._Element) -> str:
-    """Return the SDF file of a model's folder: the newest one that model.config offers.
+    """Return the SDF file of a model's folder: the newest version listed in model.config.
 
-    A folder without model.config serves by its model.sdf, and a file stands for itself.
+    In a folder without model.config it is model.sdf; the path of a file is returned unchanged.
 
     Raises:
-        ModelError: there is no such folder, or no description in it; said of `element`.
+        ModelError: there is no such folder, or no description in it; it names `element`.
     """
     if not os.path.exists(path):
         raise fault(element, f"'{path}' does not exist; check the address")
@@ -157,7 +157,7 @@ def _chosen(manifest: str, element: etree._Element) -> str:
     offers = [offer for offer in offers if offer[1] and not climbs(offer[1])]
     if not offers:
         raise fault(element, f"'{manifest}' names no description; add <sdf>model.sdf</sdf>")
-    # All of them too new: the least new one has the best chance.
+    # If all are too new, the oldest has the best chance.
     readable = [offer for offer in offers if offer[0] <= _NEWEST]
     return max(readable)[1] if readable else min(offers)[1]
 
@@ -170,14 +170,14 @@ def _version(text: str) -> tuple[int, ...]:
 
 
 def find_world(name: str, directories: Iterable[str | os.PathLike[str]] = ()) -> Path:
-    """Return the file of a world: as given, else along `directories`, e.g. 'worlds/empty.world'.
+    """Return the path of a world file: as given, else in `directories`, e.g. 'worlds/empty.world'.
 
-    In each directory the name may stand as it is, in `worlds/`, and without '.world'; so a
-    directory may be one of GAZEBO_RESOURCE_PATH, or itself hold the world files. No more
-    directories are asked for than it takes.
+    In each directory the file is searched by its name, with '.world' appended, and below `worlds/`;
+    so a directory may be one of GAZEBO_RESOURCE_PATH, or itself contain the world files.
+    `directories` is evaluated lazily.
 
     Raises:
-        NotFoundError: there is none; the sentence says where it was looked for.
+        NotFoundError: there is none; the message lists where it was searched.
     """
     names = [name] if name.endswith(('.world', '.sdf')) else [name, f'{name}.world']
     for path in map(Path, names):

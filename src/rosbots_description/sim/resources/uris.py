@@ -1,4 +1,4 @@
-"""Turn the addresses in a model description into files: package://, file:// and plain paths."""
+"""Resolve the addresses in a model description: package://, file:// and plain paths."""
 
 import os
 import re
@@ -14,8 +14,8 @@ FindPackage = Callable[[str], str | None]  # package name -> its directory, None
 _PACKAGE = re.compile(r'package://([^/\s"\'<>]*)')
 
 
-class UnknownPackage(AbsentError):  # noqa: N818 (short, as it is used as a kind of answer)
-    """A package:// address names a package that is not to be found; `package` is its name."""
+class UnknownPackage(AbsentError):  # noqa: N818 (callers handle it as a result)
+    """A package:// address names a package that is not found; `package` is its name."""
 
     def __init__(self, package: str, where: str = '') -> None:
         super().__init__(
@@ -32,7 +32,7 @@ def substitute_packages(text: str, find_package: FindPackage) -> str:
     A bare absolute path results, with no file:// before it (gazebo_ros_pkgs 2.9.2).
 
     Raises:
-        UnknownPackage: a package is not to be found.
+        UnknownPackage: a package is not found.
     """
 
     def directory(match: re.Match[str]) -> str:
@@ -47,10 +47,10 @@ def substitute_packages(text: str, find_package: FindPackage) -> str:
 def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
     """Replace package:// in all attributes and texts below `root`, in place.
 
-    A <mesh> keeps what the description said in an extra attribute `uri`.
+    A <mesh> keeps the original address in an extra attribute `uri`.
 
     Raises:
-        UnknownPackage: a package is not to be found; the message names the line.
+        UnknownPackage: a package is not found; the message names the line.
     """
     known: dict[str, str | None] = {}
 
@@ -74,10 +74,10 @@ def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
 
 
 def refuse_climbing(element: etree._Element, uri: str) -> None:
-    """Refuse a package:// address that leads out of its package, also where %2e says `.`.
+    """Reject a package:// address that leads out of its package, also if `.` is written %2e.
 
     Raises:
-        ModelError: its `..` go further up than its folders went down.
+        ModelError: it has more `..` than folders before them.
     """
     if not uri.startswith('package://'):
         return
@@ -91,13 +91,13 @@ def refuse_climbing(element: etree._Element, uri: str) -> None:
 def file_path(element: etree._Element, uri: str) -> str:
     """Return the absolute path of a file address: file:///path or /path.
 
-    A path is taken as it is written, as in Gazebo, and where no such file is there, with its
-    %20 and the like decoded, as in RViz.
+    A path is used as written, as in Gazebo; if no such file exists, percent encoding (%20) is
+    decoded, as in RViz.
 
     Args:
-        element: what names the file, for the message.
+        element: the element with the address, for the message.
     Raises:
-        AbsentError: the address has another form.
+        AbsentError: the address has any other form.
     """
     if uri.startswith('file://'):
         path = uri.removeprefix('file://')

@@ -1,6 +1,6 @@
-"""Read XML safely: bounded, no DTD, no network; what is wrong is said with file and line.
+"""Parse XML safely: bounded, no DTD, no network; errors name file and line.
 
-The tree that comes out is lxml's, without comments and processing instructions.
+The result is an lxml tree without comments and processing instructions.
 """
 
 import contextlib
@@ -14,10 +14,10 @@ from ..core import ModelError, document_url, is_expanded_xacro, plain_text, shor
 MAX_XML_BYTES = 10_000_000
 MAX_XML_DEPTH = 200
 MAX_XML_ELEMENTS = 100_000
-MAX_XML_ATTRIBUTES = 200  # of one element; libxml2 compares each with each
+MAX_XML_ATTRIBUTES = 200  # of one element; libxml2 compares all pairs
 
 _UNDEFINED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
-_FARTHEST = 65535  # a line that libxml2 cannot store; it then tells where the tag ends
+_FARTHEST = 65535  # libxml2 cannot store greater line numbers; it then reports where the tag ends
 
 
 def parse_xml(text: str | bytes, source: str) -> etree._Element:
@@ -27,8 +27,8 @@ def parse_xml(text: str | bytes, source: str) -> etree._Element:
     `source_of`), a file or parameter name that begins every message.
 
     Raises:
-        ModelError: the text is empty, too big, too deep, in no known encoding, no well-formed
-            XML, or has a DTD (and so perhaps entities that multiply).
+        ModelError: the text is empty, too big, too deeply nested, of unknown encoding, not
+            well-formed XML, or has a DTD (and so perhaps exponential entities).
     """
     document = _decode(text, source)
     lines: list[int] = []
@@ -45,9 +45,9 @@ def parse_xml(text: str | bytes, source: str) -> etree._Element:
 
 
 def root_tag(text: str | bytes) -> str | None:
-    """Return the name of the first element, or None where the text does not begin as XML.
+    """Return the name of the first element, or None if the text does not begin as XML.
 
-    It looks no further, so a document that is broken or too big later on still has a root.
+    It reads no further, so a document that is broken or too big later on still has a root.
     """
     tags: list[str] = []
 
@@ -57,7 +57,7 @@ def root_tag(text: str | bytes) -> str | None:
 
     parser = expat.ParserCreate('utf-8')
     parser.StartElementHandler = found
-    parser.StartDoctypeDeclHandler = found  # it names the first element; no entity is looked at
+    parser.StartDoctypeDeclHandler = found  # it names the first element; entities are not read
     with contextlib.suppress(_Found, expat.ExpatError, LookupError, UnicodeDecodeError):
         text = plain_text(text[:MAX_XML_BYTES], 'the text')
         parser.Parse(text.lstrip().encode(errors='replace'), True)
@@ -74,17 +74,17 @@ def check_xml_bounds(
     max_elements: int | None = None,
     lines: list[int] | None = None,
 ) -> expat.ExpatError | None:
-    """Walk once through a document that may be meant to hurt, before a tree is made of it.
+    """Scan a possibly malicious document once, before a tree is built from it.
 
-    libxml2 needs hours for an element of very many attributes, and gigabytes for entities that
-    multiply. This parser needs neither, and ends at the first thing that is too much.
+    libxml2 needs hours for an element with very many attributes, and gigabytes for nested entities.
+    This parser needs neither, and stops at the first limit that is exceeded.
 
     Args:
         document: UTF-8; an XML declaration does not count.
         max_elements: instead of MAX_XML_ELEMENTS.
         lines: takes the line where each element's tag begins, in document order.
     Returns:
-        The fault where the document is not well-formed; what comes behind it is not looked at.
+        The fault if the document is not well-formed; nothing after it is read.
     Raises:
         ModelError: it has a document type, is nested too deep, or has too many elements or
             attributes.
@@ -92,7 +92,7 @@ def check_xml_bounds(
     most = MAX_XML_ELEMENTS if max_elements is None else max_elements
     depth = count = 0
     parser = expat.ParserCreate('utf-8')
-    parser.ordered_attributes = True  # a list of names and values by turns
+    parser.ordered_attributes = True  # a list of alternating names and values
 
     def start(tag: str, attributes: list[str]) -> None:
         nonlocal depth, count
@@ -131,7 +131,7 @@ def _run(parser: expat.XMLParserType, document: bytes) -> expat.ExpatError | Non
 
 
 def _decode(text: str | bytes, source: str) -> bytes:
-    """Return the document as UTF-8 without declaration and comments, lines kept."""
+    """Return the document as UTF-8 without declaration and comments, with its line breaks."""
     if len(text) > MAX_XML_BYTES:
         raise _too_big(len(text), source)
     try:
@@ -178,12 +178,12 @@ def _parse_document(document: bytes, source: str) -> etree._Element:
         faults = list(parser.error_log)
         if not faults or any(fault.type != _UNDEFINED_PREFIX for fault in faults):
             raise ModelError(_malformed(source, error.lineno or 1, error.msg or '')) from error
-    # A prefix that nobody declared (<sensor:ray>) is harmless, and Gazebo takes it too.
+    # An undeclared prefix (<sensor:ray>) is harmless, and Gazebo accepts it, too.
     return etree.fromstring(document, _parser(recover=True), base_url=url)
 
 
 def _drop_default_namespace(root: etree._Element) -> None:
-    """Name elements as they are written: Gazebo's parser knows no namespaces either."""
+    """Name elements as they are written: Gazebo's parser does not know namespaces either."""
     for element in root.iter(etree.Element):
         if element.prefix is None and element.tag.startswith('{'):
             element.tag = etree.QName(element).localname
@@ -198,8 +198,8 @@ def _syntax_sentence(document: bytes, source: str, error: expat.ExpatError) -> s
         return _malformed(
             source, 1, 'a URDF or SDF document was expected, the text has no element at all'
         )
-    # libxml2 words it better, e.g. with both of two tags that do not match. It sees only what is
-    # known to be harmless, and a little more.
+    # libxml2 explains it better, e.g. naming both of two mismatched tags. It gets only the part
+    # that was scanned, and a little more.
     tag = document.rfind(b'<', 0, error.offset)
     if document.count(b'=', max(tag, 0), error.offset) <= MAX_XML_ATTRIBUTES:
         try:

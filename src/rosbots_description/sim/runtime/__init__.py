@@ -1,4 +1,4 @@
-"""The world as it runs: models, what happens at which step, and what comes out."""
+"""The running world: models, the schedule of hooks, and outputs."""
 
 from .empty_world import add_empty_world
 from .model import CollisionFrame, Joint, Link, Model

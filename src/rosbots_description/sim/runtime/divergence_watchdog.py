@@ -1,4 +1,4 @@
-"""A last line of defence: what no longer moves by finite numbers is taken out of harm's way."""
+"""The divergence watchdog: rebuild the world if a pose or velocity is no longer finite."""
 
 from typing import TYPE_CHECKING
 
@@ -7,16 +7,16 @@ from .scheduler import Hook
 if TYPE_CHECKING:
     from .world import World
 
-PERIOD = 100  # steps between two looks: soon enough that nobody falls far through a broken ground
+PERIOD = 100  # steps between two checks: models cannot fall far through a diverged ground
 
 
 class DivergenceWatchdog(Hook):
-    """Looks at all models now and then and has the world rebuilt when one has diverged.
+    """Checks all models periodically, and rebuilds the world if one has diverged.
 
-    The world is rebuilt, too, when deleted models have left too much behind in the engine.
+    It also rebuilds the world if deleted models have leaked too much memory in the engine.
 
-    Numbers that are not finite spread inside the engine: other models fall through the ground, even
-    after the cause is deleted. So the engine is built anew, the others going on as they were.
+    Non-finite numbers spread inside the engine: other models fall through the ground, even after
+    the cause is deleted. A rebuilt engine continues with the states of the other models.
     """
 
     def __init__(self, world: 'World') -> None:
@@ -31,5 +31,5 @@ class DivergenceWatchdog(Hook):
         self.due = self._world.clock.steps + PERIOD
 
     def look_soon(self) -> None:
-        """Look in the next step; time or the size of steps has jumped."""
+        """Check in the next step; time or step size has jumped."""
         self.due = self._world.clock.steps + 1

@@ -1,4 +1,4 @@
-"""What Gazebo's empty world has."""
+"""Gazebo's empty world."""
 
 from ..core import IDENTITY
 from ..description import GROUND_PLANE, SUN
@@ -6,6 +6,6 @@ from .world import World
 
 
 def add_empty_world(world: World) -> None:
-    """Put in what Gazebo's empty world has: an endless ground at z = 0, and the sun."""
+    """Add the content of Gazebo's empty world: an infinite ground at z = 0, and the sun."""
     world.spawn(GROUND_PLANE, GROUND_PLANE.name, IDENTITY)
     world.lights[SUN.name] = SUN

@@ -1,4 +1,4 @@
-"""Pushes that last for a while: wrenches on links and efforts on joints."""
+"""Timed external forces: wrenches on links and efforts on joints."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from .scheduler import NEVER, Hook
 
 @dataclass(frozen=True)
 class ExternalForce:
-    """Does `push()` in each step from `start_ns` to `end_ns` [ns, simulated]; None: for ever."""
+    """Calls `push()` in each step from `start_ns` to `end_ns` [ns, simulated]; None: no end."""
 
     target: Link | Joint
     push: Callable[[], None]
@@ -19,7 +19,7 @@ class ExternalForce:
 
 
 class ExternalForces(Hook):
-    """Applies the forces that last for a while. It runs before all other hooks."""
+    """Applies timed forces. It runs before all other hooks."""
 
     def __init__(self, clock: SimClock) -> None:
         self._clock = clock
@@ -32,14 +32,14 @@ class ExternalForces(Hook):
         start_ns: int,
         duration_ns: int,
     ) -> None:
-        """Do `push()` in each step from `start_ns`, or now, for `duration_ns`.
+        """Call `push()` in each step from `start_ns`, or now, for `duration_ns`.
 
         Args:
-            target: the link or joint that is pushed.
-            push: done once per step.
-            start_ns: when to begin [ns, simulated]; a past time means now.
-            duration_ns: how long [ns], both ends included; negative: for ever. A push from now on
-                begins with the next step, so that zero means not at all, as in Gazebo.
+            target: the link or joint on which the force acts.
+            push: called once per step.
+            start_ns: start time [ns, simulated]; a past time means now.
+            duration_ns: duration [ns], both ends included; negative: no end. A force that starts
+                now acts from the next step on, so zero means not at all, as in Gazebo.
         """
         start_ns = max(start_ns, self._clock.now_ns)
         end_ns = None if duration_ns < 0 else start_ns + duration_ns
@@ -47,12 +47,12 @@ class ExternalForces(Hook):
         self._set_due()
 
     def cancel(self, chosen: Callable[[Link | Joint], bool]) -> None:
-        """Drop the forces whose target is chosen."""
+        """Cancel the forces on targets for which `chosen` is true."""
         self._forces = [force for force in self._forces if not chosen(force.target)]
         self._set_due()
 
     def before_step(self) -> None:
-        """Push what is to be pushed in this step and drop what is over."""
+        """Apply the forces of this step, and drop those that have ended."""
         now_ns = self._clock.now_ns
         self._forces = [one for one in self._forces if one.end_ns is None or now_ns <= one.end_ns]
         for force in self._forces:

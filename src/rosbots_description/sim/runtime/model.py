@@ -1,4 +1,4 @@
-"""Models, links, joints and collisions as they are in a world, to ask and to move by name."""
+"""Models, links, joints and collisions in a world: read and move them by name."""
 
 from typing import Any
 
@@ -32,13 +32,13 @@ class Link:
         self.spec = spec
         self.name = spec.name
         self.scoped_name = f'{model.name}::{spec.name}'
-        # A link of a model within the model is called `inner::link` here and `link` in its own.
+        # A link of a nested model is called `inner::link` here and `link` in its own model.
         self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
         self.collisions = {c.name: CollisionFrame(self, c) for c in spec.collisions}
 
     @property
     def pose(self) -> Pose:
-        """Return where the link's frame stands in the world."""
+        """Return the pose of the link's frame in the world."""
         return self.model.engine.link_pose(self.model.body, self.name)
 
     @property
@@ -47,7 +47,7 @@ class Link:
         return self.state()[1]
 
     def state(self) -> tuple[Pose, Twist]:
-        """Return pose and twist at once, which costs one look instead of two."""
+        """Return pose and twist in one read, which is cheaper than two."""
         return self.model.engine.link_state(self.model.body, self.name)
 
     def state_at(self, offset: Pose) -> tuple[Pose, Twist]:
@@ -57,7 +57,7 @@ class Link:
         return compose(pose, offset), Twist(add(linear, cross(angular, arm)), angular)
 
     def push(self, force: Vector, torque: Vector) -> None:
-        """Push during the next step: force [N] at the centre of mass, torque [N m], world axes."""
+        """Apply a force [N] at the centre of mass and a torque [N m] (world axes) for one step."""
         self.model.engine.push(self.model.body, self.name, force, torque)
 
     def can_slip(self, axis: Vector) -> bool:
@@ -65,12 +65,12 @@ class Link:
         return self.model.engine.can_slip(self.model.body, self.name, axis)
 
     def set_slip_compliance(self, axis: Vector, compliances: tuple[float, float]) -> None:
-        """Let it slip from now on by compliances along `axis` and across it [m/s per N]."""
+        """Set the slip compliances along `axis` and across it [m/s per N]."""
         self.model.engine.set_slip_compliance(self.model.body, self.name, axis, compliances)
 
 
 class CollisionFrame:
-    """A touching shape of a link; it can serve as a reference frame."""
+    """A collision of a link; it can serve as a reference frame."""
 
     def __init__(self, link: Link, spec: Collision) -> None:
         self.link = link
@@ -81,17 +81,17 @@ class CollisionFrame:
 
     @property
     def pose(self) -> Pose:
-        """Return where the shape stands in the world."""
+        """Return the pose of the shape in the world."""
         return compose(self.link.pose, self.spec.pose)
 
     def state(self) -> tuple[Pose, Twist]:
-        """Return the pose, and the twist of the link that carries the shape."""
+        """Return the pose, and the twist of the shape's link."""
         pose, twist = self.link.state()
         return compose(pose, self.spec.pose), twist
 
 
 class Joint:
-    """A movable connection of two links of a model."""
+    """A movable joint between two links of a model."""
 
     def __init__(self, model: 'Model', spec: JointSpec) -> None:
         self.model = model
@@ -110,12 +110,12 @@ class Joint:
         return self._state().velocity
 
     def state(self) -> tuple[float, float]:
-        """Return position and velocity at once."""
+        """Return position and velocity in one read."""
         return self._state()[:2]
 
     @property
     def effort(self) -> float:
-        """Return what the motor gave in the last step [N m or N]."""
+        """Return the motor's effort in the last step [N m or N]."""
         return self._state().effort
 
     @property
@@ -124,9 +124,9 @@ class Joint:
         return self.model.engine.motor(self.model.body, self.name)
 
     def push(self, effort: float) -> None:
-        """Push during the next step by `effort` [N m or N], beside the motor.
+        """Apply `effort` [N m or N] for one step, added to the motor's.
 
-        Not more than the joint's effort limit, each time, as in Gazebo.
+        Each call is clamped to the joint's effort limit, as in Gazebo.
         """
         limit = self.spec.effort
         if limit is not None and limit >= 0.0:
@@ -138,7 +138,7 @@ class Joint:
         self.model.engine.set_joint_motor(self.model.body, self.name, velocity, effort)
 
     def set_position(self, position: float, velocity: float = 0.0) -> None:
-        """Put the joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
+        """Set `position` [rad or m] and `velocity` [rad/s or m/s]."""
         self.model.engine.set_joint_position(self.model.body, self.name, position, velocity)
 
     def _state(self) -> JointState:
@@ -149,14 +149,14 @@ class Model:
     """A model in the world. Its frame moves with its first link, the canonical one.
 
     `links` and `joints` (the movable ones) are by name, in the order of the description; `plugins`
-    are those that were loaded, and `left_out` says what the model stands without.
+    are the loaded ones, and `left_out` lists the parts that were left out.
     """
 
     def __init__(
         self, name: str, compiled: CompiledModel, engine: PhysicsEngine, pose: Pose
     ) -> None:
         self.name = self.scoped_name = name
-        self.parent_name = ''  # only models within others have one
+        self.parent_name = ''  # only nested models have one
         self._compiled = compiled
         self.spec = spec = compiled.spec
         self.static = spec.static
@@ -171,13 +171,13 @@ class Model:
         }
         self.plugins: list[Plugin] = []  # those in sensors, too
         self.sensors: list[SensorLife] = []
-        self.left_out = list(spec.left_out)  # what it stands without, each in few words
+        self.left_out = list(spec.left_out)  # parts that were left out, each in a few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)
 
     @property
     def pose(self) -> Pose:
-        """Return where the model's frame stands in the world."""
+        """Return the pose of the model's frame in the world."""
         pose = self.engine.link_pose(self.body, self._canonical)
         return compose(pose, self._model_in_canonical)
 
@@ -192,11 +192,11 @@ class Model:
         return compose(pose, self._model_in_canonical), twist
 
     def has_diverged(self) -> bool:
-        """Tell whether any of its links moves by numbers that are not finite, or of no world."""
+        """Tell whether a pose or velocity of the model is not finite, or beyond all limits."""
         return self.engine.has_diverged(self.body)
 
     def set_pose(self, pose: Pose) -> None:
-        """Move the model as a whole, joints and velocities as they are."""
+        """Move the whole model; joint positions and velocities stay."""
         shift = compose(pose, inverse(self.pose))
         roots = self.body.roots
         self.engine.set_root_poses(
@@ -205,14 +205,14 @@ class Model:
         )
 
     def set_twist(self, twist: Twist) -> None:
-        """Let every link move with this velocity, in world axes; joints come to rest."""
+        """Set the velocity of every link, in world axes; joint velocities become zero."""
         self.engine.set_twist(self.body, twist)
 
     def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
-        """Bring a link to a pose with a velocity, in the world.
+        """Set a link's pose and velocity in the world.
 
-        Links hang together by their joints: a root takes along what hangs on it and its joints go
-        on moving; for another link the whole model is moved, joints as they are, at rest.
+        Joint positions stay. A root link takes its descendants along, and joint velocities stay;
+        for any other link the whole model is moved, and joint velocities become zero.
         """
         if link.name in self.body.roots:
             self.engine.set_root_poses(self.body, {link.name: pose})
@@ -225,18 +225,18 @@ class Model:
         self.set_twist(Twist(linear, twist.angular))
 
     def enter(self) -> None:
-        """Be brought into the engine, which is new or was reset, at the pose of the spawn."""
+        """Add the model to the engine, which is new or was reset, at its spawn pose."""
         if not self._compiled.has_files:
             self._compiled = self.engine.compile(self.spec)
         self.body: EngineBody = self.engine.add(self._compiled, self.initial_pose)
 
     def leave(self) -> None:
-        """Be taken out of the engine for good; its mesh files go."""
+        """Remove the model from the engine for good, with its mesh files."""
         self.engine.remove(self.body)
         del self._compiled
 
     def respecify(self, spec: ModelSpec) -> None:
-        """Go on as another description of the same links and joints; the motion stays."""
+        """Replace the description by one with the same links and joints; the motion stays."""
         motion, old = self.engine.motion(self.body), self.body
         compiled = self.engine.compile(spec)
         self.body = self.engine.add(compiled, self.initial_pose)
@@ -265,7 +265,7 @@ class Model:
         """Return the link of that plain or scoped name.
 
         Raises:
-            NotFoundError: the model has no such link; fixed joints make one link of two.
+            NotFoundError: the model has no such link; fixed joint reduction may have merged it.
         """
         link = self.links.get(name.removeprefix(f'{self.name}::'))
         if link is None:
@@ -274,7 +274,7 @@ class Model:
         return link
 
     def locate(self, name: str) -> tuple[Link, Pose]:
-        """Return the link of that name, or what it was reduced into, and its pose in that.
+        """Return the link of that name, or its parent after reduction, and its pose in that.
 
         Raises:
             NotFoundError: the description has no such link, or it has no mass.
@@ -284,7 +284,7 @@ class Model:
         return self.link(parent), pose
 
     def plugin(self, name: str) -> Any:  # noqa: ANN401  each class has commands of its own
-        """Return the plugin that the description calls `name`, or the first from that library.
+        """Return the plugin of that name, or the first one from that library.
 
         Args:
             name: e.g. 'differential_drive_controller', the name in <plugin>; or its library in

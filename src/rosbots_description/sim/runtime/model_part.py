@@ -6,25 +6,25 @@ from .scheduler import Hook
 
 
 class ModelPart(Hook):
-    """Something that lives with a model and runs in the steps it asks for."""
+    """A hook that belongs to a model and runs in the steps that it requests."""
 
     def start(self) -> None:
         """Load and begin.
 
         Raises:
-            PluginError: it cannot work; the model then lives on without it.
+            PluginError: it cannot be loaded; the model is spawned without it.
         """
         raise NotImplementedError
 
     def reset(self) -> None:
-        """Go on where the world stands now; all models are back at their spawn poses."""
+        """Continue after a world reset; all models are back at their spawn poses."""
 
     def restart(self) -> None:
-        """Begin as after `start`: time may be zero again, and all joints are new."""
+        """Start again as after `start`: time may be zero again, and all joints are new."""
         self.reset()
 
     def count_readers(self) -> None:
-        """Take note of which outputs have readers; they may have come or gone."""
+        """Determine which outputs have readers; they may have changed."""
 
     def shared(self) -> Iterable[object]:
         """Return what it holds that is no part of its state, beside the world's parts.

@@ -1,4 +1,4 @@
-"""A model within a model: it has a name and a frame of its own, its parts are the outer one's."""
+"""A nested model: it has a name and a frame of its own; its parts belong to the outer model."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -11,13 +11,13 @@ _LEVEL = '::'
 
 
 class InnerModel:
-    """Looks and behaves like a `Model`, as far as one asks it by name.
+    """A view of the outer model with the interface of `Model`.
 
     Its frame moves with its first link.
     """
 
     def __init__(self, outer: Model, path: str) -> None:
-        """Describe the model that is called `path` within `outer`, e.g. 'arm' or 'arm::hand'."""
+        """Use the nested model called `path` in `outer`, e.g. 'arm' or 'arm::hand'."""
         prefix = path + _LEVEL
         parent, _, own_name = path.rpartition(_LEVEL)
         self.outer = outer
@@ -70,7 +70,7 @@ def _within(prefix: str, parts: dict[str, Part]) -> dict[str, Part]:
 
 
 def inner_models(outer: Model) -> list[InnerModel]:
-    """Return the models within a model that have links, in the order of the description."""
+    """Return the nested models with links, in the order of the description."""
     return [
         InnerModel(outer, path)
         for path in outer.spec.inner

@@ -1,4 +1,4 @@
-"""What plugins and sensors give out: readings, which are plain values, and outputs for them."""
+"""Outputs of plugins and sensors, and their readings, which are plain values."""
 
 from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
@@ -9,14 +9,14 @@ Reading = TypeVar('Reading')
 
 
 class Odometry(NamedTuple):
-    """Pose in a frame; twist in the axes of what moves, for `P3D` in those of the frame."""
+    """Pose in a frame; twist in the body's axes, but for `P3D` in those of the frame."""
 
     pose: Pose
     twist: Twist
 
 
 class FrameTransform(NamedTuple):
-    """Where the frame `child` stands in the frame `parent`."""
+    """The pose of the frame `child` in the frame `parent`."""
 
     parent: str
     child: str
@@ -24,7 +24,7 @@ class FrameTransform(NamedTuple):
 
 
 class JointStates(NamedTuple):
-    """Joint names with their positions [rad or m], and velocities and efforts if they are told."""
+    """Joint names and positions [rad or m]; velocities and efforts if they are reported."""
 
     names: tuple[str, ...]
     positions: tuple[float, ...]
@@ -33,14 +33,14 @@ class JointStates(NamedTuple):
 
 
 class Output(Generic[Reading]):
-    """What a plugin gives out, to any number of readers: ROS, a window, a script.
+    """An output of a plugin with any number of readers: ROS, a window, a script.
 
-    While `wanted` is false there is none, and nothing is to be computed for it. Readers come and go
-    between two runs of the world, on the thread that owns it.
+    While `wanted` is false there is no reader, and nothing needs to be computed. Connect and
+    disconnect readers between two runs of the world, on the thread that owns it.
     """
 
     def __init__(self, changed: Callable[[], None]) -> None:
-        """Call `changed()` when the first reader has come, and when the last one has gone."""
+        """Call `changed()` when the first reader connects, and when the last one disconnects."""
         self._changed = changed
         self._readers: tuple[Callable[[Reading], object], ...] = ()
         self.kept: Reading | None = None  # see `newest`
@@ -52,11 +52,11 @@ class Output(Generic[Reading]):
         return len(self._readers)
 
     def connect(self, read: Callable[[Reading], object]) -> None:
-        """Give every reading to `read(reading)`, after those that were connected before."""
+        """Pass every reading to `read(reading)`, after the readers connected before."""
         self._set_readers((*self._readers, read))
 
     def disconnect(self, read: Callable[[Reading], object]) -> None:
-        """Give no more readings to `read`; it may have none already."""
+        """Disconnect `read`; no effect if it is not connected."""
         self._set_readers(tuple(other for other in self._readers if other != read))
 
     def keep(self) -> None:
@@ -81,7 +81,7 @@ class Output(Generic[Reading]):
         self.kept = reading
 
     def send(self, reading: Reading) -> None:
-        """Give a reading to all readers."""
+        """Pass a reading to all readers."""
         for read in self._readers:
             read(reading)
 

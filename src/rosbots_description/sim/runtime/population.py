@@ -1,4 +1,4 @@
-"""Fills a world with what a world file describes."""
+"""Populate a world from a `WorldSpec`."""
 
 import logging
 
@@ -9,13 +9,13 @@ from .world import World
 
 logger = logging.getLogger(__name__)
 
-# World plugins whose work the server does anyway.
+# World plugins whose function the server provides anyway.
 _SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
            'libgazebo_ros_init.so', 'libgazebo_ros_factory.so')
 
 
 def populate(world: World, spec: WorldSpec) -> None:
-    """Put everything that moves or stands into a world that is empty, and set its clock.
+    """Add all models to an empty world, and set its clock.
 
     Lights stay in `spec` for those who serve them; plugins of the world that do more
     than the server does anyway are named as not run. A model that the world does not take is an
@@ -23,18 +23,18 @@ def populate(world: World, spec: WorldSpec) -> None:
     """
     world.set_physics(spec.physics)
     world.scene = spec.scene
-    world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins look at it
+    world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins read it
     for model_spec, pose in spec.models:
         try:
             world.spawn(model_spec, model_spec.name, pose)
         except SimError as error:
             logger.error(
-                "model '%s': %s; the world stands without this model", model_spec.name, error
+                "model '%s': %s; this model is left out", model_spec.name, error
             )
     for state in spec.states:
         model = world.models.get(state.name)
         if model is None:
-            logger.warning("the world's <state> has a model '%s' that is not there", state.name)
+            logger.warning("the world's <state> names a model '%s' that does not exist", state.name)
         else:
             apply_state(model, state)
     for plugin in spec.plugins:

@@ -1,4 +1,4 @@
-"""Brings models to where a saved world had them: what its link poses mean for their joints."""
+"""Apply the <state> of a saved world: derive joint positions from link poses."""
 
 import math
 from collections.abc import Mapping
@@ -9,9 +9,9 @@ from .model import Model
 
 
 def apply_state(model: Model, state: ModelState) -> None:
-    """Bring a model to where a saved world had it, by its roots and its joints.
+    """Set a model's root poses and joint positions from a saved world.
 
-    The pose it resets to stays the one it was spawned at, as in Gazebo.
+    A reset still returns it to its spawn pose, as in Gazebo.
     """
     if state.pose is not None:
         model.set_pose(state.pose)
@@ -24,7 +24,7 @@ def apply_state(model: Model, state: ModelState) -> None:
 
 
 def joint_positions(spec: ModelSpec, state: ModelState) -> dict[str, float]:
-    """Return the positions [rad or m] of the joints between links whose places are known."""
+    """Return the positions [rad or m] of the joints between links with known poses."""
     placed: Mapping[str, Pose] = state.links
     if state.pose is not None:
         placed = {WORLD: state.pose, **state.links}
@@ -37,7 +37,7 @@ def joint_positions(spec: ModelSpec, state: ModelState) -> dict[str, float]:
 
 
 def _position(joint: JointSpec, zero: Mapping[str, Pose], placed: Mapping[str, Pose]) -> float:
-    """Return how far the joint's frame has moved along or about its axis since position zero."""
+    """Return the joint position [rad or m], relative to the pose at position zero."""
     at_zero = relative(compose(zero[joint.child], joint.pose), zero[joint.parent])
     now = relative(compose(placed[joint.child], joint.pose), placed[joint.parent])
     moved = relative(now, at_zero)

@@ -1,4 +1,4 @@
-"""What happens at which step: hooks say when they want to run next, the rest runs straight."""
+"""The schedule of hooks: each sets the step at which it runs next."""
 
 import logging
 import math
@@ -8,11 +8,11 @@ from fractions import Fraction
 logger = logging.getLogger(__name__)
 
 NEVER = 1 << 62  # a step count that no simulation reaches
-LEFT_OUT = 1000  # steps that something that failed is not run, so that it does not fill the log
+LEFT_OUT = 1000  # steps for which a failed hook is suspended, so that it does not flood the log
 
 
 class Hook:
-    """Something that runs at certain steps, before and after physics.
+    """Code that runs at certain steps, before and after physics.
 
     `due` is the count of the step in which it runs next. Set it in `before_step`, or from outside
     between two runs of the world, on the thread that owns the world. `watches`, set there too, is
@@ -23,17 +23,17 @@ class Hook:
     watches = False
 
     def before_step(self) -> None:
-        """Do what comes before physics, after time has advanced, and set the next `due`."""
+        """Run before physics, after time has advanced, and set the next `due`."""
         raise NotImplementedError
 
     def after_step(self) -> None:
-        """Do what comes after physics, if the hook watches and `before_step` did not fail."""
+        """Run after physics, if `watches` is set and `before_step` did not fail."""
 
 
 class PreRunPublisher:
-    """Publishes for the steps of a run before they are made, as it depends on their times only.
+    """Publishes for the steps of a run in advance, as its messages depend on time only.
 
-    `due` is the first step that it has not published for and is to.
+    `due` is the next step to publish for.
     """
 
     due = NEVER
@@ -51,15 +51,15 @@ class Schedule:
         self._publishers: list[PreRunPublisher] = []
 
     def add(self, hook: Hook) -> None:
-        """Let `hook` run from now on, after those that were added before it."""
+        """Run `hook` from now on, after the hooks added before it."""
         self._hooks.append(hook)
 
     def remove(self, hook: Hook) -> None:
-        """Let `hook` run no more."""
+        """Stop running `hook`."""
         self._hooks.remove(hook)
 
     def add_pre_run_publisher(self, publisher: PreRunPublisher) -> None:
-        """Let `publisher` publish from the next run on."""
+        """Run `publisher` from the next run on."""
         self._publishers.append(publisher)
 
     def publish_ahead(self, last: int) -> None:
@@ -72,11 +72,11 @@ class Schedule:
                     _leave_out(publisher, last)
 
     def next_wanted(self) -> int:
-        """Return the earliest step count that is of interest to a hook or a pre-run publisher."""
+        """Return the earliest step count at which a hook or a pre-run publisher is due."""
         return min(self.next_due(), *(one.due for one in self._publishers), NEVER)
 
     def next_due(self) -> int:
-        """Return the earliest step count at which a hook wants to run."""
+        """Return the earliest step count at which a hook is due."""
         return min([hook.due for hook in self._hooks], default=NEVER)
 
     def run(self, step: int, last: int, physics: Callable[[int], None]) -> int:
@@ -87,7 +87,7 @@ class Schedule:
         go on.
 
         Returns:
-            how many steps were made.
+            the number of steps made.
         """
         due = [hook for hook in self._hooks if hook.due <= step]
         done = [hook for hook in due if _tried(hook, hook.before_step, step)]
@@ -99,9 +99,9 @@ class Schedule:
         return steps
 
     def change_step(self, now: int, ratio: Fraction) -> None:
-        """Keep all due at their time, now that steps last `ratio` times as long.
+        """Keep the due times, now that steps last `ratio` times as long.
 
-        What falls between two steps of the new size happens at the later one.
+        A due time between two steps of the new size moves to the later one.
         """
         scheduled: list[Hook | PreRunPublisher] = [*self._hooks, *self._publishers]
         for hook in scheduled:
@@ -110,7 +110,7 @@ class Schedule:
 
 
 def _tried(hook: Hook, work: Callable[[], None], step: int) -> bool:
-    """Let a hook do its work; return whether it did not fail."""
+    """Run a hook; return whether it succeeded."""
     try:
         work()
     except Exception:
@@ -120,7 +120,7 @@ def _tried(hook: Hook, work: Callable[[], None], step: int) -> bool:
 
 
 def _leave_out(failed: Hook | PreRunPublisher, step: int) -> None:
-    """Log the fault that is being handled, and let whose it is wait."""
+    """Log the exception that is being handled, and suspend the hook that raised it."""
     logger.exception(
         'internal fault of %s; the simulation goes on, without it for %d steps',
         type(failed).__name__,

@@ -1,4 +1,4 @@
-"""The world: a clock, a physics engine, models in the order they came, and what runs when."""
+"""The world: a clock, a physics engine, models in spawn order, and a schedule of hooks."""
 
 import contextlib
 import logging
@@ -52,22 +52,22 @@ Entity = Model | InnerModel | Link | CollisionFrame
 
 
 class Listener(Protocol):
-    """Who wants to know what enters and leaves the world; called on the world's own thread."""
+    """Observer of spawned and deleted models; called on the world's own thread."""
 
     def model_spawned(self, model: Model) -> None:
-        """A model and its plugins are there."""
+        """A model was spawned, with its plugins."""
 
     def model_deleted(self, model: Model) -> None:
-        """A model is about to go; its plugins still live."""
+        """A model is about to be deleted; its plugins are still loaded."""
 
     def world_reset(self) -> None:
-        """Poses, and perhaps time, have jumped back."""
+        """Poses, and perhaps time, were reset."""
 
 
 class World:
     """Everything that is simulated. One thread owns it: no method may be called from another.
 
-    `paused` is for who runs the world to honour; `run` itself always runs.
+    `paused` is to be respected by the caller of `run`, which itself ignores it.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class World:
         self.engine = make_engine(self.physics)
 
     def close(self) -> None:
-        """Free what the world holds outside Python."""
+        """Free the engine and other resources outside Python."""
         self.resources.close()
         self.engine.close()
 
@@ -112,7 +112,7 @@ class World:
         Where time ends, the world is paused and an error is logged.
 
         Returns:
-            how many steps were made: fewer where time ended.
+            the number of steps made: fewer if time ended.
         """
         clock, schedule, engine = self.clock, self.schedule, self.engine
         begin, last = clock.steps, clock.last_step()
@@ -144,33 +144,33 @@ class World:
         self.engine.apply(physics)
 
     def hold_physics(self, holder: object) -> None:
-        """Let time go on and nothing move, until each holder has released physics."""
+        """Disable physics, while time goes on, until each holder has released it."""
         self._holders.add(holder)
         self.engine.enable(False)
 
     def release_physics(self, holder: object) -> None:
-        """Let things move again, unless somebody else holds physics."""
+        """Enable physics again, unless there is another holder."""
         self._holders.discard(holder)
         self.engine.enable(not self._holders)
 
     def compile(self, spec: ModelSpec) -> CompiledModel:
-        """Make a model ready to be spawned; the one thing that any thread may ask of the world.
+        """Compile a model for spawning; the only method that any thread may call.
 
         Raises:
-            ModelError: the engine cannot take it; the sentence says why.
+            ModelError: the engine cannot simulate it; the message says why.
         """
         return self.engine.compile(spec)
 
     def spawn(self, model: ModelSpec | CompiledModel, name: str, pose: Pose) -> Model:
-        """Put a model into the world and load its plugins.
+        """Spawn a model and load its plugins.
 
-        A plugin that fails is logged and left out; the model lives.
+        A plugin that fails is logged and left out.
 
         Args:
-            model: one that is not compiled is so now, which may take long.
+            model: a `ModelSpec` is compiled first, which may take long.
             pose: of its frame.
         Raises:
-            ModelError: the name is taken or empty, the pose is of no world, or see `compile`.
+            ModelError: the name is taken or empty, the pose is out of range, or as `compile`.
         """
         if not name:
             raise ModelError('a model needs a name; the one given is empty')
@@ -197,13 +197,13 @@ class World:
         return spawned
 
     def overlaps(self, model: Model) -> dict[str, float]:
-        """Return the names of the models that a model reaches into, and how deep [m]."""
+        """Return the models that overlap a model: name -> penetration depth [m]."""
         depths = {name: self.engine.overlap(model.body, other.body)
                   for name, other in self.models.items() if other is not model}
         return {name: depth for name, depth in depths.items() if depth > 0.0}
 
     def delete(self, name: str) -> None:
-        """Take a model and its plugins out of the world.
+        """Delete a model and its plugins.
 
         Raises:
             NotFoundError: there is no such model.
@@ -216,7 +216,7 @@ class World:
         diverged = model.has_diverged()
         self._remove(model)
         if diverged:
-            # What made it diverge would stay in the engine otherwise, and in what it touched.
+            # Otherwise non-finite numbers would remain in the engine and in bodies it touched.
             self.rebuild([other for other in self.models.values() if other.has_diverged()])
 
     def _remove(self, model: Model) -> None:
@@ -238,7 +238,7 @@ class World:
         self._tell_reset()
 
     def reset_simulation(self) -> None:
-        """Begin again at time zero: every model where it was spawned, and the same motion as then.
+        """Restart at time zero: every model at its spawn pose, with the same motion as then.
 
         Properties that were set meanwhile, such as masses and joint limits, stay.
         """
@@ -255,25 +255,25 @@ class World:
     def save_state(self) -> SavedState:
         """Return the state of the world at this moment, for `restore`.
 
-        From here on the world moves bit for bit as it does after each `restore` of this state. To
-        save lets the engine find all contacts anew, which moves things by less than 1 um/step.
+        From here on the world moves bit for bit as after each `restore` of this state. Saving makes
+        the engine recompute all contacts, which moves bodies by less than 1 um/step.
         """
         return SavedState(self, (self.external_forces, self._watchdog, *self._parts()))
 
     def restore(self, state: SavedState) -> None:
-        """Go back to a state that was saved, time and what plugins remember included.
+        """Restore a saved state, including time and the state of plugins.
 
-        Who reads an output, or listens, stays who it is now.
+        Readers of outputs and listeners are not changed.
 
         Raises:
-            SimError: the state is of another world, or models have come, gone or got other
-                properties since.
+            SimError: the state is of another world, or models were spawned, deleted or changed
+                since.
         """
         state.put_back(self)
         self._tell_reset()
 
     def rebuild(self, diverged: list[Model]) -> None:
-        """Build the engine anew; `diverged` models begin at their spawn pose, others go on."""
+        """Rebuild the engine; `diverged` models restart at their spawn pose, others continue."""
         motions = {
             model.name: self.engine.motion(model.body)
             for model in self.models.values()
@@ -310,7 +310,7 @@ class World:
         return None
 
     def find_model(self, name: str) -> Model | InnerModel | None:
-        """Return the model that the name finds first; None if it finds something else first."""
+        """Return the first entity of that name if it is a model, else None."""
         entity = self.find_entity(name)
         return entity if isinstance(entity, Model | InnerModel) else None
 

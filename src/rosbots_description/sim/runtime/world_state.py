@@ -1,4 +1,4 @@
-"""The state of a world at one moment, to go back to as often as one likes."""
+"""The complete state of a world at one time, which can be restored any number of times."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ class SavedState:
     """What a world was at one moment: motion, time, forces, what plugins and sensors remember."""
 
     def __init__(self, world: 'World', hooks: Sequence[Hook]) -> None:
-        """Take the state of a world between two runs, and that of these hooks of its own."""
+        """Save the state of a world between two runs, and that of its own hooks."""
         self._world = world
         self._models = tuple(world.models.values())
         self._clock = dict(vars(world.clock))
@@ -28,10 +28,10 @@ class SavedState:
         self._newest = [(output, output.kept) for output in self._outputs()]
 
     def put_back(self, world: 'World') -> None:
-        """Bring the world back to this state.
+        """Restore this state.
 
         Raises:
-            SimError: it is of another world, or other models are there now.
+            SimError: it is of another world, or the world has other models now.
         """
         if world is not self._world:
             raise SimError('the state was saved in another world; restore it there')
@@ -51,7 +51,7 @@ class SavedState:
         for output, reading in self._newest:
             output.kept = reading
         for part in self._parts():
-            part.count_readers()  # they are those of now
+            part.count_readers()  # the current ones
 
     def _parts(self) -> Iterator[ModelPart]:
         for model in self._models:
@@ -62,11 +62,11 @@ class SavedState:
             yield from (one for one in part.shared() if isinstance(one, Output))
 
     def _copied(self, state: dict[str, Any]) -> dict[str, Any]:
-        """Return a copy of all that a hook alone holds; what belongs to others stays the same."""
+        """Return a deep copy of a hook's own state; shared objects are not copied."""
         return copy.deepcopy(state, {id(one): one for one in self._shared})
 
     def _find_shared(self) -> Iterator[object]:
-        """Yield what hooks lead to and do not hold alone."""
+        """Yield the shared objects that are reachable from hooks."""
         world = self._world
         yield from (world, world.clock, world.schedule, world.engine)
         for model in self._models:

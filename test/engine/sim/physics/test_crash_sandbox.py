@@ -317,7 +317,7 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(caplog):
         os.kill(sandbox._sandbox._children._server, signal.SIGKILL)
         sandbox.require()
     assert "model 'crate' was not tested in the sandbox, since the operating system failed " \
-        '(the process that makes others does not answer)' in caplog.text
+        '(the fork server does not answer)' in caplog.text
 
 
 @pytest.mark.parametrize('fault', [

@@ -251,4 +251,4 @@ def test_a_world_stands_without_a_model_that_the_engine_does_not_take(world, mon
     populate(world, load('<sdf version="1.6"><world name="w">'
                          f'{model.format("bad")}{model.format("good")}</world></sdf>'))
     assert list(world.models) == ['good']
-    assert caplog.messages == ["model 'bad': no room; the world stands without this model"]
+    assert caplog.messages == ["model 'bad': no room; this model is left out"]

@@ -45,8 +45,8 @@ def test_an_included_file_lies_beside_the_one_that_names_it(tmp_path):
 
 
 @pytest.mark.parametrize(('body', 'said'), [
-    ('<link name="$(find unknown)"/>', "'$(find unknown)' stands for nothing"),
-    ('<link name="$(arg unknown)"/>', "'$(arg unknown)' stands for nothing"),
+    ('<link name="$(find unknown)"/>', "'$(find unknown)' is not a known substitution"),
+    ('<link name="$(arg unknown)"/>', "'$(arg unknown)' is not a known substitution"),
     ('<link name="${1 / 0}"/>', 'division by zero'),
     ('<link', 'xacro rejects it'),
 ])

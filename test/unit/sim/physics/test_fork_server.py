@@ -264,7 +264,7 @@ def test_where_no_process_can_be_made_the_system_is_named(monkeypatch):
 def test_where_the_server_has_died_that_is_said():
     with server_of(lambda _: 'done') as server:
         os.kill(server._server, signal.SIGKILL)
-        with pytest.raises(OSError, match='the process that makes others does not answer'):
+        with pytest.raises(OSError, match='the fork server does not answer'):
             server.run(b'', ALLOWANCE)
 
 
@@ -274,6 +274,6 @@ def test_a_server_without_file_handles_says_so():
         return lambda _: 'done'
 
     server = ForkServer(prepare, 'test')
-    with pytest.raises(OSError, match='the process that makes others does not answer'):
+    with pytest.raises(OSError, match='the fork server does not answer'):
         server.run(b'', ALLOWANCE)
     server.close()

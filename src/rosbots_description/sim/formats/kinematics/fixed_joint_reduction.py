@@ -1,7 +1,7 @@
-"""Merge links that fixed joints hold together, as sdformat 9 does for Gazebo (parser_urdf.cc).
+"""Reduce fixed joints: merge the links they connect, as sdformat 9 does (parser_urdf.cc).
 
-The child's mass, shapes and joints go to the nearest ancestor that moves on its own, its parent.
-Shapes get the names by which Gazebo's users know them:
+The child's mass, shapes and joints go to its parent: the nearest ancestor that is not reduced
+itself. Shapes get the names that Gazebo gives them:
 `<parent>_fixed_joint_lump__<child>_collision`.
 """
 
@@ -33,7 +33,7 @@ Shape = TypeVar('Shape', Collision, Visual)
 
 @dataclass(frozen=True)
 class Reduction:
-    """The outcome: links and joints that remain, and what became of the others."""
+    """The result: links and joints that remain, and where the reduced ones went."""
 
     links: tuple[LinkSpec, ...]
     joints: tuple[JointSpec, ...]
@@ -44,10 +44,10 @@ class Reduction:
 
 
 def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
-    """Merge what fixed joints hold together.
+    """Merge the links that fixed joints connect.
 
-    A link without mass is not simulated, nor is anything that hangs on it by a joint that stays;
-    its own shapes live on where it is reduced into a link that has a mass.
+    A link without mass is not simulated, nor are its descendants below a joint that is not reduced;
+    its own shapes are kept if it is reduced into a link with a mass.
     """
     order = tree.depth_first()
     homes = _homes(tree, order)
@@ -75,7 +75,7 @@ def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
 
 
 def _homes(tree: KinematicTree, order: Sequence[str]) -> dict[str, tuple[str, Pose]]:
-    """Return for each link the link it belongs to (itself, or its parent) and its pose in that."""
+    """Return for each link its parent after reduction (or itself) and its pose in that."""
     homes: dict[str, tuple[str, Pose]] = {}
     for name in order:
         joint = tree.joint_to.get(name)
@@ -90,17 +90,17 @@ def _homes(tree: KinematicTree, order: Sequence[str]) -> dict[str, tuple[str, Po
 def _massless(
     tree: KinematicTree, order: Sequence[str], homes: Mapping[str, tuple[str, Pose]]
 ) -> tuple[set[str], list[str]]:
-    """Return the links that vanish, and among them those without mass, which are the cause.
+    """Return the links that are not simulated, and those of them without mass, which are the cause.
 
-    As in sdformat 9 a reduced link without mass (its own reduced children counted) also takes along
-    what hangs on it by joints that stay.
+    As in sdformat 9 a reduced link without mass, counting its own reduced children, also removes
+    its descendants below joints that are not reduced.
     """
     mass = {name: _mass(tree.links[name].spec.inertial) for name in order}
     for name in reversed(order):
         joint = tree.joint_to.get(name)
         if joint is not None and tree.reduces(joint):
             mass[joint.spec.parent] += mass[name]
-    cut_off: set[str] = set()  # links below which nothing is modelled
+    cut_off: set[str] = set()  # links whose descendants are not simulated
     vanished: set[str] = set()
     causes: list[str] = []
     for name in order:
@@ -173,14 +173,14 @@ def _merge_link(
 
 
 def _move(shape: Shape, frame: Pose, link: str) -> Shape:
-    """Return the shape posed in the parent's frame, under its own name or else its link's."""
+    """Return the shape posed in the parent's frame, under its own name, else its link's."""
     return replace(shape, name=shape.name or link, pose=compose(frame, shape.pose))
 
 
 def _named(shapes: Sequence[Shape], parent: str, suffix: str) -> tuple[Shape, ...]:
-    """Return the shapes under Gazebo's names: numbered over the whole link from the second on.
+    """Return the shapes under Gazebo's names, numbered from the second shape of the link on.
 
-    As in sdformat, what already begins with the parent's name gets no prefix.
+    As in sdformat, a name that already begins with the parent's gets no prefix.
     """
     named = []
     for i, shape in enumerate(shapes):
@@ -191,7 +191,7 @@ def _named(shapes: Sequence[Shape], parent: str, suffix: str) -> tuple[Shape, ..
 
 
 def _conflicts(tree: KinematicTree, members: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the reduced links whose flags change what their parent would have been."""
+    """Return the reduced links whose flags change those of their parent."""
     return [
         member for parent, names in members.items() for member in names
         if member != parent and any(
@@ -202,7 +202,7 @@ def _conflicts(tree: KinematicTree, members: Mapping[str, Sequence[str]]) -> lis
 
 
 def require_links(tree: KinematicTree, reduction: Reduction) -> None:
-    """Refuse a model of which nothing remains.
+    """Reject a model of which no link remains.
 
     Raises:
         ModelError: no link has a mass.
@@ -214,9 +214,9 @@ def require_links(tree: KinematicTree, reduction: Reduction) -> None:
 
 def _nothing_left(name: str, element: etree._Element) -> ModelError:
     if name == WORLD:
-        return fault(element, 'the model has only the world itself; add a link with a mass')
+        return fault(element, 'the model has no link but the world; add a link with a mass')
     return fault(
         element,
-        "it has no mass, and so nothing of the model can be simulated; give it an <inertial> with "
+        "it has no mass, so no link of the model can be simulated; give it an <inertial> with "
         'a <mass> greater than zero and an <inertia>',
     )

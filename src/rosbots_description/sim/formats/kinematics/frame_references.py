@@ -1,4 +1,4 @@
-"""Follow reduced links: what stood in the child's frame now stands in its parent's."""
+"""Transform what was posed in a reduced link's frame into the frame of its parent."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,10 +11,10 @@ from ..xml import parse_numbers
 def move_part(element: Element, frame: Pose) -> Element:
     """Return a light or projector of a reduced link with its <pose> in the parent's frame.
 
-    A pose with `relative_to` keeps its meaning and so its text.
+    A pose with `relative_to` is unchanged.
 
     Args:
-        frame: where the reduced link stands in its parent.
+        frame: pose of the reduced link in its parent.
     """
     old = element.child('pose')
     if frame == IDENTITY or (old is not None and 'relative_to' in old.attributes):

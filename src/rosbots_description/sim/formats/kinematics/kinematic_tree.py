@@ -1,4 +1,4 @@
-"""Links and joints as a description gives them, before lumping, proven to be one tree."""
+"""Links and joints as described, before fixed joint reduction, verified to be one tree."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from lxml import etree
 from ...core import IDENTITY, Pose, fault, line_of, suggestion
 from ...description import FIXED, WORLD, JointSpec, LinkSpec
 
-FREE = 'free'  # a joint type that ties nothing: the child becomes a tree of its own
+FREE = 'free'  # a joint type without constraints: the child becomes a tree of its own
 
 
 class LinkFlags(TypedDict, total=False):
@@ -23,9 +23,9 @@ class LinkFlags(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class TreeLink:
-    """A link as described; shape names are the description's own, '' where it gives none.
+    """A link as described; shape names are as written, '' if there is none.
 
-    `flags` are what a <gazebo> block sets; they pass on to the link this one is reduced into.
+    `flags` are set by <gazebo> blocks; they also apply to the link this one is reduced into.
     """
 
     spec: LinkSpec
@@ -35,7 +35,7 @@ class TreeLink:
 
 @dataclass(frozen=True)
 class TreeJoint:
-    """A joint as described; `origin` is the child's frame in the parent's at position zero."""
+    """A joint as described; `origin` is the child's pose in the parent at position zero."""
 
     spec: JointSpec
     element: etree._Element
@@ -45,7 +45,7 @@ class TreeJoint:
 
 @dataclass(frozen=True)
 class KinematicTree:
-    """All links and joints, connected: one root, every other link child of exactly one joint."""
+    """All links and joints: one root, and every other link is the child of exactly one joint."""
 
     root: str
     links: Mapping[str, TreeLink]
@@ -76,8 +76,8 @@ def build_tree(
     """Connect links and joints.
 
     Raises:
-        ModelError: no link, duplicate names, a joint to an unknown link, a link below two joints,
-            no root or several, a ring.
+        ModelError: no link, duplicate names, a joint to an unknown link, a link that is the child
+            of two joints, no root or several, a loop.
     """
     by_name = _unique(links, 'link')
     _unique(joints, 'joint')
@@ -97,7 +97,7 @@ def build_tree(
             raise fault(
                 joint.element,
                 f"child link '{joint.spec.child}' is already the child of joint "
-                f"'{first.spec.name}' ({line_of(first.element)}); a link hangs on one joint",
+                f"'{first.spec.name}' ({line_of(first.element)}); a link has one parent joint",
             )
         below.setdefault(joint.spec.parent, []).append(joint)
     root = _find_root(robot, by_name, joint_to)
@@ -120,8 +120,8 @@ def _unique(items: Sequence[Named], kind: str) -> dict[str, Named]:
         if first is not item:
             raise fault(
                 item.element,
-                f"there is a {kind} '{item.spec.name}' already in "
-                f'{line_of(first.element)}; {kind} names must differ',
+                f"the {kind} '{item.spec.name}' is already defined in "
+                f'{line_of(first.element)}; {kind} names must be unique',
             )
     return by_name
 
@@ -134,13 +134,13 @@ def _find_root(
         return roots[0]
     if not roots:
         first = next(iter(joint_to.values()))
-        raise fault(first.element, 'the joints form a ring; one link must be child of no joint')
+        raise fault(first.element, 'the joints form a loop; one link must have no parent joint')
     shown = ', '.join(f"'{name}' ({line_of(links[name].element)})" for name in roots[:6])
     more = f' and {len(roots) - 6} more' if len(roots) > 6 else ''
     raise fault(
         robot,
-        f'{len(roots)} links are child of no joint: {shown}{more}; a model has one root, '
-        'connect the others with a joint',
+        f'{len(roots)} links are not the child of any joint: {shown}{more}; a model has one root: '
+        'connect the others with joints',
     )
 
 
@@ -151,6 +151,6 @@ def _refuse_rings(tree: KinematicTree) -> None:
         shown = ', '.join(f"'{name}'" for name in lost[:6])
         raise fault(
             tree.joint_to[lost[0]].element,
-            f"the joints of {shown} form a ring apart from the root '{tree.root}'; "
-            'every link must hang on the root',
+            f"the joints of {shown} form a loop that is not connected to the root '{tree.root}'; "
+            'every link must descend from the root',
         )

@@ -1,4 +1,4 @@
-"""Reads SDF: models, lights and worlds."""
+"""Parser of SDF: models, lights and worlds."""
 
 from .sdf import load_sdf, load_sdf_light
 from .world_file import open_world

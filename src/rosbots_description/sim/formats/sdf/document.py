@@ -1,4 +1,4 @@
-"""One SDF text, its version and its place on disk; and all texts that one reading opens."""
+"""A parsed SDF document with its version and folder; and the documents that it includes."""
 
 import os
 from collections.abc import Callable
@@ -28,7 +28,7 @@ from .pose_repair import complete_poses
 
 NEWEST = (1, 7)
 _UNVERSIONED = (1, 6)
-MAX_INCLUDE_DEPTH = 50  # of includes; more can only be files that include each other
+MAX_INCLUDE_DEPTH = 50  # deeper nesting means that files include each other
 MAX_INCLUDES = 5000
 
 T = TypeVar('T')
@@ -39,8 +39,8 @@ class SdfDocument:
 
     Attributes:
         root: the <sdf> (or <gazebo>) element.
-        version: e.g. (1, 6); axes of joints mean different things in different versions.
-        notes: what is to be said about it.
+        version: e.g. (1, 6); the frame of joint axes depends on it.
+        notes: what to log about it.
     """
 
     def __init__(
@@ -54,10 +54,10 @@ class SdfDocument:
         """Parse a text.
 
         Args:
-            directory: where its file lies, for addresses relative to it; '' if it has none.
-            home: the folder that those may not leave; '' if they may go anywhere.
+            directory: folder of its file, the base of relative addresses; '' if it has none.
+            home: the folder that relative addresses must not leave; '' for no such limit.
         Raises:
-            ModelError: it is no XML, or no SDF.
+            ModelError: the text is not XML, or not SDF.
         """
         self.library = library
         self.root = parse_xml(text, source)
@@ -77,14 +77,14 @@ class SdfDocument:
         self.version = self._read_version()
 
     def file(self, element: etree._Element, uri: str) -> str:
-        """Return the absolute path that an address in `element` stands for.
+        """Return the absolute path of an address in `element`.
 
-        model:// goes along the model path, package:// to ROS packages, file:// and plain paths
-        are absolute or relative to the file that names them.
+        model:// is searched along the model path, package:// among ROS packages; file:// and plain
+        paths are absolute or relative to the file that contains them.
 
         Raises:
-            ModelError: nothing is found there, or the address climbs out (`..`) of a model, a
-                package or the folder of the model that this text describes.
+            ModelError: nothing is found there, or the address leaves (`..`) a model, a package or
+                the folder of the model that this document describes.
         """
         if uri.startswith('model://'):
             return in_models(element, uri, self.library.find_model)
@@ -107,7 +107,7 @@ class SdfDocument:
         """Return the document that an <include> names.
 
         Raises:
-            ModelError: there is none, or it cannot be read.
+            ModelError: it does not exist or cannot be read.
         """
         uri_element = element.find('uri')
         if uri_element is None or not (uri := scalar(uri_element)):
@@ -130,11 +130,11 @@ class SdfDocument:
     def _read_version(self) -> tuple[int, int]:
         text = self.root.get('version', '').strip()
         if not text:
-            self.notes.warn(self.root, 'no version="..." is given; it is read as SDF 1.6')
+            self.notes.warn(self.root, 'no version="..." is given; SDF 1.6 is assumed')
             return _UNVERSIONED
         parts = text.split('.')
         if not all(part.isdecimal() and len(part) < 10 for part in parts) or len(parts) < 2:
-            raise fault(self.root, f'version="{text}" is wrong; it is something like "1.6"')
+            raise fault(self.root, f'version="{text}" is not valid; write e.g. "1.6"')
         version = (int(parts[0]), int(parts[1]))
         if version > NEWEST:
             self.notes.warn(self.root, f'SDF {text} is newer than 1.7; it is read as SDF 1.7')
@@ -142,7 +142,7 @@ class SdfDocument:
 
 
 def _home(uri: str, path: str) -> str:
-    """Return the folder of the model or package that an address names, which is at `path`."""
+    """Return the folder of the model or package that an address names, found at `path`."""
     if uri.startswith(('model://', 'package://')):
         inner = os.path.normpath(uri.split('://', 1)[1].lstrip('/')).split('/')
         for _ in inner[1:]:
@@ -151,7 +151,7 @@ def _home(uri: str, path: str) -> str:
 
 
 class SdfLibrary:
-    """The documents that one reading opens, each file once.
+    """The documents that are opened while one is read, each file once.
 
     Args:
         find_model: path below the model path -> the file or directory, or None.
@@ -168,7 +168,7 @@ class SdfLibrary:
     def add(
         self, text: str | bytes, source: str, directory: str = '', home: str = ''
     ) -> SdfDocument:
-        """Return the document of a text; see `SdfDocument` for the folders."""
+        """Return the document of a text; see `SdfDocument` for `directory` and `home`."""
         document = SdfDocument(text, source, self, directory, home)
         self._documents[source] = document
         return document
@@ -177,21 +177,21 @@ class SdfLibrary:
         """Return the document of a file, whose relative addresses may not leave `home`.
 
         Raises:
-            ModelError: the file cannot be read, or holds no SDF.
+            ModelError: the file cannot be read, or is not SDF.
         """
         if path not in self._documents:
             self.add(read_file(path, MAX_XML_BYTES), path, os.path.dirname(path), home)
         return self._documents[path]
 
     def built_in(self, uri: str, text: str) -> SdfDocument:
-        """Return the document of a model that is always there."""
+        """Return the document of a built-in model."""
         return self._documents.get(uri) or self.add(text, uri)
 
     def within(self, document: SdfDocument, element: etree._Element, read: Callable[[], T]) -> T:
-        """Return `read()`, during which `document` counts as being read.
+        """Return `read()`, with `document` marked as being read meanwhile.
 
         Raises:
-            ModelError: it is being read already: files that include each other.
+            ModelError: it is being read already, as files include each other.
         """
         if document in self._reading or len(self._reading) >= MAX_INCLUDE_DEPTH:
             raise fault(element, 'the included model includes itself')
@@ -205,6 +205,6 @@ class SdfLibrary:
             self._reading.pop()
 
     def log_notes(self) -> None:
-        """Say what is to be said about all documents."""
+        """Log the notes about all documents."""
         for document in self._documents.values():
             document.notes.log()

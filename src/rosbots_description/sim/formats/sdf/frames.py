@@ -1,4 +1,4 @@
-"""Where things stand in a model or world whose poses may each be given in another's frame."""
+"""Resolve the poses of a model or world, each of which may be given in another frame."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ MODEL_FRAME = '__model__'
 
 @dataclass(frozen=True)
 class _Frame:
-    element: etree._Element  # what is called so, for messages
+    element: etree._Element  # the element of that name, for messages
     pose: Pose  # in `base`
     base: str  # name of another frame; '' for the root
     carrier: str | None  # the frame it is attached to; None for a link
@@ -22,7 +22,7 @@ class _Frame:
 class Frames:
     """The named frames of one model, or of a world, each posed in another or in the root.
 
-    All results are given in the root: the model's own frame, or the world.
+    All results are in the root: the model's own frame, or the world.
     """
 
     def __init__(self, *root_names: str) -> None:
@@ -38,26 +38,26 @@ class Frames:
         carrier: str | None = None,
         pose_element: etree._Element | None = None,
     ) -> None:
-        """Make a frame known by what its <pose> says; the first one of a name counts.
+        """Add a frame by its <pose>; if a name occurs twice, the first counts.
 
         Args:
-            base: the frame its pose is given in unless the pose names another.
-            carrier: the frame whose link it moves with; None if it is a link itself.
-            pose_element: the <pose>, where it is not that of `element`.
+            base: the frame in which its pose is given, unless the pose names another.
+            carrier: the frame that it is attached to; None if it is a link itself.
+            pose_element: the <pose>, if it is not that of `element`.
         """
         pose = element.find('pose') if pose_element is None else pose_element
         frame = _Frame(element, pose_in(pose), _base_of(pose, base), carrier)
         self._frames.setdefault(name, frame)
 
     def add_at(self, name: str, element: etree._Element, pose: Pose, base: str) -> None:
-        """Make a link known by its pose in `base`."""
+        """Add a link by its pose in `base`."""
         self._frames.setdefault(name, _Frame(element, pose, base, None))
 
     def pose_of(self, name: str, element: etree._Element) -> Pose:
         """Return the pose of a frame.
 
         Raises:
-            ModelError: there is no such frame, or frames are posed in a ring; said of `element`.
+            ModelError: there is no such frame, or frames are posed in a loop; it names `element`.
         """
         chain: list[tuple[str, _Frame]] = []
         seen: set[str] = set()
@@ -65,7 +65,7 @@ class Frames:
             frame = self._find(name, element)
             if name in seen:
                 raise fault(
-                    frame.element, f"'{name}' is posed relative to itself, in a ring of frames"
+                    frame.element, f"'{name}' is posed relative to itself, in a loop of frames"
                 )
             seen.add(name)
             chain.append((name, frame))
@@ -76,7 +76,7 @@ class Frames:
         return pose
 
     def place(self, element: etree._Element, base: str = '') -> Pose:
-        """Return the pose of something that has a <pose>, given in `base` unless that says else.
+        """Return the pose of an element, given in `base` unless its <pose> names another frame.
 
         Raises:
             ModelError: as `pose_of`.
@@ -86,11 +86,11 @@ class Frames:
         return compose(self.pose_of(_base_of(pose, base), at), pose_in(pose))
 
     def link_of(self, name: str, element: etree._Element) -> str:
-        """Return the link that a frame moves with.
+        """Return the link that a frame is attached to.
 
         Raises:
             AbsentError: there is no such frame.
-            ModelError: it is attached to none, or frames form a ring.
+            ModelError: it is attached to none, or frames form a loop.
         """
         seen: list[str] = []
         while True:
@@ -99,7 +99,7 @@ class Frames:
                 return name
             seen.append(name)
             if frame.carrier in seen:
-                raise fault(element, f"'{seen[0]}' is attached to itself in a ring of frames")
+                raise fault(element, f"'{seen[0]}' is attached to itself, in a loop of frames")
             if frame.carrier in self._roots:
                 raise fault(element, f"'{seen[0]}' is attached to no link; name a link")
             name = frame.carrier
@@ -109,7 +109,7 @@ class Frames:
         if frame is None:
             raise fault(
                 element,
-                f"<{tag_of(element)}> names '{name}', but no link, joint or frame is called so"
+                f"<{tag_of(element)}> names '{name}', but there is no such link, joint or frame"
                 f'{suggestion(name, self._frames)}',
                 AbsentError,
             )
@@ -120,7 +120,7 @@ class Frames:
 
 
 def _base_of(pose: etree._Element | None, default: str) -> str:
-    """Return the frame a <pose> is given in: `relative_to`, or `frame` before SDF 1.7."""
+    """Return the frame in which a <pose> is given: `relative_to`, or `frame` before SDF 1.7."""
     if pose is None:
         return default
     return pose.get('relative_to') or pose.get('frame') or default

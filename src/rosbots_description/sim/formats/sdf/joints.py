@@ -1,4 +1,4 @@
-"""Joints of SDF, and how those that are read become trees."""
+"""Joints of SDF, and the trees that they form."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -24,13 +24,13 @@ _TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC, 
 _NOT_SIMULATED = ('ball', 'universal', 'screw', 'revolute2', 'gearbox')
 _DYNAMICS = ('damping', 'friction', 'spring_stiffness', 'spring_reference')
 _UP = (0.0, 0.0, 1.0)
-# Before SDF 1.5 axes are given in the model's frame; until 1.6 a flag may say so; since 1.7 an
-# attribute names the frame.
+# Before SDF 1.5 axes are given in the model's frame; in 1.5 and 1.6 a flag selects it; since 1.7
+# an attribute names the frame.
 _AXIS_IN_JOINT, _AXIS_BY_NAME = (1, 5), (1, 7)
 
 
 def add_joint_frame(frames: Frames, element: etree._Element) -> None:
-    """Make a joint's frame known: it stands in the child's and moves with it."""
+    """Add a joint's frame, which is posed in the child's and attached to it."""
     child = text_of(element, 'child')
     base = '' if child == WORLD else child
     frames.add(required_name(element), element, base, carrier=child or None)
@@ -39,7 +39,7 @@ def add_joint_frame(frames: Frames, element: etree._Element) -> None:
 def read_sdf_joint(
     document: SdfDocument, element: etree._Element, frames: Frames
 ) -> JointSpec | None:
-    """Return the joint of a <joint>, or None where its type is noted as not simulated.
+    """Return the joint of a <joint>, or None if its type is not simulated, which is noted.
 
     Raises:
         ModelError: a name, type, link, frame or number is missing or wrong.
@@ -48,7 +48,7 @@ def read_sdf_joint(
     written = element.get('type', '')
     if written in _NOT_SIMULATED:
         document.notes.warn(
-            element, f'{written} joints are not simulated, its two links are not connected'
+            element, f'{written} joints are not simulated; its two links are not connected'
         )
         return None
     if written not in _TYPES:
@@ -59,10 +59,10 @@ def read_sdf_joint(
     kind = _TYPES[written]
     parent, child = _end(element, 'parent', frames), _end(element, 'child', frames)
     if parent == child:
-        raise fault(element, f"it connects '{parent}' with itself; two links are needed")
+        raise fault(element, f"it connects '{parent}' to itself; name two different links")
     if child == WORLD and kind != FIXED:
         raise fault(element, 'the world cannot be the child of a joint that moves; swap the two')
-    if child == WORLD:  # what is fixed to what does not matter
+    if child == WORLD:  # a fixed joint may be reversed
         parent, child = child, parent
     frame = frames.place(element, base=_child_frame(element))
     spec = JointSpec(
@@ -125,7 +125,7 @@ def _with_motion(
     lower, upper = limit_of(limit, 'lower'), limit_of(limit, 'upper')
     if lower is not None and upper is not None and lower > upper:
         notes.warn(
-            limit, f'lower limit {lower:g} is above upper limit {upper:g}, the two are switched'
+            limit, f'lower limit {lower:g} is above upper limit {upper:g}; the two are swapped'
         )
         lower, upper = upper, lower
     return replace(spec, lower=lower, upper=upper)
@@ -134,7 +134,7 @@ def _with_motion(
 def _axis(document: SdfDocument, axis: etree._Element, frame: Pose, frames: Frames) -> Vector:
     """Return the unit axis in the joint's frame."""
     if numbers_of(axis, 'xyz', _UP) == (0.0, 0.0, 0.0):
-        document.notes.warn(axis, "<xyz> '0 0 0' has no direction, x is used as in Gazebo")
+        document.notes.warn(axis, "<xyz> '0 0 0' has no direction; x is used, as in Gazebo")
         return (1.0, 0.0, 0.0)
     vector = unit_vector_of(axis, 'xyz', _UP)
     version = document.version
@@ -155,11 +155,11 @@ def as_trees(
     links: Sequence[LinkSpec],
     joints: Sequence[tuple[JointSpec, etree._Element]],
 ) -> tuple[JointSpec, ...]:
-    """Return the joints so that every link is the child of at most one, parents known.
+    """Return the joints such that every link is the child of at most one.
 
-    SDF allows any graph of links. The engine works in joint coordinates, which needs trees: a
-    joint that closes a ring is left out and noted, and one that points towards the root is turned
-    round, by its axis as well, so that its position keeps its sign.
+    SDF allows any graph of links. The engine works in joint coordinates, which need trees: a joint
+    that closes a loop is left out and noted, and one that points towards the root is reversed
+    together with its axis, so that its position keeps its sign.
     """
     group = {name: name for name in (WORLD, *(link.name for link in links))}
 
@@ -174,7 +174,7 @@ def as_trees(
         if ends[0] == ends[1]:
             document.notes.warn(
                 element,
-                f"it closes a ring of joints, which is not simulated; '{joint.parent}' and "
+                f"it closes a kinematic loop, which is not simulated; '{joint.parent}' and "
                 f"'{joint.child}' are not connected by it",
             )
             continue
@@ -184,7 +184,7 @@ def as_trees(
 
 
 def _directed(links: Sequence[LinkSpec], joints: Sequence[JointSpec]) -> tuple[JointSpec, ...]:
-    """Return the joints, which form no ring, all pointing away from their tree's root."""
+    """Return the joints, which form no loop, all pointing away from their tree's root."""
     poses = {link.name: link.pose for link in links}
     children = {joint.child for joint in joints}
     roots = [WORLD, *(name for name in poses if name not in children), *poses]

@@ -19,7 +19,7 @@ _READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', '
 _PARTS = ('light', 'projector')
 _MOMENTS, _PRODUCTS = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
 
-# What a link has about which nothing is said.
+# The mass properties of a link that gives none.
 UNIT_INERTIAL = Inertial(1.0, IDENTITY, 1.0, 1.0, 1.0)
 
 Shape = TypeVar('Shape', Collision, Visual)
@@ -36,14 +36,14 @@ def read_link(
 
     Args:
         frames: those of the model.
-        static: the model does not move, so masses do not matter.
-        self_collide: what the model says of links that say nothing.
+        static: whether the model is static, so that masses do not matter.
+        self_collide: the model's setting, for links without one.
     Raises:
         ModelError: a name, number, frame, geometry or mesh file is missing or wrong.
     """
     name = required_name(element)
     if name == WORLD:
-        raise fault(element, f"a link cannot be called '{WORLD}', which means the world itself")
+        raise fault(element, f"a link cannot be called '{WORLD}'; that names the world itself")
     document.notes.check(element, _READ, ('must_be_base_link',))
     pose = frames.place(element)
     return LinkSpec(
@@ -79,7 +79,7 @@ def _shapes(
     tag: str,
     read: Callable[[SdfDocument, etree._Element, str, Pose], Shape | None],
 ) -> tuple[Shape, ...]:
-    """Return the shapes of one kind, under names that differ, posed in the link's frame."""
+    """Return the shapes of one kind, under unique names, posed in the link's frame."""
     shapes: dict[str, Shape] = {}
     taken: Counter[str] = Counter()
     for element in link.iterfind(tag):
@@ -102,7 +102,7 @@ def _pose_in_link(element: etree._Element, frames: Frames, link_pose: Pose) -> P
 
 
 def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Inertial | None:
-    """Return the mass properties; what is not given is 1 kg and 1 kg m^2, as SDF has it."""
+    """Return the mass properties; the defaults are those of SDF, 1 kg and 1 kg m^2."""
     if static:
         return None
     element = link.find('inertial')
@@ -113,7 +113,7 @@ def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Iner
     if mass_element is not None and mass <= 0.0:
         raise fault(
             mass_element,
-            f'mass {mass:g} kg is wrong; a link that moves has a mass greater than zero',
+            f'mass {mass:g} kg is not valid; the mass of a moving link must be greater than zero',
         )
     values = {key: number_of(element, f'inertia/{key}', 1.0) for key in _MOMENTS}
     values |= {key: number_of(element, f'inertia/{key}', 0.0) for key in _PRODUCTS}
@@ -123,6 +123,6 @@ def _inertial(document: SdfDocument, link: etree._Element, static: bool) -> Iner
         if moment is not None and values[key] < 0.0:
             raise fault(
                 moment,
-                f'<{key}> is {values[key]:g}; a moment of inertia is greater than zero',
+                f'<{key}> is {values[key]:g}; a moment of inertia must be greater than zero',
             )
     return Inertial(mass, pose_in(element.find('pose')), **values)

@@ -1,7 +1,7 @@
-"""Models of SDF: links, joints, plugins, models inside models and included ones, made flat.
+"""Models of SDF: links, joints and plugins, with nested and included models flattened.
 
-What belongs to an inner model is called `inner::name` in the outer one, as Gazebo has it. Fixed
-joints stay joints: only those of URDF are reduced.
+Parts of a nested model are called `inner::name` in the outer one, as in Gazebo. Fixed joints are
+kept: only those of URDF are reduced.
 """
 
 from collections import Counter
@@ -35,9 +35,9 @@ _INCLUDE_READ = ('uri', 'name', 'pose', 'static', 'plugin')
 
 @dataclass
 class ModelParts:
-    """What a model consists of, in its own frame, with the elements that say so.
+    """The parts of a model, in its own frame, with their elements.
 
-    `pose_element` says where it stands in what it belongs to.
+    `pose_element` holds its pose in the world or outer model.
     """
 
     document: SdfDocument
@@ -48,19 +48,19 @@ class ModelParts:
     links: list[LinkSpec] = field(default_factory=list)
     joints: list[tuple[JointSpec, etree._Element]] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
-    inner: dict[str, Pose] = field(default_factory=dict)  # models within, where their frames stand
-    left_out: list[str] = field(default_factory=list)  # what it stands without
+    inner: dict[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
+    left_out: list[str] = field(default_factory=list)  # parts that were left out
 
 
 def read_model(
     document: SdfDocument, element: etree._Element, static: bool | None = None
 ) -> ModelParts:
-    """Return the parts of a <model>, those of the models in it included.
+    """Return the parts of a <model>, including those of nested models.
 
     Args:
-        static: whether it stands still; None: its own <static> decides.
+        static: whether it is static; None: its own <static> decides.
     Raises:
-        ModelError: something in it cannot be simulated; the sentence says where and why.
+        ModelError: something in it cannot be simulated; the message says where and why.
     """
     document.notes.check(element, _READ, ('allow_auto_disable',))
     if static is None:
@@ -92,9 +92,9 @@ def read_model(
 def _inner_models(
     document: SdfDocument, element: etree._Element, static: bool | None
 ) -> list[ModelParts]:
-    """Return the models in a model; what is in one that stands still stands still.
+    """Return the nested models of a model; those of a static model are static.
 
-    As in Gazebo a model stands without those it includes that are not to be found.
+    As in Gazebo an included model that cannot be found is left out.
     """
     inner = []
     for child in element:
@@ -114,7 +114,7 @@ def _inner_models(
 def _add_joint(
     document: SdfDocument, element: etree._Element, frames: Frames, parts: ModelParts
 ) -> None:
-    """Add a joint to a model; as in Gazebo it stands without one whose links are not there."""
+    """Add a joint to a model; as in Gazebo a joint whose links do not exist is left out."""
     try:
         joint = read_sdf_joint(document, element, frames)
     except AbsentError as error:
@@ -130,7 +130,7 @@ def read_include(
     """Return the parts of the model that an <include> names, with its name, pose and static.
 
     Args:
-        static: whether it stands still; None: the <static> of the include or the model decides.
+        static: whether it is static; None: the <static> of the include or the model decides.
     Raises:
         ModelError: there is no such model, or it cannot be simulated.
     """
@@ -139,7 +139,7 @@ def read_include(
     model = other.root.find('model')
     if model is None:
         raise fault(
-            element, f"'{text_of(element, 'uri')}' describes no <model>; it cannot be included here"
+            element, f"'{text_of(element, 'uri')}' contains no <model>; it cannot be included here"
         )
     if static is None and element.find('static') is not None:
         static = truth_of(element, 'static')
@@ -154,10 +154,10 @@ def read_include(
 
 
 def model_spec(parts: ModelParts, name: str) -> ModelSpec:
-    """Return a model complete and checked, under the name it is to have.
+    """Return the complete and checked model under the given name.
 
     Raises:
-        ModelError: it has no link, or names meet twice.
+        ModelError: it has no link, or names are not unique.
     """
     if not parts.links:
         raise fault(parts.element, 'the model has no <link>; a model needs at least one')
@@ -174,7 +174,7 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
 
 
 def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:
-    """Return the frames of a model; the first of a name counts: links, models, then others."""
+    """Return the frames of a model; if a name occurs twice, links precede models, then others."""
     frames = Frames(MODEL_FRAME)
     for child in element.iterfind('link'):
         frames.add(required_name(child), child)
@@ -194,7 +194,7 @@ def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:
 
 
 def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
-    """Add an inner model, which stands at `pose`, to the outer one."""
+    """Add a nested model, whose frame is at `pose`, to the outer one."""
     prefix = f'{inner.name}::'
     parts.inner[inner.name] = pose
     parts.left_out += inner.left_out
@@ -256,12 +256,12 @@ def _add_plugin(document: SdfDocument, element: etree._Element, parts: ModelPart
 
 
 def read_plugin(document: SdfDocument, element: etree._Element) -> PluginSpec | None:
-    """Return a <plugin>; one without filename is noted and ignored."""
+    """Return a <plugin>; one without a filename is noted and ignored."""
     filename = element.get('filename', '').strip()
     if not filename:
         document.notes.warn(
             element,
-            'a <plugin> without filename is ignored; filename="libgazebo_ros_….so" picks the code',
+            'a <plugin> without filename is ignored; add filename="libgazebo_ros_….so"',
         )
         return None
     return PluginSpec(element.get('name', ''), filename, to_element(element))
@@ -270,7 +270,7 @@ def read_plugin(document: SdfDocument, element: etree._Element) -> PluginSpec | 
 def _movable(
     parts: ModelParts, links: Sequence[LinkSpec], children: Collection[str]
 ) -> list[LinkSpec]:
-    """Return the links of a model that moves, as the engine can move them; notes say what not."""
+    """Return the links of a moving model as the engine can move them; note the changes."""
     notes, made = parts.document.notes, []
     for link in links:
         given = link.inertial or UNIT_INERTIAL
@@ -282,13 +282,13 @@ def _movable(
             notes.warn(
                 parts.element,
                 f"link '{link.name}': an inertia of zero cannot be simulated; "
-                'that of a small ball of the same mass is used',
+                'that of a small sphere of the same mass is used',
             )
         solid = tuple(c for c in link.collisions if not isinstance(c.geometry, Plane))
         if len(solid) < len(link.collisions):
             notes.warn(
                 parts.element,
-                f"link '{link.name}': an endless plane cannot move, it touches nothing; "
+                f"link '{link.name}': an infinite plane cannot move; its collision is left out; "
                 'make the model <static>',
             )
         kinematic = link.kinematic and link.name not in children
@@ -304,4 +304,4 @@ def _movable(
 def _require_unique(parts: ModelParts, names: Sequence[str], kind: str) -> None:
     twice = [name for name, count in Counter(names).items() if count > 1]
     if twice:
-        raise fault(parts.element, f"there are two {kind}s '{twice[0]}'; names must differ")
+        raise fault(parts.element, f"there are two {kind}s '{twice[0]}'; names must be unique")

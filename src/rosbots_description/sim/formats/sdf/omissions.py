@@ -1,4 +1,4 @@
-"""What an SDF file asks for that is not simulated, named once per file by path and line."""
+"""Elements of an SDF file that are not simulated, named once per file by path and line."""
 
 import logging
 from collections.abc import Collection
@@ -11,7 +11,7 @@ from ..xml import LeftOut, parse_numbers, scalar, tag_of
 
 logger = logging.getLogger(__name__)
 
-# A leaf that says only what is so here anyway is not worth a word.
+# A leaf with a value that holds here anyway is not mentioned.
 _NEUTRAL: dict[str, tuple[float, ...]] = {
     'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0),
     'slip': (0.0,),
@@ -22,26 +22,26 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
     'surface_radius': (0.0,), 'visible': (1.0,), 'initial_position': (0.0,), 'center': (0.0,),
 }
 
-# Read and kept for whoever asks, but nothing here acts on it: parent -> children.
+# Stored and reported, but without effect here: parent -> children.
 _KEPT = {
     'ode': ('max_vel', 'min_depth'), 'collision': ('max_contacts',),
     'limit': ('velocity',), 'scene': ('ambient', 'background', 'shadows'),
 }
-# The same, but the model is not what its author expects.
+# The same, but the author of the model expects an effect.
 _NOT_RUN = {'link': ('light', 'projector')}
 
-# Parts that do something by being there, whatever stands in them.
+# Elements whose mere presence has an effect, whatever they contain.
 _PARTS = {part for parts in _NOT_RUN.values() for part in parts}
-# Containers that saved worlds write without anything in them.
+# Containers that saved worlds write even when they are empty.
 _EMPTY = {'surface', 'friction', 'ode', 'bullet', 'torsional', 'bounce', 'contact', 'limit',
           'dynamics', 'physics', 'geometry', 'script', 'wind', 'gui', 'audio', 'meta'}
 
 
 class Notes:
-    """Collects what is to be said about one file; `log` says it, each thing once.
+    """Collects the notes about one file; `log` logs them, each once.
 
     Attributes:
-        left_out: what the models in it stand without.
+        left_out: parts of its models that were left out.
     """
 
     def __init__(self, source: str) -> None:
@@ -54,11 +54,11 @@ class Notes:
     def check(
         self, element: etree._Element, read: Collection[str], idle: Collection[str] = ()
     ) -> None:
-        """Note the children of `element` that nobody reads, or that are only kept.
+        """Note the children of `element` that are not read, or have no effect.
 
         Args:
             read: tags that are read.
-            idle: tags that change nothing that is simulated here, such as a solver's settings.
+            idle: tags without effect here, such as a solver's settings.
         """
         kept, not_run = _KEPT.get(element.tag, ()), _NOT_RUN.get(element.tag, ())
         for child in element:
@@ -66,24 +66,24 @@ class Notes:
                 self.unread(child, idle=child.tag in idle or child.tag in kept)
 
     def unread(self, element: etree._Element, idle: bool = False) -> None:
-        """Note an element that is not simulated, unless it asks for nothing."""
+        """Note an element that is not simulated, unless its value has no effect anyway."""
         if not _is_neutral(element):
             lines = (self._idle if idle else self._unread).setdefault(_path(element), {})
             lines[line_of(element)] = None
 
     def warn(self, element: etree._Element, sentence: str) -> None:
-        """Note that something is done differently than `element` asks."""
+        """Note that something is done differently than `element` specifies."""
         self.say(f'{location(element)}: {shortened(sentence)}')
 
     def say(self, sentence: str) -> None:
-        """Note a sentence that tells its place itself."""
+        """Note a sentence that names its own location."""
         if len(self._sentences) < MAX_NOTES:
             self._sentences[sentence] = None
         elif len(self._sentences) == MAX_NOTES:
-            self._sentences[f'{self._source}: there is more of that kind, not listed'] = None
+            self._sentences[f'{self._source}: more warnings of this kind are not listed'] = None
 
     def log(self) -> None:
-        """Say everything; what changes nothing that is simulated only at level debug."""
+        """Log all notes; those without effect on the simulation at level debug."""
         for sentence in self.left_out.errors():
             logger.error('%s', self._with_source(sentence))
         for sentence in (*self._sentences, *self.left_out.warnings):

@@ -1,4 +1,4 @@
-"""The <physics> and <gravity> of a world, in today's form and in that of SDF 1.3."""
+"""The <physics> and <gravity> of a world, in the current form and in that of SDF 1.3."""
 
 from dataclasses import fields
 from typing import Any
@@ -11,7 +11,7 @@ from ..xml import scalar, tag_of
 from .document import SdfDocument
 from .values import number_of, numbers_of
 
-# Where each setting stands in <physics>; later paths, of older versions, count less.
+# Paths of each setting in <physics>; the first one found counts, those of older versions come last.
 _PATHS: dict[str, tuple[str, ...]] = {
     'step_size': ('max_step_size', 'ode/solver/dt'),
     'max_update_rate': ('real_time_update_rate', 'update_rate'),
@@ -28,7 +28,7 @@ _PATHS: dict[str, tuple[str, ...]] = {
 _FRICTION = 'ode/solver/friction_model'
 _PYRAMID, _CONE = 'pyramid_model', 'cone_model'
 _READ = ('max_step_size', 'real_time_update_rate', 'update_rate', 'gravity', 'max_contacts', 'ode')
-# The rate says how fast the simulator tries to be; the solvers' own settings have no counterpart.
+# The rate only limits the speed of the simulation; the solvers' settings have no counterpart here.
 _IDLE = ('real_time_factor', 'bullet', 'simbody', 'dart')
 _ODE_IDLE = ('type', 'min_step_size', 'use_dynamic_moi_rescaling',
              'thread_position_correction', 'island_threads')
@@ -38,7 +38,7 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
     """Return the settings of the <physics> that counts: the default one, else the first.
 
     Raises:
-        ModelError: something is no number, or one that no world can have.
+        ModelError: a setting is not a number, or out of range.
     """
     plain = PhysicsSettings()
     settings: dict[str, Any] = {}  # by field
@@ -67,7 +67,7 @@ def _check(document: SdfDocument, physics: etree._Element) -> None:
     notes = document.notes
     kind = physics.get('type', 'ode')
     if kind != 'ode':
-        notes.warn(physics, f"physics type '{kind}' is not here; PyBullet is used for all")
+        notes.warn(physics, f"physics type '{kind}' is not available; PyBullet is used")
     notes.check(physics, _READ, _IDLE)
     for path, read in (
         ('ode', ('solver', 'constraints', 'max_contacts')),
@@ -83,7 +83,7 @@ def _check(document: SdfDocument, physics: etree._Element) -> None:
 def _setting(
     physics: etree._Element, path: str, element: etree._Element, name: str
 ) -> dict[str, Any]:
-    """Return a field with its value; what no world can have is refused, as the services do."""
+    """Return a field with its value; values out of range are rejected, as by the services."""
     default = getattr(PhysicsSettings(), name)
     setting: dict[str, Any] = {}
     if isinstance(default, tuple):

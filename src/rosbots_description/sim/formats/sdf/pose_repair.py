@@ -6,13 +6,13 @@ from ...core import line_of, shortened
 from ..xml import parse_numbers, scalar
 
 _NUMBERS = 6  # x y z roll pitch yaw
-_FOREIGN = ('plugin',)  # what stands in these is the business of who reads them
+_FOREIGN = ('plugin',)  # their content is interpreted by their readers
 
 
 def complete_poses(root: etree._Element) -> list[str]:
-    """Give each <pose> of numbers six of them, in place; return the sentences to warn with.
+    """Make each numeric <pose> have six numbers, in place; return the warnings.
 
-    As in Gazebo what is missing is 0, and what is too much is not read.
+    As in Gazebo missing numbers are 0, and excess ones are ignored.
     """
     sentences = []
     for element in root.iter('pose'):

@@ -1,4 +1,4 @@
-"""From the text of an SDF to a `ModelSpec`, or to the light that it describes."""
+"""Convert the text of an SDF to a `ModelSpec` or a `LightSpec`."""
 
 import logging
 
@@ -28,21 +28,21 @@ def load_sdf(
     """Read and check the first model of an SDF: its <model>, or the <include> of its <world>.
 
     Args:
-        name: of the model; its own name does not matter, as in Gazebo.
-        source: where the text comes from; it begins every message.
+        name: of the model; the one in the text is ignored, as in Gazebo.
+        source: origin of the text; it begins every message.
         robot_namespace: given to plugins of this text that have no <robotNamespace>.
         find_model: path below the model path -> file or directory, or None, for model://; see
             `ModelSearch`.
         find_package: package name -> its directory, or None if unknown, for package://.
 
     Returns:
-        The model, and the <pose> it has, which the caller composes with the pose it spawns at:
-        initial o pose. An included model has the pose of its <include>.
+        The model and its <pose>, that of the <include> for an included model. The caller spawns it
+        at compose(initial pose, <pose>).
 
     Raises:
-        ModelError: the description cannot be simulated; the sentence says where and why.
+        ModelError: the description cannot be simulated; the message says where and why.
 
-    What can be simulated, but not quite as written, is a warning, named once for each file.
+    What is simulated differently than written is logged as a warning, once per file.
     """
     check_name(name)
     library = SdfLibrary(find_model, find_package)
@@ -55,10 +55,10 @@ def load_sdf(
 
 
 def load_sdf_light(text: str | bytes, name: str, *, source: str = 'model_xml') -> LightSpec | None:
-    """Return the light that an SDF begins with, under `name`; None where it begins otherwise.
+    """Return the light that an SDF begins with, under `name`; None if it begins otherwise.
 
     Raises:
-        ModelError: the text is no SDF, or a number of the light is wrong.
+        ModelError: the text is not SDF, or a number of the light is not valid.
     """
     library = SdfLibrary(lambda inner: None, None)
     document = library.add(text, source)
@@ -86,9 +86,9 @@ def _first_model(document: SdfDocument) -> tuple[ModelParts, etree._Element | No
 
 
 def _own_pose(element: etree._Element | None) -> Pose:
-    """Return the pose; one that is malformed counts as none, as upstream."""
+    """Return the pose; a malformed one is ignored, as upstream."""
     try:
         return pose_in(element)
     except ModelError as error:
-        logger.error('%s; the model stands where it is spawned', error)
+        logger.error('%s; the pose is ignored, and the model is at its initial pose', error)
         return IDENTITY

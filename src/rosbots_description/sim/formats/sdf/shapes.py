@@ -1,4 +1,4 @@
-"""Collisions and visuals of SDF: geometry, surface and looks."""
+"""Collisions and visuals of SDF: geometry, surface and material."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ _UP = (0.0, 0.0, 1.0)
 def read_collision(
     document: SdfDocument, element: etree._Element, name: str, pose: Pose
 ) -> Collision | None:
-    """Return a <collision>, or None where its shape is noted as left out.
+    """Return a <collision>, or None if its shape was left out, which is noted.
 
     Args:
         pose: in the link's frame.
@@ -62,7 +62,7 @@ def read_collision(
 def read_visual(
     document: SdfDocument, element: etree._Element, name: str, pose: Pose
 ) -> Visual | None:
-    """Return a <visual>, or None where it is invisible or its shape is noted as left out.
+    """Return a <visual>, or None if it is invisible or its shape was left out, which is noted.
 
     Args:
         pose: in the link's frame.
@@ -84,7 +84,7 @@ def read_visual(
 
 
 def _shape(document: SdfDocument, element: etree._Element) -> Geometry | None:
-    """Return the geometry, or None where there can be none and the link stands without."""
+    """Return the geometry, or None if it cannot be created and is left out."""
     try:
         return _geometry(document, element)
     except ShapeError as error:
@@ -97,8 +97,8 @@ def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None
     if not shapes:
         raise fault(
             element,
-            f"<{element.tag} name='{element.get('name', '')}'> has no shape; put <geometry> with "
-            'a box, sphere, cylinder, plane or mesh into it',
+            f"<{element.tag} name='{element.get('name', '')}'> has no shape; "
+            'add a <geometry> with a box, sphere, cylinder, plane or mesh',
         )
     shape = shapes[0]
     match shape.tag:
@@ -133,7 +133,7 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     scale = vector_of(element, 'scale', (1.0, 1.0, 1.0))
     if 0.0 in scale:
         written = text_of(element, 'scale')
-        raise ShapeError(f"<scale> '{written}' of <mesh> makes it empty")
+        raise ShapeError(f"<scale> '{written}' of <mesh> reduces it to nothing")
     try:
         path = document.file(uri_element, uri)
     except AbsentError as error:
@@ -167,7 +167,7 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
     ):
         part = surface.find(path)
         if part is not None:
-            # Settings of engines that Gazebo would not use either.
+            # Settings of engines that Gazebo does not use by default either.
             document.notes.check(
                 part, read, ('bullet', 'soft_contact', 'poissons_ratio', 'elastic_modulus')
             )
@@ -191,7 +191,7 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
 
 
 def _friction(surface: etree._Element, path: str, default: float) -> float:
-    """Return a friction coefficient; a negative one and inf mean endless in Gazebo."""
+    """Return a friction coefficient; negative ones and inf mean infinite, as in Gazebo."""
     element = surface.find(path)
     if element is not None and is_endless(element):
         return ENDLESS_FRICTION
@@ -216,7 +216,7 @@ def _material(document: SdfDocument, visual: etree._Element) -> Material | None:
     if gazebo_material(script) is None and not (colours['diffuse'] or colours['ambient']):
         document.notes.warn(
             element,
-            f"material '{script}' is none of Gazebo's plain ones, grey is shown; add <diffuse>",
+            f"material '{script}' is not one of Gazebo's plain ones; grey is shown; add <diffuse>",
         )
     material = material_of_colours(script, **colours)
     opacity = min(1.0, max(0.0, 1.0 - number_of(visual, 'transparency', 0.0)))

@@ -1,4 +1,4 @@
-"""The <state> of a saved world: where models and links stood."""
+"""The <state> of a saved world: poses of models and links."""
 
 from lxml import etree
 
@@ -17,7 +17,7 @@ def read_states(
 ) -> tuple[tuple[ModelState, ...], float]:
     """Return the states of the models in a <state>, and its simulated time [s].
 
-    As in Gazebo velocities are not taken over, only places.
+    As in Gazebo only poses are applied, not velocities.
 
     Raises:
         ModelError: a pose or time is malformed.
@@ -41,7 +41,7 @@ def _read_model(
     document.notes.check(element, ('pose', 'link', 'model', 'scale'), ('joint',))
     scale = element.find('scale')
     if scale is not None and (scale.text or '').split() not in ([], ['1', '1', '1']):
-        document.notes.warn(scale, 'the <scale> of a state is not applied, only its poses')
+        document.notes.warn(scale, 'the <scale> of a state is not applied; its poses are')
     for link in element.iterfind('link'):
         document.notes.check(link, ('pose',), _LINK_IDLE)
         if link.find('pose') is not None:
@@ -51,7 +51,7 @@ def _read_model(
 
 
 def _sim_time(element: etree._Element) -> float:
-    """Return <sim_time>seconds nanoseconds</sim_time> in seconds, never before zero."""
+    """Return <sim_time>seconds nanoseconds</sim_time> in seconds, at least 0."""
     numbers = (element.findtext('sim_time') or '').split()
     if len(numbers) != 2 or not all(number.isdecimal() for number in numbers):
         return 0.0

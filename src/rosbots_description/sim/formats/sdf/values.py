@@ -1,4 +1,4 @@
-"""Read values from the child elements of SDF: where one is missing or empty, SDF's default."""
+"""Read values from child elements of SDF; a missing or empty one has SDF's default."""
 
 import math
 
@@ -18,7 +18,7 @@ from ..xml import (
     truth,
 )
 
-# SDF's own "no limit" is 1e16; nothing that is simulated comes near this [rad, m, N, N m].
+# SDF writes "no limit" as 1e16; simulated values stay far below this [rad, m, N, N m].
 _ENDLESS = 1e15
 
 
@@ -34,7 +34,7 @@ def numbers_of(
     """Return as many finite numbers as `default` has.
 
     Raises:
-        ModelError: the text is something else.
+        ModelError: the text is anything else.
     """
     element = parent.find(path)
     if element is None or not scalar(element):
@@ -65,8 +65,8 @@ def sizes_of(parent: etree._Element, path: str, count: int = 1) -> tuple[float, 
     """Return lengths greater than zero [m]; the element must be there.
 
     Raises:
-        ShapeError: one is zero, so that there is no shape.
-        ModelError: it is missing, no number, or negative.
+        ShapeError: one is zero, so there is no shape.
+        ModelError: one is missing, negative or not a number.
     """
     element = parent.find(path)
     if element is None:
@@ -78,7 +78,7 @@ def sizes_of(parent: etree._Element, path: str, count: int = 1) -> tuple[float, 
 
 
 def limit_of(parent: etree._Element, path: str) -> float | None:
-    """Return a limit, or None where the number stands for endless (1e16, inf, ...)."""
+    """Return a limit, or None if the number means no limit (1e16, inf, ...)."""
     element = parent.find(path)
     if element is None or not scalar(element):
         return None
@@ -89,13 +89,13 @@ def limit_of(parent: etree._Element, path: str) -> float | None:
 
 
 def truth_of(parent: etree._Element, path: str, default: bool = False) -> bool:
-    """Tell whether the element says true, yes or 1; `default` where it says nothing."""
+    """Tell whether the text is true, yes or 1; `default` if it is empty."""
     element = parent.find(path)
     return default if element is None or not scalar(element) else truth(element)
 
 
 def colour_of(parent: etree._Element, path: str) -> Colour | None:
-    """Return red, green, blue, alpha, each brought into 0..1; None where there is none."""
+    """Return red, green, blue, alpha, each clamped to 0..1; None if there is no colour."""
     element = parent.find(path)
     if element is None or not scalar(element):
         return None
@@ -106,7 +106,7 @@ def colour_of(parent: etree._Element, path: str) -> Colour | None:
 
 
 def damping_of(parent: etree._Element, path: str) -> float:
-    """Return the damping of a link's velocity; none where nothing is said."""
+    """Return the velocity damping of a link, 0 by default."""
     value = number_of(parent, path, 0.0)
     element = parent.find(path)
     if element is not None:
@@ -124,17 +124,17 @@ def unit_vector_of(parent: etree._Element, path: str, default: Vector) -> Vector
     largest = max(abs(x) for x in vector)
     element = parent.find(path)
     if element is not None and largest == 0.0:
-        raise fault(element, f'<{path}> has no direction; one of the three must not be zero')
-    # Scaled first, so that neither tiny nor huge numbers are squared.
+        raise fault(element, f'<{path}> has no direction; its numbers must not all be zero')
+    # Scale first, so that no square underflows or overflows.
     x, y, z = (x / largest for x in vector)
     length = math.sqrt(x * x + y * y + z * z)
     return (x / length, y / length, z / length)
 
 
 def pose_in(element: etree._Element | None) -> Pose:
-    """Return what a <pose> says: "x y z roll pitch yaw" [m, rad]; without one the identity.
+    """Return the pose of a <pose>, "x y z roll pitch yaw" [m, rad]; the identity if there is none.
 
-    What SDF 1.9 adds, degrees and quaternions (x, y, z, w), is understood too.
+    Degrees and quaternions (x, y, z, w) of SDF 1.9 are read, too.
     """
     if element is None or not scalar(element):
         return IDENTITY

@@ -1,4 +1,4 @@
-"""From a world file to a `WorldSpec`."""
+"""Convert a world file to a `WorldSpec`."""
 
 import logging
 import os
@@ -24,25 +24,25 @@ from .values import colour_of, text_of, truth_of
 logger = logging.getLogger(__name__)
 
 _READ = ('model', 'include', 'light', 'plugin', 'scene', 'physics', 'gravity', 'state', 'frame')
-# What only cameras, sounds and other sensors' models would show.
+# Elements with an effect on cameras, sound and other sensors only.
 _IDLE = ('gui', 'audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
 
-# What is said of an element that is no good.
+# End of the message about an element that is not valid.
 _WITHOUT = {
-    'model': 'the world stands without this model', 'light': 'the world stands without this light',
-    'frame': 'the world stands without this frame', 'state': "the world's <state> is not applied",
+    'model': 'this model is left out', 'light': 'this light is left out',
+    'frame': 'this frame is left out', 'state': "the world's <state> is not applied",
 }
 
 
 @dataclass
 class _Content:
-    """What is found while the elements of a world are walked."""
+    """What has been read so far of a world's elements."""
 
     models: dict[str, tuple[ModelSpec, Pose]] = field(default_factory=dict)
     lights: list[LightSpec] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
-    taken: Counter[str] = field(default_factory=Counter)  # name -> numbers given to others of it
+    taken: Counter[str] = field(default_factory=Counter)  # name -> number of its duplicates
 
 
 def load_world(
@@ -54,22 +54,22 @@ def load_world(
 ) -> WorldSpec:
     """Read and check a world file.
 
-    A model, light, frame or state that is no good, or an <include> that finds none, is an error in
-    the log and in `WorldSpec.faults`; the others stand, as in Gazebo.
+    A model, light, frame or state that is not valid, or an <include> that is not found, is left out
+    with an error in the log and in `WorldSpec.faults`; the others are loaded, as in Gazebo.
 
     Args:
-        source: the file's path; it begins every message, and addresses may be relative to it.
+        source: the file's path; it begins every message, and relative addresses start from it.
         find_model: see `load_sdf`.
         find_package: see `load_sdf`.
     Raises:
-        ModelError: the text is no SDF with a <world>, or a number of the world itself is wrong.
+        ModelError: the text is not SDF with a <world>, or a number of the world is not valid.
     """
     library = SdfLibrary(find_model, find_package)
     directory = os.path.dirname(os.path.abspath(source)) if os.path.isfile(source) else ''
     document = library.add(text, source, directory)
     world = document.root.find('world')
     if world is None:
-        raise fault(document.root, 'it has no <world>; a world file holds one')
+        raise fault(document.root, 'it has no <world>; a world file contains one')
     document.notes.check(world, _READ, _IDLE)
     content = _Content()
     frames = _frames(world, content)
@@ -115,7 +115,7 @@ def open_world(
 
 @contextmanager
 def _left_out(content: _Content, tag: str) -> Iterator[None]:
-    """Turn a fault in one element of a world into an error in the log; the world stands without."""
+    """Log a fault in one element of a world as an error, and leave the element out."""
     try:
         yield
     except ModelError as error:
@@ -124,13 +124,13 @@ def _left_out(content: _Content, tag: str) -> Iterator[None]:
 
 
 def _frames(world: etree._Element, content: _Content) -> Frames:
-    """Return the frames that models of a world may be posed in."""
+    """Return the frames in which models of a world may be posed."""
     frames = Frames('world')
     for element in world:
         if element.tag in ('model', 'include'):
             name = element.get('name') or text_of(element, 'name')
             if name:
-                with suppress(ModelError):  # its reader says it
+                with suppress(ModelError):  # reported when the model is read
                     frames.add(name, element)
         elif element.tag == 'frame':
             with _left_out(content, 'frame'):
@@ -180,14 +180,14 @@ def _add_model(
 def _free_name(
     document: SdfDocument, element: etree._Element, name: str, content: _Content
 ) -> str:
-    """Return the name, or where it is taken one with a number, as Gazebo's factory does."""
+    """Return the name, with a number appended if it is taken, as by Gazebo's factory."""
     free = name
     while free in content.models:
         free = f'{name}_{content.taken[name]}'
         content.taken[name] += 1
     if free != name:
         document.notes.warn(
-            element, f"there is a model '{name}' in the world already; this one is called '{free}'"
+            element, f"the world already has a model '{name}'; this one is called '{free}'"
         )
     return free
 

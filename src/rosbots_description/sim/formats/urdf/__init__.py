@@ -1,4 +1,4 @@
-"""Reads URDF by the rules of sdformat 9."""
+"""Parser of URDF, by the rules of sdformat 9."""
 
 from .urdf import load_urdf
 from .xacro_files import expand_xacro

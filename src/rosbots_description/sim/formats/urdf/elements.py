@@ -1,4 +1,4 @@
-"""Read the parts of a URDF: shapes, looks, masses, links and joints, each number checked."""
+"""Read the elements of a URDF: shapes, materials, masses, links and joints, all checked."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -49,11 +49,11 @@ from ..xml import (
     vector,
 )
 
-# URDF type -> ours. The last two tie nothing in Gazebo either: the child is free.
+# URDF type -> ours. The last two impose no constraint in Gazebo either: the child is free.
 _JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC,
                 'fixed': FIXED, 'floating': FREE, 'planar': FREE}
 
-CheckMesh = Callable[[str, Vector], object]  # file, scale; raises ModelError if it is no good
+CheckMesh = Callable[[str, Vector], object]  # file, scale; raises ModelError if it is unusable
 
 
 class Limits(TypedDict, total=False):
@@ -66,11 +66,11 @@ class Limits(TypedDict, total=False):
 
 
 class LinkReader:
-    """Reads <link> elements; knows the robot's named materials and which meshes are good.
+    """Reads <link> elements, with the robot's named materials; checks their meshes.
 
-    Colour rule: Gazebo ignores URDF colours and shows grey. Here a <gazebo> material comes first
-    (`gazebo_tags`), else the URDF's own colour counts, so that a robot looks as in RViz; without
-    either a primitive is grey and a mesh keeps its own colours.
+    Colours: Gazebo ignores those of the URDF and shows grey. Here a <gazebo> material takes
+    precedence (`gazebo_tags`), else the URDF's colour applies, so that a robot looks as in RViz;
+    without either a primitive is grey and a mesh keeps its own colours.
     """
 
     def __init__(
@@ -82,13 +82,13 @@ class LinkReader:
     ) -> None:
         self._check_mesh = check_mesh
         self._materials: dict[str, Material] = {}
-        self.notes: list[str] = []  # sentences to warn with
+        self.notes: list[str] = []  # warnings
         self._left_out, self._find_model = left_out, find_model
         for element in robot.iterfind('material'):
             colour = self._colour(element)
             if colour is not None:
                 self._materials[required_name(element)] = colour
-        # urdfdom also lets a colour given inside one link count for others.
+        # As in urdfdom a material defined inside one link is known to the others.
         for element in robot.iterfind('link/visual/material'):
             colour = self._colour(element)
             name = element.get('name')
@@ -131,7 +131,7 @@ class LinkReader:
         found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
         if found is None and element.find('texture') is None and element.find('color') is None:
             note(self.notes, lambda: (
-                f'{location(element)}: it has no <color> anywhere, it is shown grey'
+                f'{location(element)}: it has no <color> anywhere; grey is shown'
                 f'{suggestion(name, self._materials)}'
             ))
         return found
@@ -151,7 +151,7 @@ class LinkReader:
         return Material.plain((red, green, blue, alpha))
 
     def _shape(self, element: etree._Element) -> Geometry | None:
-        """Return the geometry, or None where there can be none and the link stands without."""
+        """Return the geometry, or None if it cannot be created and is left out."""
         try:
             return self._geometry(element)
         except ShapeError as error:
@@ -164,8 +164,8 @@ class LinkReader:
         if shape is None:
             raise fault(
                 element,
-                f'a <{element.tag}> without shape; put <geometry> with a box, cylinder, sphere '
-                'or mesh into it',
+                f'a <{element.tag}> without shape; add a <geometry> with a box, cylinder, sphere '
+                'or mesh',
             )
         match shape.tag:
             case 'box':
@@ -186,7 +186,7 @@ class LinkReader:
             raise fault(element, 'a <mesh> without filename; add filename="package://…"')
         scale = vector(element, 'scale', (1.0, 1.0, 1.0))
         if 0.0 in scale:
-            raise ShapeError(f'scale="{element.get("scale")}" of <mesh> makes it empty')
+            raise ShapeError(f'scale="{element.get("scale")}" of <mesh> reduces it to nothing')
         uri = element.get('uri', filename)
         refuse_climbing(element, uri)
         try:
@@ -206,7 +206,7 @@ class LinkReader:
 
 
 def _inertial(link: etree._Element) -> Inertial | None:
-    """Return the mass properties, or None where the link has none or a mass of zero."""
+    """Return the mass properties, or None if the link has none or a mass of zero."""
     element = link.find('inertial')
     if element is None:
         return None
@@ -215,7 +215,7 @@ def _inertial(link: etree._Element) -> Inertial | None:
         raise fault(element, 'an <inertial> without <mass value="…"/> [kg]')
     mass = number(mass_element, 'value')
     if mass < 0.0:
-        raise fault(mass_element, f'mass {mass:g} kg is negative; a mass is greater than zero')
+        raise fault(mass_element, f'mass {mass:g} kg is negative; a mass must be greater than zero')
     if inertia is None:
         raise fault(element, 'an <inertial> without <inertia ixx iyy izz ixy ixz iyz/> [kg m^2]')
     moments = {key: number(inertia, key) for key in ('ixx', 'iyy', 'izz')}
@@ -226,8 +226,8 @@ def _inertial(link: etree._Element) -> Inertial | None:
         if value < 0.0:
             raise fault(
                 inertia,
-                f'{key}="{inertia.get(key)}" of <inertia> is wrong; '
-                'a moment of inertia is greater than zero',
+                f'{key}="{inertia.get(key)}" of <inertia> is not valid; '
+                'a moment of inertia must be greater than zero',
             )
     return inertial if mass > 0.0 else None
 
@@ -238,8 +238,8 @@ def read_urdf_joint(
     """Return the joint of a <joint> element.
 
     Args:
-        kept: fixed joints that are not reduced, and what they become (`GazeboTags.kept_joints`).
-        notes: takes sentences to warn with.
+        kept: fixed joints that are not reduced -> their joint type (`GazeboTags.kept_joints`).
+        notes: list to which warnings are added.
     Raises:
         ModelError: a name, link, type or number is missing or wrong.
     """
@@ -255,8 +255,8 @@ def read_urdf_joint(
     parent, child = _end(element, 'parent'), _end(element, 'child')
     if kind == FREE:
         note(notes, lambda: (
-            f'{location(element)}: a {written} joint ties nothing here, '
-            f"'{shortened(child, 60)}' and what hangs on it move freely"
+            f'{location(element)}: a {written} joint imposes no constraint here; '
+            f"'{shortened(child, 60)}' and its descendants move freely"
         ))
     if kind in (FIXED, FREE):
         is_reduced = kind == FIXED and name not in kept
@@ -285,7 +285,7 @@ def _end(element: etree._Element, role: str) -> str:
 
 
 def _axis(element: etree._Element, notes: list[str]) -> Vector:
-    """Return the unit axis in the joint's frame; x where none is given, or none by zeros."""
+    """Return the unit axis in the joint's frame; x if none is given, or only zeros."""
     axis = element.find('axis')
     if axis is None:
         return (1.0, 0.0, 0.0)
@@ -294,10 +294,10 @@ def _axis(element: etree._Element, notes: list[str]) -> Vector:
     if largest == 0.0:
         note(notes, lambda: (
             f'{location(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
-            'x is used as in Gazebo; one of the three must not be zero, e.g. "0 0 1"'
+            'x is used, as in Gazebo; write e.g. "0 0 1"'
         ))
         return (1.0, 0.0, 0.0)
-    # Scaled first, so that neither tiny nor huge numbers are squared.
+    # Scale first, so that no square underflows or overflows.
     x, y, z = x / largest, y / largest, z / largest
     length = (x * x + y * y + z * z) ** 0.5
     return (x / length, y / length, z / length)
@@ -312,13 +312,13 @@ def _not_negative(
     if value < 0.0:
         note(notes, lambda: (
             f'{location(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
-            'negative, 0 is used; it takes energy out of a motion'
+            'negative; 0 is used, as it can only dissipate energy'
         ))
     return max(0.0, value)
 
 
 def _limits(element: etree._Element, written: str, notes: list[str]) -> Limits:
-    """Return the limits; a negative effort or velocity is no limit."""
+    """Return the limits; a negative effort or velocity means no limit."""
     limit = element.find('limit')
     if limit is None:
         if written != 'continuous':
@@ -340,8 +340,8 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> Limits:
     if lower > upper:
         low, high = upper, lower
         note(notes, lambda: (
-            f'{location(limit)}: lower limit {high:g} is above upper limit {low:g}, '
-            'the two are switched'
+            f'{location(limit)}: lower limit {high:g} is above upper limit {low:g}; '
+            'the two are swapped'
         ))
         lower, upper = low, high
     if math.isfinite(lower):

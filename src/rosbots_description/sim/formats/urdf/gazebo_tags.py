@@ -1,9 +1,9 @@
-"""The <gazebo> blocks of a URDF: surfaces, looks, flags, sensors, plugins.
+"""The <gazebo> blocks of a URDF: surfaces, materials, flags, sensors, plugins.
 
 The tags and defaults are those of sdformat 9 (parser_urdf.cc).
-Numbers may stand as text or in an attribute `value`. What is wrong as a number is an error; what
-is not simulated is named once. Different from Gazebo on purpose: the surface of a link also
-reaches those of its collisions that have names of their own.
+Numbers may be given as text or in an attribute `value`. An invalid number is an error; an element
+that is not simulated is named once. Different from Gazebo on purpose: the surface of a link also
+applies to those of its collisions that have names of their own.
 """
 
 import re
@@ -59,7 +59,7 @@ _SURFACE_NUMBERS: dict[str, SurfaceNumber] = {
     'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
     'minDepth': 'min_depth', 'laserRetro': 'laser_retro',
 }
-# The same inside <collision>, where SDF's own structure is used.
+# The same inside <collision>, in SDF's own structure.
 _SURFACE_PATHS: dict[str, SurfaceNumber] = {
     'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': 'mu2',
     'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
@@ -70,10 +70,10 @@ _NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor', 'springStiffn
                 'springReference'}
 _LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
 _PARTS = ('light', 'projector')
-# Read and kept for whoever asks, but nothing here acts on it.
+# Stored and reported, but without effect here.
 _KEPT = {'maxVel', 'minDepth', 'maxContacts'}
 _KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'max_contacts'}
-# Settings of Gazebo's own solver; they have no counterpart here and change nothing that is seen.
+# Settings of Gazebo's own solver, without a counterpart or visible effect here.
 _SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
                 'fudgeFactor', 'canonicalBody'}
 _SPRING_TAGS: dict[str, Literal['stiffness', 'reference']] = {
@@ -104,7 +104,7 @@ class SpringTags(TypedDict, total=False):
 
 @dataclass
 class LinkTags:
-    """What the blocks of one link say; only what is written is in the mappings."""
+    """The contents of the blocks of one link; the mappings hold only what is written."""
 
     surface: SurfaceTags = field(default_factory=SurfaceTags)
     flags: LinkFlags = field(default_factory=LinkFlags)
@@ -115,22 +115,22 @@ class LinkTags:
 
 @dataclass
 class GazeboTags:
-    """What all blocks say together."""
+    """The contents of all blocks."""
 
     links: dict[str, LinkTags] = field(default_factory=dict)
-    kept_joints: dict[str, str] = field(default_factory=dict)  # fixed joint -> what it becomes
+    kept_joints: dict[str, str] = field(default_factory=dict)  # fixed joint -> its joint type
     joints: dict[str, SpringTags] = field(default_factory=dict)
     static: bool = False
     plugins: list[PluginSpec] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)  # sentences to warn with
+    notes: list[str] = field(default_factory=list)  # warnings
     idle: list[str] = field(default_factory=list)  # elements without effect here
     left_out: LeftOut = field(default_factory=LeftOut)
 
 
 def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
-    """Cut what stands behind the number of a tag that takes one, in place; Gazebo does not read it.
+    """Remove any text after the number of a numeric tag, in place; Gazebo ignores it.
 
-    So it goes with '0.5;' and '0.5 0.5'.
+    Examples are '0.5;' and '0.5 0.5'.
     """
     for child in block:
         if child.tag not in _NUMBER_TAGS or parse_numbers(scalar(child), 1) is not None:
@@ -153,7 +153,7 @@ def read_gazebo_tags(
     Args:
         links, joints: the names a `reference` may have.
     Raises:
-        ModelError: something that must be a finite number is none.
+        ModelError: a value that must be a finite number is not one.
     """
     tags = GazeboTags()
     unread: list[str] = []
@@ -180,13 +180,13 @@ def read_gazebo_tags(
 
 def _unknown(block: etree._Element, reference: str, names: Collection[str]) -> str:
     return (
-        f'{location(block)}: there is no link or joint of that name, the block is '
+        f'{location(block)}: there is no link or joint of that name; the block is '
         f'ignored{suggestion(reference, names)}'
     )
 
 
 def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
-    """Return the link with what its blocks say about its shapes, flags and sensors."""
+    """Return the link with the shapes, flags and sensors that its blocks specify."""
     if tags is None:
         return link
     spec: LinkSpec = link.spec
@@ -218,7 +218,7 @@ def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
     if not filename:
         note(tags.notes, lambda: (
             f'{location(element)}: a <plugin> without filename is ignored; '
-            'filename="libgazebo_ros_….so" picks the code'
+            'add filename="libgazebo_ros_….so"'
         ))
         return
     tags.plugins.append(PluginSpec(element.get('name', ''), filename, to_element(element)))
@@ -268,7 +268,7 @@ def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     note(tags.notes, lambda: (
         f'{location(element)}: a <plugin> of a link is not run, as in Gazebo; '
-        f'{library_remark(filename)}; put it into a <gazebo> without reference'
+        f'{library_remark(filename)}; move it to a <gazebo> without reference'
     ))
 
 
@@ -301,7 +301,7 @@ def _read_self_collide(element: etree._Element, link: LinkTags) -> None:
 
 
 def _read_gravity_off(element: etree._Element, link: LinkTags) -> None:
-    # Gazebo's way round: whatever is not a clear no turns gravity off.
+    # As in Gazebo any text that does not mean false turns gravity off.
     link.flags['gravity'] = scalar(element).lower() in ('false', 'no', '0')
 
 
@@ -339,8 +339,8 @@ def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     material = gazebo_material(script)
     if material is None:
         note(tags.notes, lambda: (
-            f"{location(element)}: material '{shortened(script, 60)}' is none of Gazebo's, grey is "
-            'shown; Gazebo/Red is an example of one'
+            f"{location(element)}: material '{shortened(script, 60)}' is not one of Gazebo's; "
+            'grey is shown; write e.g. Gazebo/Red'
         ))
         material = Material(script=script)
     link.material = material
@@ -374,7 +374,7 @@ def _read_joint_block(
                     tags.kept_joints[joint] = FIXED
             case 'disableFixedJointLumping':
                 if truth(child):
-                    # Where both are given, preserveFixedJoint wins, whichever comes first.
+                    # If both are given, preserveFixedJoint wins in either order.
                     tags.kept_joints.setdefault(joint, REVOLUTE)
             case tag if tag in _SPRING_TAGS:
                 value = scalar_number(child)

@@ -1,4 +1,4 @@
-"""From the text of a URDF to a `ModelSpec`, by the rules of sdformat 9 (parser_urdf.cc)."""
+"""Convert the text of a URDF to a `ModelSpec`, by the rules of sdformat 9 (parser_urdf.cc)."""
 
 import logging
 from dataclasses import replace
@@ -45,21 +45,21 @@ def load_urdf(
     """Read and check a URDF, and reduce its fixed joints.
 
     Args:
-        name: of the model; the robot's own name does not matter, as in Gazebo.
-        source: where the text comes from, a file or parameter; it begins every message.
+        name: of the model; the robot's own name is ignored, as in Gazebo.
+        source: origin of the text, a file or parameter; it begins every message.
         robot_namespace: given to plugins that have no <robotNamespace>; '' for none.
         find_package: package name -> its directory, or None if unknown, for package://.
         find_model: path below the model path -> file, or None, for model:// of meshes.
 
     Returns:
-        The model, and the <origin> directly below <robot>, which the caller composes with the
-        pose it spawns at: initial o origin.
+        The model, and the <origin> directly below <robot>. The caller spawns the model at
+        compose(initial pose, <origin>).
 
     Raises:
-        UnknownPackage: a package:// address names a package that is not to be found.
-        ModelError: the description cannot be simulated; the sentence says where and why.
+        UnknownPackage: a package:// address names a package that is not found.
+        ModelError: the description cannot be simulated; the message says where and why.
 
-    What can be simulated, but not quite as written, is a warning, one line for each kind.
+    What is simulated differently than written is logged as a warning, one line per kind.
     """
     check_name(name)
     robot = parse_xml(text, source)
@@ -75,7 +75,7 @@ def load_urdf(
     except ModelError as error:
         if not xacro or XACRO_CURE in str(error):
             raise
-        # What is missing is most likely what xacro would have made.
+        # Most likely xacro would have generated what is missing.
         raise ModelError(f'{error}; {"; ".join(xacro)}') from error
     reduction = reduce_fixed_joints(tree)
     require_links(tree, reduction)
@@ -129,13 +129,13 @@ def _read(
     tree = build_tree(robot, links, joints)
     world = tree.links[tree.root].spec if tree.root == WORLD else None
     if world and (world.collisions or world.visuals or world.inertial):
-        notes.append("'world': a root of that name stands for the world itself; what the "
-                     'description puts into it is not simulated, as in Gazebo')
+        notes.append("'world': a root of that name is the world itself; the content of the link is "
+                     'not simulated, as in Gazebo')
     return tree, tags
 
 
 def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
-    """Return the links, those without resistance to turning with some; `notes` names them."""
+    """Return the links, with zero principal moments replaced; `notes` names the changed ones."""
     links = tuple(_possible_link(link, notes) for link in links)
     turned = tuple(replace(link, inertial=turnable(link.mass_properties)) for link in links)
     changed = [new.name for old, new in zip(links, turned, strict=True)
@@ -143,13 +143,13 @@ def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[Link
     if changed:
         note(notes, lambda: (
             f'{_names(changed)}: an inertia of zero cannot be simulated; '
-            'that of a small ball of the same mass is used'
+            'that of a small sphere of the same mass is used'
         ))
     return turned
 
 
 def _possible_link(link: LinkSpec, notes: list[str]) -> LinkSpec:
-    """Return the link with an inertia that a body can have; `notes` has both tensors."""
+    """Return the link with a physically possible inertia; a note shows both tensors."""
     given = link.mass_properties
     inertial = possible(given)
     if inertial is given:
@@ -162,23 +162,23 @@ def _reduction_notes(reduction: Reduction) -> list[str]:
     notes = []
     if reduction.vanished:
         notes.append(
-            f'{_names(reduction.massless)}: no mass (no <inertial>, or zero), and so '
+            f'{_names(reduction.massless)}: no mass (no <inertial>, or zero); '
             f'not simulated, as in Gazebo: {_names(reduction.vanished)}; give each an <inertial>'
         )
     if reduction.conflicts:
         notes.append(
-            f'{_names(reduction.conflicts)}: gravity, selfCollide or damping set for a link behind '
-            'a fixed joint counts for the whole link it is merged into, as in Gazebo'
+            f'{_names(reduction.conflicts)}: gravity, selfCollide or damping set for a reduced '
+            'link (child of a fixed joint) applies to the link it is merged into, as in Gazebo'
         )
     return notes
 
 
 def _robot_origin(robot: etree._Element) -> Pose:
-    """Return the pose directly below <robot>; one that is malformed counts as none, as upstream."""
+    """Return the pose directly below <robot>; a malformed one is ignored, as upstream."""
     try:
         return origin(robot)
     except ModelError as error:
-        logger.error('%s; the model stands where it is spawned', error)
+        logger.error('%s; the pose is ignored, and the model is at its initial pose', error)
         return IDENTITY
 
 

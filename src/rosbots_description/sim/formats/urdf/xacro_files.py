@@ -1,4 +1,4 @@
-"""Expand xacro by the module `xacro`, where that is installed; no ROS is needed."""
+"""Expand xacro files with the module `xacro`, if it is installed; ROS is not needed."""
 
 import os
 import re
@@ -13,10 +13,10 @@ _SUBSTITUTION = re.compile(r'\$\((find|arg|env|optenv|dirname|cwd)\b([^()]*)\)')
 
 
 def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPackage) -> str:
-    """Return the URDF that a xacro file makes.
+    """Return the URDF that a xacro file expands to.
 
     Args:
-        path: of the file; what it includes is looked for beside it.
+        path: of the file; its includes are searched beside it.
         arguments: values for its <xacro:arg>, by name.
         find_package: see `load_urdf`; for $(find NAME).
 
@@ -24,7 +24,7 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         ModelError: xacro is not installed, or rejects the file.
     """
     try:
-        import xacro  # few need it
+        import xacro  # an optional dependency
     except ImportError:
         raise ModelError(
             f'{path}: the Python module xacro is missing; install it with "python3 -m pip install '
@@ -47,7 +47,7 @@ def _resolved(
     path: str,
     text: str,
 ) -> object:
-    """Return what $(KIND VALUE) stands for; kinds that need ROS are left to `others`."""
+    """Return the value of $(KIND VALUE); kinds that need ROS are left to `others`."""
     match = _SUBSTITUTION.fullmatch(text)
     if not match:
         return others(text)
@@ -65,5 +65,5 @@ def _resolved(
     else:
         found = os.path.dirname(os.path.abspath(path)) if kind == 'dirname' else os.getcwd()
     if found is None:
-        raise ModelError(f"'{text}' stands for nothing that is known here")
+        raise ModelError(f"'{text}' is not a known substitution")
     return found

@@ -1,4 +1,4 @@
-"""Names, numbers, poses and plain elements from parsed XML, and what a model is read without."""
+"""Names, numbers, poses and plain elements from parsed XML, and the record of omitted parts."""
 
 from .foreign_markup import foreign_tags, remove_xacro
 from .omissions import LeftOut

@@ -1,7 +1,7 @@
-"""What a description has that is not its own language: xacro nobody expanded, foreign prefixes.
+"""Markup of other languages in a description: unexpanded xacro, foreign namespaces.
 
-As in Gazebo a tag of another namespace is ignored, with all that is in it, and an expression is the
-text that it is. Only where a number is needed is there none; see `values`.
+As in Gazebo a tag of another namespace is ignored with all its content, and an unexpanded
+expression is plain text. Where a number is needed that is an error; see `values`.
 """
 
 from lxml import etree
@@ -10,11 +10,11 @@ from ...core import line_of, shortened
 from .values import XACRO_CURE, attributes_of, is_expression, tag_of
 
 _XACRO = 'xacro:'
-_OWN = ('gazebo', 'plugin', 'sensor')  # whatever stands in these is the business of who reads them
+_OWN = ('gazebo', 'plugin', 'sensor')  # their content is interpreted by their readers
 
 
 def remove_xacro(root: etree._Element) -> list[str]:
-    """Remove all tags of xacro, in place; return the sentences to warn with."""
+    """Remove all tags of xacro, in place; return the warnings."""
     tags = _outermost(root)
     shown = [_opening(element) for _, element in tags]
     for parent, element in tags:
@@ -25,13 +25,13 @@ def remove_xacro(root: etree._Element) -> list[str]:
     expressions = _expressions(root)
     if expressions:
         notes.append(
-            f'unexpanded xacro is taken as it stands: {_listed(expressions)}; {XACRO_CURE}'
+            f'unexpanded xacro is taken literally: {_listed(expressions)}; {XACRO_CURE}'
         )
     return notes
 
 
 def foreign_tags(robot: etree._Element) -> list[str]:
-    """Return the sentence to warn with of tags of a URDF that have a prefix."""
+    """Return the warning about tags of a URDF with a prefix, if any."""
     shown = [
         _opening(element) for child in robot if child.tag not in _OWN
         for element in child.iter(etree.Element) if ':' in tag_of(element)
@@ -40,7 +40,7 @@ def foreign_tags(robot: etree._Element) -> list[str]:
 
 
 def _outermost(parent: etree._Element) -> list[tuple[etree._Element, etree._Element]]:
-    """Return the tags of xacro that are in no other such tag, each behind its parent."""
+    """Return the outermost tags of xacro, each as (parent, tag)."""
     found = []
     for child in parent:
         found += [(parent, child)] if tag_of(child).startswith(_XACRO) else _outermost(child)

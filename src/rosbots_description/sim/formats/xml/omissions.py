@@ -8,21 +8,21 @@ from ...core import MAX_NOTES, ModelError, ShapeError, line_of, location, owner,
 
 
 class LeftOut:
-    """Collects what one description is read without.
+    """Collects the parts of one description that are left out.
 
     Attributes:
-        parts: each in few words, for who spawns the model, e.g. "camera 'front'".
-        warnings: sentences about shapes that are as the description has them, but nothing.
+        parts: each in a few words, to report at the spawn, e.g. "camera 'front'".
+        warnings: about shapes that are valid but empty.
     """
 
     def __init__(self) -> None:
         self.parts: list[str] = []
         self.warnings: list[str] = []
-        self._meshes: dict[str, list[str]] = {}  # what is wrong with a file -> who uses it
+        self._meshes: dict[str, list[str]] = {}  # fault of a file -> elements that use it
         self._faults: list[str] = []
 
     def shape(self, element: etree._Element, error: ShapeError) -> None:
-        """Take note of a <collision> or <visual> without a shape."""
+        """Record a <collision> or <visual> without a shape."""
         if error.uri:
             said = error.uri in str(error)
             written = '' if said else f" (written '{shortened(error.uri)}')"
@@ -35,13 +35,13 @@ class LeftOut:
         self.parts.append(f'{element.tag} of {owner(element)}')
 
     def part(self, called: str, error: ModelError) -> None:
-        """Take note of a part of a model that names what is not there."""
+        """Record a part of a model that refers to something that does not exist."""
         if len(self._faults) < MAX_NOTES:
-            self._faults.append(f'{error}; the model stands without {called}')
+            self._faults.append(f'{error}; {called} is left out')
         self.parts.append(called)
 
     def errors(self) -> list[str]:
-        """Return the sentences about what is not there; one for each mesh, with all who use it."""
+        """Return the messages about missing parts; one for each mesh, with all its users."""
         return [
             *self._faults,
             *(f'{reason}; left out: {_listed(users)}'

@@ -1,4 +1,4 @@
-"""The robot_namespace of a spawn, as gazebo_ros_pkgs 2.9.2 writes it into a description."""
+"""Write the robot_namespace of a spawn into a description, as gazebo_ros_pkgs 2.9.2 does."""
 
 from lxml import etree
 
@@ -22,7 +22,7 @@ def inject_namespace(root: etree._Element, robot_namespace: str) -> None:
                 child.text = robot_namespace
             except ValueError:
                 raise ModelError(
-                    f"robot_namespace is '{robot_namespace}', which has a control character in it; "
-                    'a namespace takes a-z, A-Z, 0-9, _ and slashes'
+                    f"robot_namespace is '{robot_namespace}', which contains a control character; "
+                    'use a-z, A-Z, 0-9, _ and /'
                 ) from None
             child.sourceline = plugin.sourceline

@@ -26,8 +26,8 @@ from ...description import Element
 XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launch file'
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
-ENDLESS_FRICTION = 1e6  # what a negative mu and inf mean in Gazebo
-MOST_DAMPED = 1000.0  # [1/s] with steps of a millisecond a link then stands at once
+ENDLESS_FRICTION = 1e6  # the value of a negative or infinite mu, as in Gazebo
+MOST_DAMPED = 1000.0  # [1/s] with steps of 1 ms it stops a link in one step
 
 _CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 _INFINITE = ('inf', 'infinity')
@@ -37,16 +37,16 @@ _COUNTS = {1: 'one finite number', 2: 'two finite numbers', 3: 'three finite num
 
 
 def tag_of(element: etree._Element) -> str:
-    """Return the element's name as written, prefix included."""
+    """Return the element's name as written, including its prefix."""
     name = etree.QName(element).localname if element.tag.startswith('{') else element.tag
     return f'{element.prefix}:{name}' if element.prefix else name
 
 
 def check_name(name: str) -> None:
-    """Refuse a model's name that could not be shown or held.
+    """Reject a model name that cannot be displayed or stored.
 
     Raises:
-        ModelError: it is too long, or has a line break or another control character in it.
+        ModelError: it is too long, or contains a line break or another control character.
     """
     reason = _unfit(name)
     if reason:
@@ -58,7 +58,7 @@ def _unfit(name: str) -> str:
         return f'has {len(name)} characters; at most {MAX_NAME} are accepted'
     if _CONTROL.search(name):
         return (
-            f'{name[:100]!r} has a line break or another control character in it; '
+            f'{name[:100]!r} contains a line break or another control character; '
             'use letters, digits and _'
         )
     return ''
@@ -68,7 +68,7 @@ def required_name(element: etree._Element) -> str:
     """Return the `name` attribute.
 
     Raises:
-        ModelError: it is missing, empty, longer than the engine can hold, or not printable.
+        ModelError: it is missing, empty, too long for the engine, or not printable.
     """
     name = element.get('name', '').strip()
     if not name:
@@ -85,10 +85,10 @@ def numbers(
     default: tuple[float, ...] | None = None,
     count: int = 3,
 ) -> tuple[float, ...]:
-    """Return `count` finite numbers from an attribute; `default` where it is missing.
+    """Return `count` finite numbers from an attribute; `default` if it is missing.
 
     Raises:
-        ModelError: no number, not finite, another count; or missing without a default.
+        ModelError: not a number, not finite, another count; or missing without a default.
     """
     text = element.get(attribute)
     if text is None:
@@ -125,7 +125,7 @@ def number(element: etree._Element, attribute: str, default: float | None = None
 def limit_number(
     element: etree._Element, attribute: str, default: float | None = None
 ) -> float:
-    """Return one number from an attribute, as `number` does, or infinity where it says inf."""
+    """Return one number from an attribute, as `number` does, or infinity for inf."""
     text = element.get(attribute, '').strip().lower()
     if text.lstrip('+-') in _INFINITE:
         return -math.inf if text.startswith('-') else math.inf
@@ -136,7 +136,7 @@ def positive(element: etree._Element, attribute: str, count: int = 1) -> tuple[f
     """Return sizes: finite numbers greater than zero [m].
 
     Raises:
-        ShapeError: one is zero, so that there is no shape.
+        ShapeError: one is zero, so there is no shape.
         ModelError: one is negative, or as `numbers`.
     """
     values = numbers(element, attribute, count=count)
@@ -147,18 +147,18 @@ def positive(element: etree._Element, attribute: str, count: int = 1) -> tuple[f
 
 
 def require_size(element: etree._Element, written: str, values: Collection[float]) -> None:
-    """Refuse sizes that are not greater than zero; those of `positive` are its errors, too."""
+    """Reject sizes that are not greater than zero, with the errors of `positive`."""
     if min(values) < 0.0:
-        raise fault(element, f'{written} is wrong; a size must be greater than zero')
+        raise fault(element, f'{written} is not valid; a size must be greater than zero')
     if min(values) == 0.0:
-        raise ShapeError(f'{written} makes it empty')
+        raise ShapeError(f'{written} reduces it to nothing')
 
 
 def require_near(element: etree._Element, what: str, values: Collection[float]) -> None:
-    """Refuse lengths [m] that no model has, of an attribute or an element's text.
+    """Reject lengths [m] beyond LONGEST, of an attribute or an element's text.
 
     Raises:
-        ModelError: one is greater than LONGEST, to either side.
+        ModelError: the absolute value of one is greater than LONGEST.
     """
     if max(map(abs, values)) > LONGEST:
         raise fault(
@@ -169,39 +169,39 @@ def require_near(element: etree._Element, what: str, values: Collection[float]) 
 
 
 def require_mass(element: etree._Element, mass: float, moments: Collection[float] = ()) -> None:
-    """Refuse a mass [kg] greater than zero, or moments of inertia [kg m^2], that no body has.
+    """Reject a mass [kg] or moments of inertia [kg m^2] out of range; the mass is positive.
 
     Raises:
-        ModelError: the engine could not tell them from zero or from infinity.
+        ModelError: the engine could not distinguish them from zero or infinity.
     """
     if mass > 0.0 and not LIGHTEST <= mass <= HEAVIEST:
         raise fault(
-            element, f'mass {mass:g} kg is wrong; a mass is {LIGHTEST:g} to {HEAVIEST:g} kg'
+            element, f'mass {mass:g} kg is not valid; use {LIGHTEST:g} to {HEAVIEST:g} kg'
         )
     if max(map(abs, moments), default=0.0) > MOST_INERT:
         raise fault(
             element,
-            f'an inertia of {max(moments, key=abs):g} kg m^2 is wrong; '
+            f'an inertia of {max(moments, key=abs):g} kg m^2 is not valid; '
             f'at most {MOST_INERT:g} are accepted',
         )
 
 
 def require_damping(element: etree._Element, value: float) -> None:
-    """Refuse a damping of a link's velocity that would drive it.
+    """Reject a velocity damping of a link that would add energy.
 
     Raises:
-        ModelError: it is negative, or more than the velocity would be lost in a step.
+        ModelError: it is negative, or would reverse the velocity within a step.
     """
     if not 0.0 <= value <= MOST_DAMPED:
         raise fault(
             element,
-            f'<{tag_of(element)}> is {value:g}; it damps the motion of a link, 0 to '
+            f'<{tag_of(element)}> is {value:g}; damping must be 0 to '
             f'{MOST_DAMPED:g}',
         )
 
 
 def parse_numbers(text: str, count: int) -> tuple[float, ...] | None:
-    """Return `count` finite numbers separated by blanks, or None where the text is not that."""
+    """Return `count` finite numbers separated by blanks, or None for any other text."""
     parts = text.split()
     if len(parts) != count or '_' in text:
         return None
@@ -218,7 +218,7 @@ def scalar(element: etree._Element) -> str:
 
 
 def is_endless(element: etree._Element) -> bool:
-    """Tell whether the element says inf or Infinity, whatever the sign."""
+    """Tell whether the text is inf or Infinity, with either sign."""
     return scalar(element).lower().lstrip('+-') in _INFINITE
 
 
@@ -240,12 +240,12 @@ def scalar_numbers(element: etree._Element, count: int) -> tuple[float, ...]:
 
 
 def truth(element: etree._Element) -> bool:
-    """Tell whether the element says true, yes or 1; everything else is false, as in Gazebo."""
+    """Tell whether the text is true, yes or 1; everything else is false, as in Gazebo."""
     return scalar(element).lower() in _TRUE
 
 
 def origin(element: etree._Element) -> Pose:
-    """Return the pose of the child <origin xyz rpy/> [m, rad]; the identity without one."""
+    """Return the pose of the child <origin xyz rpy/> [m, rad]; the identity if there is none."""
     child = element.find('origin')
     if child is None:
         return IDENTITY
@@ -255,7 +255,7 @@ def origin(element: etree._Element) -> Pose:
 
 
 def to_element(element: etree._Element) -> Element:
-    """Return an XML element with all below it as plain values."""
+    """Return an XML element and its descendants as plain values."""
     return Element(
         tag=tag_of(element),
         text=(element.text or '').strip(),
@@ -271,7 +271,7 @@ def attributes_of(element: etree._Element) -> dict[str, str]:
 
 
 def is_expression(value: str) -> bool:
-    """Tell whether a text has xacro's ${...} or $(...) in it; in one go, however many open."""
+    """Tell whether a text contains xacro's ${...} or $(...), in linear time."""
     return any(
         opened >= 0 and value.find(close, opened) >= 0
         for opened, close in ((value.find('${'), '}'), (value.find('$('), ')'))

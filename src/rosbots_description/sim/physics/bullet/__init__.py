@@ -1,4 +1,4 @@
-"""The engine on PyBullet: generated bodies, contacts, friction, solver, and the crash sandbox."""
+"""The engine on PyBullet: generated bodies, contacts, friction and solver."""
 
 from .body import Body
 from .client import pybullet

@@ -1,4 +1,4 @@
-"""What the engine remembers of a model, as plain values."""
+"""The engine's record of a model, as plain values."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -9,9 +9,9 @@ from ...description import Collision
 
 @dataclass(frozen=True)
 class Part:
-    """Where a link lives in PyBullet, and the way from its centre of mass to its frame.
+    """PyBullet's indices of a link, and the transform from its centre of mass to its frame.
 
-    An index of -1 is the base of the body. A static tree may be several bodies in one place.
+    Index -1 is the base of the body. A static tree may be several coincident bodies.
     """
 
     body: int
@@ -22,14 +22,14 @@ class Part:
 
 
 class Place(NamedTuple):
-    """A part of a body: the numbers that PyBullet gave to the body and to its link, -1 its base."""
+    """A part of a body: PyBullet's body id and link index, -1 for the base."""
 
     body: int
     link: int
 
 
 class Mass(NamedTuple):
-    """A part of a body that weighs: PyBullet's link, mass [kg], principal moments [kg m^2]."""
+    """A part of a body with a mass: PyBullet's link, mass [kg], principal moments [kg m^2]."""
 
     link: int
     mass: float
@@ -38,7 +38,7 @@ class Mass(NamedTuple):
 
 
 class Masses(NamedTuple):
-    """A body that moves: the parts that weigh, and the joints that move masses as they turn."""
+    """A moving body: its parts with mass, and the joints that move them."""
 
     parts: tuple[Mass, ...]
     joints: tuple[int, ...]  # all of them

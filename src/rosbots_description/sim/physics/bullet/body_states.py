@@ -1,7 +1,7 @@
-"""How bodies of a PyBullet world move: reads and sets that, drives their joints and pushes them.
+"""Read and set the motion of bodies in a PyBullet world, their motors and applied forces.
 
-PyBullet's habits end here: its poses are those of the centre of mass, ours those of the link
-frame; its quaternions are (x, y, z, w) like ours.
+Conventions are converted here: PyBullet's poses are those of the centre of mass, ours those of the
+link frame; its quaternions are (x, y, z, w) like ours.
 """
 
 import math
@@ -16,8 +16,8 @@ from .client import pybullet
 from .fast_rotation import FastBodies
 from .solver_iterations import Motor
 
-# Greater forces are clamped to this. Squares of greater numbers overflow, and then
-# whatever a body touches is no number any more either, the ground first.
+# Forces are clamped to this. Squares of greater numbers overflow, and NaN then spreads to all that
+# the body touches, the ground first.
 _ANY_FORCE = 1e15  # [N or N m]
 
 Push = tuple[Callable[..., None], tuple[Any, ...]]  # what to call, with what

@@ -1,4 +1,4 @@
-"""What all drives share: a velocity command, frames, odometry of the model's motion."""
+"""Base classes of the drives: velocity command, frames and odometry."""
 
 import logging
 import math
@@ -21,7 +21,7 @@ NO_VARIANCES = (0.0,) * 6
 
 
 class Drive(PeriodicPlugin):
-    """Follows a velocity command and gives out odometry, as a reading and as a transform.
+    """Follows a velocity command and outputs odometry, as a reading and as a transform.
 
     A subclass calls `read_frames` and `give_odometry` in `load`, and follows `target` (x [m/s],
     y [m/s], yaw rate [rad/s]) in `update`.
@@ -34,24 +34,24 @@ class Drive(PeriodicPlugin):
     target = (0.0, 0.0, 0.0)
 
     def read_frames(self, base: str) -> None:
-        """Read the names of topics and frames; that of the robot's is `base` by default."""
+        """Read the names of topics and frames; the robot's frame is `base` by default."""
         for tag, default in (('commandTopic', 'cmd_vel'), ('odometryTopic', 'odom'),
                              ('odometryFrame', 'odom'), ('robotBaseFrame', base)):
             self.params.read(tag, default)
 
     def give_odometry(self, message: bool = True, transform: bool = True) -> None:
-        """Give out odometry, and the transform between its frames, if they are asked for."""
+        """Create the outputs of odometry and of its transform, if they are requested."""
         self.odometry: Output[Odometry] = self.output('odometry', message)
         self.odometry_transform: Output[FrameTransform] = self.output(
             'odometry_transform', transform)
 
     @property
     def odometry_wanted(self) -> bool:
-        """Tell whether anybody reads odometry in one form or the other."""
+        """Tell whether odometry has a reader in either form."""
         return self.odometry.wanted or self.odometry_transform.wanted
 
     def send_odometry(self, reading: Odometry, flat: bool = False) -> None:
-        """Send odometry in both forms; `flat` if z is 0 in the reading, though not in the other."""
+        """Send odometry in both forms; `flat`: z is 0 in the reading, but not in the transform."""
         if self.odometry_transform.wanted:
             string = self.params.string
             self.odometry_transform.send(
@@ -63,21 +63,21 @@ class Drive(PeriodicPlugin):
             self.odometry.send(reading)
 
     def restart(self) -> None:
-        """Forget the command and begin."""
+        """Reset the command, and start."""
         self.command(0.0, 0.0)
         super().restart()
 
     def reset(self) -> None:
-        """Begin a period."""
+        """Start a period."""
         self.begin_period()
 
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
-        """Drive so until told else, as far as this drive can.
+        """Set the velocity command, which holds until the next one.
 
         Args:
             linear_x: forward [m/s].
-            angular_z: turning left [rad/s].
-            linear_y: to the left [m/s].
+            angular_z: yaw rate, counter-clockwise [rad/s].
+            linear_y: to the left [m/s]; only some drives follow it.
         Raises:
             ValueError: a number is not finite.
         """
@@ -89,7 +89,7 @@ class Drive(PeriodicPlugin):
 
 
 class WheeledDrive(Drive):
-    """A drive that tells of its wheels, too, and whose odometry may come from two encoders.
+    """A drive that also outputs wheel states, and whose odometry may come from two encoders.
 
     A subclass sets `encoders` in `load`, and `every_step` if odometry comes from them.
     """
@@ -98,28 +98,28 @@ class WheeledDrive(Drive):
     encoders: 'Encoders'
 
     def read_debug_level(self) -> None:
-        """Read the level at which the server is to log."""
+        """Read the log level of the server."""
         self.params.read('rosDebugLevel', 'na')
 
     def give_wheels(self, transforms: bool, states: bool) -> None:
-        """Give out where the wheels stand, once per wheel, and their joints' states."""
+        """Create the outputs of the wheel transforms, one per wheel, and of the joint states."""
         self.wheel_transform: Output[FrameTransform] = self.output('wheel_transform', transforms)
         self.joint_states: Output[JointStates] = self.output('joint_states', states)
 
     @abstractmethod
     def encoder_odometry(self) -> Odometry:
-        """Return what the encoders tell."""
+        """Return the odometry of the encoders."""
 
     @abstractmethod
     def wheel_transforms(self, model_pose: Pose) -> Iterable[FrameTransform]:
-        """Return where the wheels stand, with the model at that pose."""
+        """Return the transforms of the wheels, with the model at that pose."""
 
     @abstractmethod
     def wheel_states(self) -> JointStates:
         """Return the states of the wheels' joints."""
 
     def reset(self) -> None:
-        """Forget the command and where the encoders say that the robot is."""
+        """Reset the command and the encoder odometry."""
         self.command(0.0, 0.0)
         self.encoders.reset(self.world.clock.now_ns)
         super().reset()
@@ -129,10 +129,10 @@ class WheeledDrive(Drive):
         self.encoders.advance(now_ns)
 
     def report(self) -> None:
-        """Tell odometry, wheel transforms and joint states."""
+        """Send odometry, wheel transforms and joint states."""
         odometry, wheels = self.odometry_wanted, self.wheel_transform.wanted
         if odometry or wheels:
-            pose, twist = self.model.state()  # once: the engine takes its time to tell
+            pose, twist = self.model.state()  # read once: it is slow
         if odometry:
             encoders = self.every_step
             self.send_odometry(self.encoder_odometry() if encoders else world_odometry(pose, twist))
@@ -143,15 +143,15 @@ class WheeledDrive(Drive):
             self.joint_states.send(self.wheel_states())
 
     def in_model(self, joint: 'Joint', model_pose: Pose) -> FrameTransform:
-        """Return where the link on a joint stands in the model's frame, which is called parent."""
+        """Return the transform of a joint's child link in the model's frame, the parent."""
         pose = self.model.links[joint.spec.child].pose
         return FrameTransform(
             joint.spec.parent, joint.spec.child, compose(inverse(model_pose), pose))
 
 
 def reads_encoders(params: Params) -> bool:
-    """Tell by <odometrySource> whether odometry comes from encoders; else it is the truth."""
-    # Upstream's warning shows the number behind `world`.
+    """Tell by <odometrySource> whether odometry comes from encoders, not from the world."""
+    # Upstream's warning shows the enumeration value of `world`.
     text = params.read('odometrySource', WORLD, shown='1').lower()
     if text not in (ENCODER, WORLD, '0', '1'):
         logger.warning(
@@ -163,7 +163,7 @@ def reads_encoders(params: Params) -> bool:
 
 
 def world_odometry(pose: Pose, twist: Twist) -> Odometry:
-    """Return the model's true pose, and its twist in the plane in the model's own axes."""
+    """Return the model's true pose, and its planar twist in the model's axes."""
     (vx, vy, _), (_, _, yaw_rate) = twist
     yaw = yaw_of(pose.orientation)
     cos, sin = math.cos(yaw), math.sin(yaw)
@@ -172,31 +172,31 @@ def world_odometry(pose: Pose, twist: Twist) -> Odometry:
 
 
 class Encoders:
-    """Where two wheels say that a robot is, by the angles that they have turned through.
+    """Dead reckoning from the rotation of two wheels.
 
-    Their angles are what joint states tell, so both agree.
+    It uses the positions of the joint states, so that both agree.
     """
 
     def __init__(
         self, left: 'Joint', right: 'Joint', diameter: float, separation: float,
         turning: float = 1.0,
     ) -> None:
-        """Take the wheels, and their diameter and separation [m]; `reset` begins.
+        """Use these wheels of that diameter and separation [m]; call `reset` to start.
 
         Args:
-            turning: -1 where left counts as right.
+            turning: -1 if left and right are swapped, as upstream.
         """
         self._wheels, self._radius, self._separation = (left, right), diameter / 2.0, separation
         self._turning = turning
 
     def reset(self, now_ns: int) -> None:
-        """Begin anew at the origin."""
+        """Start again at the origin."""
         self.place = (0.0, 0.0, 0.0)  # x [m], y [m], yaw [rad]
-        self.rate = (0.0, 0.0, 0.0)  # of the same, by time
+        self.rate = (0.0, 0.0, 0.0)  # its time derivative
         self._ns, self._ways = now_ns, self._measure()
 
     def advance(self, now_ns: int) -> None:
-        """Add what the wheels have turned."""
+        """Integrate the rotation of the wheels."""
         elapsed, self._ns = (now_ns - self._ns) / NANOSECONDS, now_ns
         before, self._ways = self._ways, self._measure()
         if elapsed <= 0.0:
@@ -210,11 +210,11 @@ class Encoders:
         self.rate = (dx / elapsed, dy / elapsed, turn / elapsed)
 
     def _measure(self) -> tuple[float, ...]:
-        """Return how far the rims have turned [m]."""
+        """Return the rim distances [m]."""
         return tuple(wheel.position * self._radius for wheel in self._wheels)
 
     @property
     def pose(self) -> Pose:
-        """Return the place as a pose."""
+        """Return the current pose."""
         x, y, yaw = self.place
         return Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw))

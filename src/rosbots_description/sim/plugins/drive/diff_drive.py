@@ -1,4 +1,4 @@
-"""The differential drive: two wheel joints follow a planar velocity, odometry comes back.
+"""The differential drive: two wheel joints follow a planar velocity command; odometry.
 
 Behaviour, defaults and timing are those of libgazebo_ros_diff_drive.so in gazebo_ros_pkgs 2.9.2.
 """
@@ -15,9 +15,9 @@ from .base import Encoders, WheeledDrive, reads_encoders
 
 logger = logging.getLogger(__name__)
 
-RAMP_REACHED = 0.01  # [m/s] rim speed this close to the target ends a ramp
-DRAGGED = 0.015  # share of its speed that a robot loses that drags a caster (doc/physics.md)
-TOLERATED = 0.02  # share by which a wheel may differ from its description without a warning
+RAMP_REACHED = 0.01  # [m/s] distance of the rim speed from its target at which a ramp ends
+DRAGGED = 0.015  # relative speed loss of a robot that drags a caster (doc/physics.md)
+TOLERATED = 0.02  # relative deviation of a wheel from the description without a warning
 
 
 @register('libgazebo_ros_diff_drive.so')
@@ -54,9 +54,9 @@ class DiffDrive(WheeledDrive):
         self._warn_sides()
 
     def restart(self) -> None:
-        """Forget everything, the ramp too, and let the motors hold the wheels."""
-        # Rim speeds [m/s], left and right, that the ramp has come to. As upstream's, they are
-        # never brought in line with the wheels.
+        """Reset everything, the ramp too, and let the motors hold the wheels."""
+        # Current rim speeds of the ramp [m/s], left and right. As upstream, the ramp is open loop:
+        # the speeds are never corrected by those of the wheels.
         self._setpoint = [0.0, 0.0]
         super().restart()
         for wheel in self.wheels:
@@ -79,13 +79,13 @@ class DiffDrive(WheeledDrive):
             wheel.set_motor(speed / radius, self.wheel_torque)
 
     def encoder_odometry(self) -> Odometry:
-        """Return what the encoders tell, by upstream's formula: the speed is never negative."""
+        """Return the encoder odometry, by upstream's formula: the speed is never negative."""
         vx, vy, yaw_rate = self.encoders.rate
         speed = math.hypot(vx, vy)
         return Odometry(self.encoders.pose, Twist((speed, 0.0, 0.0), (0.0, 0.0, yaw_rate)))
 
     def wheel_transforms(self, model_pose: Pose) -> Iterable[FrameTransform]:
-        """Return where the links of the wheels stand."""
+        """Return the transforms of the wheel links."""
         return (self.in_model(wheel, model_pose) for wheel in self.wheels)
 
     def wheel_states(self) -> JointStates:
@@ -94,7 +94,7 @@ class DiffDrive(WheeledDrive):
         return JointStates((right.name, left.name), (right.position, left.position))
 
     def _warn_geometry(self) -> None:
-        """Say so when the numbers given contradict the wheels that touch the ground."""
+        """Warn if diameter or separation contradict the collision geometry."""
         left, right = self.wheels
         radius, track = radius_of(left), abs(track_of(left, right))
         if radius is None or radius_of(right) is None or not track:
@@ -118,7 +118,7 @@ class DiffDrive(WheeledDrive):
             )
 
     def _warn_sides(self) -> None:
-        """Say so when the robot will not go where it is asked to, in Gazebo as here."""
+        """Warn if the robot will not follow its commands, in Gazebo as here."""
         left, right = self.wheels
         faults = []
         if not same_way(left, right):

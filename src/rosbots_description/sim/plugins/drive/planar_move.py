@@ -1,9 +1,9 @@
-"""Planar movement: the model takes on the velocity that it is told, without wheels.
+"""Planar movement: the model moves at the commanded velocity, without wheels.
 
 Behaviour, defaults and timing are those of libgazebo_ros_planar_move.so in gazebo_ros_pkgs 2.9.2.
-The velocity is set at the beginning of each step, and physics goes on from there: what touches the
-ground loses mu g dt of it, and what hangs in the air sinks by g dt in each second. A reset leaves
-the command as it is.
+The velocity is set at the beginning of each step, and physics changes it within the step: friction
+takes mu g dt of a sliding model's speed, and a model in the air sinks at g dt. A reset keeps the
+command.
 """
 
 import math
@@ -17,9 +17,9 @@ from .base import Drive
 
 @register('libgazebo_ros_planar_move.so')
 class PlanarMove(Drive):
-    """Set the velocity of all links at each step; report where the robot truly is.
+    """Set the velocity of all links at each step; report the true pose.
 
-    Outputs: `odometry`, whose twist is told from two poses, and `odometry_transform`.
+    Outputs: `odometry`, with the twist as the difference of two poses, and `odometry_transform`.
     """
 
     prefix = 'PlanarMovePlugin (ns = {}) '
@@ -33,16 +33,16 @@ class PlanarMove(Drive):
         rate = self.params.rate('odometryRate', 20.0)  # 0 for none
         self.set_rate(rate)
         self.give_odometry(rate > 0.0, rate > 0.0)
-        # [s] after which a command is forgotten; below 0: never
+        # [s] after which a command expires; below 0: never
         self.command_timeout = self.params.read('cmdTimeout', -1.0)
 
     def reset(self) -> None:
-        """Tell motion from where the model stands now; the command stays."""
+        """Measure the motion from the current pose on; keep the command."""
         super().reset()
         self._told_ns, self._told = self.world.clock.now_ns, self.model.pose
 
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
-        """Move so until told else, or until the command is too old."""
+        """Set the velocity command, which holds until the next one or until it expires."""
         super().command(linear_x, angular_z, linear_y)
         self._commanded_ns = self.world.clock.now_ns
 
@@ -57,7 +57,7 @@ class PlanarMove(Drive):
         self.model.set_twist(Twist(linear, (0.0, 0.0, yaw_rate)))
 
     def report(self) -> None:
-        """Tell where the robot is, and what it has moved by since it did so last."""
+        """Send the pose, and the mean twist since the last report."""
         if self.odometry_wanted:
             pose, now_ns = self.model.pose, self.world.clock.now_ns
             elapsed = (now_ns - self._told_ns) / NANOSECONDS
@@ -70,7 +70,7 @@ class PlanarMove(Drive):
             (now - then) / elapsed
             for now, then in zip(pose.position[:2], self._told.position[:2], strict=True)
         )
-        if abs(turning) <= math.pi / elapsed:  # else it has turned by more than can be told
+        if abs(turning) <= math.pi / elapsed:  # else the rotation is ambiguous
             turning = math.remainder(yaw - yaw_of(self._told.orientation), math.tau) / elapsed
         cos, sin = math.cos(yaw), math.sin(yaw)
         return Twist((cos * dx + sin * dy, cos * dy - sin * dx, 0.0), (0.0, 0.0, turning))

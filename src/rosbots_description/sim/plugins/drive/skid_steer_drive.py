@@ -1,7 +1,7 @@
-"""The skid steer drive: four wheel joints follow a planar velocity by slipping sideways.
+"""The skid steer drive: four wheel joints follow a planar velocity command with lateral slip.
 
 Behaviour, defaults and timing are those of libgazebo_ros_skid_steer_drive.so in gazebo_ros_pkgs
-2.9.2. It has no reset of its own upstream, so that a reset leaves the command as it is.
+2.9.2. Upstream has no reset of its own, so a reset keeps the command.
 """
 
 from ...plugin_registry import register
@@ -14,7 +14,7 @@ DEFAULTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_r
 
 @register('libgazebo_ros_skid_steer_drive.so')
 class SkidSteerDrive(Drive):
-    """Drive the wheels of each side alike; report where the robot truly is.
+    """Drive the wheels of each side at equal speed; report the true pose.
 
     Outputs: `odometry` and `odometry_transform`. `wheels` are the joints in the order of `JOINTS`.
     """
@@ -40,7 +40,7 @@ class SkidSteerDrive(Drive):
         ]
 
     def restart(self) -> None:
-        """Forget the command and let the motors hold the wheels."""
+        """Reset the command, and let the motors hold the wheels."""
         super().restart()
         self.update(0.0)
 
@@ -53,6 +53,6 @@ class SkidSteerDrive(Drive):
             wheel.set_motor(rim / radius, self.torque)
 
     def report(self) -> None:
-        """Tell where the robot is."""
+        """Send odometry."""
         if self.odometry_wanted:
             self.send_odometry(world_odometry(*self.model.state()), flat=True)

@@ -1,11 +1,11 @@
-"""The tricycle drive: one wheel that is steered and driven, two that are told by.
+"""The tricycle drive: one steered and driven wheel, and two encoder wheels.
 
 Behaviour, defaults and timing are those of libgazebo_ros_tricycle_drive.so in gazebo_ros_pkgs
-2.9.2, with what is odd about it: `linear.x` is the speed of the driven wheel's rim and `angular.z`
-the steering angle; speeding up goes by `wheelDeceleration`, slowing down by `wheelAcceleration`,
-both in rad/s^2; encoder odometry turns the wrong way round, and its speeds are those in the
-odometry frame. It steers towards the angle asked for; upstream's leaves it while it drives forward
-and the angle is to become less.
+2.9.2, including its oddities: `linear.x` is the rim speed of the driven wheel and `angular.z` the
+steering angle; `wheelDeceleration` limits speeding up and `wheelAcceleration` slowing down, both
+in rad/s^2; the yaw of encoder odometry has the wrong sign, and its twist is in the odometry frame.
+Different on purpose: it always steers towards the target angle; upstream steers away while it
+drives forward and the angle is to decrease.
 """
 
 import math
@@ -32,7 +32,7 @@ class TricycleDrive(WheeledDrive):
     def load(self) -> None:
         """Read all tags with upstream's defaults; find the joints."""
         params, read = self.params, self.params.read
-        # [rad/s^2] of the driven wheel as it slows down, and as it speeds up; 0: no limit to either
+        # [rad/s^2] of the driven wheel for slowing down and for speeding up; 0: no limit
         self.acceleration = read('wheelAcceleration', 0.0)
         self.read_debug_level()
         self.read_frames('base_link')
@@ -49,10 +49,10 @@ class TricycleDrive(WheeledDrive):
         encoder_separation = params.length('encoderWheelSeparation', 0.5)  # [m]
         self.torque = read('wheelTorque', 5.0)  # [N m] of the driven wheel and of steering
         self.deceleration = read('wheelDeceleration', self.acceleration)
-        # [rad/s] within which the wheel goes on as it does
+        # [rad/s] tolerance within which the wheel keeps its speed
         self.speed_tolerance = read('wheelSpeedTolerance', 0.01)
-        self.steering_speed = read('steeringSpeed', 0.0)  # [rad/s]; not above 0: at once
-        self.angle_tolerance = read('steeringAngleTolerance', 0.01)  # [rad] in which it stops
+        self.steering_speed = read('steeringSpeed', 0.0)  # [rad/s]; <= 0: at once
+        self.angle_tolerance = read('steeringAngleTolerance', 0.01)  # [rad] to stop within
         self.every_step = reads_encoders(params)
         wheel_transforms = read('publishWheelTF', False)
         self.give_wheels(wheel_transforms, read('publishWheelJointState', False))
@@ -60,11 +60,11 @@ class TricycleDrive(WheeledDrive):
         if len(set(names)) < len(names):
             raise PluginError(f'{self.log_prefix}two of its joints are one: {", ".join(names)}')
         self._steering, self._driven, left, right = self.joints
-        # Upstream takes the left one for the right one.
+        # Upstream swaps left and right.
         self.encoders = Encoders(left, right, encoder_diameter, encoder_separation, turning=-1.0)
 
     def restart(self) -> None:
-        """Forget everything and let the motors hold the steered wheel."""
+        """Reset everything, and let the motors hold the steered wheel."""
         super().restart()
         for joint in (self._steering, self._driven):
             joint.set_motor(0.0, self.torque)
@@ -76,7 +76,7 @@ class TricycleDrive(WheeledDrive):
         self._steer(max(-STRAIGHT_ACROSS, min(STRAIGHT_ACROSS, angle)))
 
     def _drive(self, target: float, elapsed: float) -> None:
-        """Bring the driven wheel nearer to a speed [rad/s]."""
+        """Accelerate the driven wheel towards a speed [rad/s]."""
         speed = self._driven.velocity
         missing = target - speed
         if self.acceleration > 0.0:
@@ -88,7 +88,7 @@ class TricycleDrive(WheeledDrive):
         self._driven.set_motor(target, self.torque)
 
     def _steer(self, target: float) -> None:
-        """Turn the steering towards an angle [rad]."""
+        """Steer towards an angle [rad]."""
         missing = target - self._steering.position
         if self.steering_speed <= 0.0:
             self._steering.set_position(target)
@@ -99,17 +99,17 @@ class TricycleDrive(WheeledDrive):
         self._steering.set_motor(turning, self.torque)
 
     def encoder_odometry(self) -> Odometry:
-        """Return what the encoders tell; as upstream's, the speeds are in the odometry frame."""
+        """Return the encoder odometry; as upstream, the twist is in the odometry frame."""
         vx, vy, yaw_rate = self.encoders.rate
         return Odometry(self.encoders.pose, Twist((vx, vy, 0.0), (0.0, 0.0, yaw_rate)))
 
     def wheel_transforms(self, model_pose: Pose) -> Iterable[FrameTransform]:
-        """Return where what the joints carry stands, under the names of the joints."""
+        """Return the transforms of the joints' child links, under the names of the joints."""
         return (self.in_model(one, model_pose)._replace(child=one.name) for one in self.joints)
 
     def wheel_states(self) -> JointStates:
         """Return the states of all joints."""
         positions, velocities = zip(*(joint.state() for joint in self.joints), strict=True)
         names = tuple(joint.name for joint in self.joints)
-        # Upstream reads the force that a user set, which is none.
+        # Upstream reads the effort that a user set, which is always 0.
         return JointStates(names, positions, velocities, (0.0,) * len(names))

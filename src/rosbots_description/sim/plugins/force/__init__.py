@@ -1,4 +1,4 @@
-"""Plugins that change which forces act; importing registers them."""
+"""Plugins that apply or change forces; importing registers them."""
 
 from . import force, hand_of_god, wheel_slip  # noqa: F401
 from .force import Force

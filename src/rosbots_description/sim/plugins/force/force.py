@@ -1,4 +1,4 @@
-"""A wrench on a link for as long as nobody says otherwise.
+"""A constant wrench on a link, until the next command.
 
 Tags and behaviour are those of libgazebo_ros_force.so in gazebo_ros_pkgs 2.9.2.
 """
@@ -14,7 +14,7 @@ from ..base import ModelPlugin
 
 @register('libgazebo_ros_force.so')
 class Force(ModelPlugin):
-    """Push <bodyName> in each step, along the world's axes and at its centre of mass."""
+    """Apply a wrench to <bodyName> in each step, in world axes at its centre of mass."""
 
     prefix = 'force plugin: '
     missing_level = logging.DEBUG
@@ -26,7 +26,7 @@ class Force(ModelPlugin):
         self.wrench = (ZERO, ZERO)
 
     def command(self, force: Vector, torque: Vector) -> None:
-        """Push by `force` [N] and `torque` [N m] until told else.
+        """Apply `force` [N] and `torque` [N m] until the next command.
 
         Raises:
             ValueError: a number is not finite.
@@ -38,10 +38,10 @@ class Force(ModelPlugin):
         self.reset()
 
     def before_step(self) -> None:
-        """Push."""
+        """Apply the wrench."""
         self._pushed.push(*self.wrench)
         self.due = self.world.clock.steps + 1
 
     def reset(self) -> None:
-        """Go on pushing, as Gazebo's does after a reset."""
+        """Keep the wrench, as Gazebo's plugin does after a reset."""
         self.due = NEVER if self.wrench == (ZERO, ZERO) else self.world.clock.steps + 1

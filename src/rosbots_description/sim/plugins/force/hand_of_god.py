@@ -1,8 +1,8 @@
-"""A link without weight that follows a frame, on springs that are critically damped.
+"""A link without gravity that follows a frame, pulled by critically damped springs.
 
-Tags and behaviour are those of libgazebo_ros_hand_of_god.so in gazebo_ros_pkgs 2.9.2, with what is
-odd about it: the torque is that of half the angle. Different on purpose: it turns the shorter way
-round, and springs are no stiffer than a step allows: in Gazebo a small link flies away.
+Tags and behaviour are those of libgazebo_ros_hand_of_god.so in gazebo_ros_pkgs 2.9.2, including an
+oddity: the torque is that of half the angle. Different on purpose: it takes the shorter rotation,
+and the springs are no stiffer than stability allows: in Gazebo a small link flies away.
 """
 
 import logging
@@ -29,7 +29,7 @@ from ..base import ModelPlugin
 
 @register('libgazebo_ros_hand_of_god.so')
 class HandOfGod(ModelPlugin):
-    """Pull <linkName> to where it is to be.
+    """Pull <linkName> towards the target pose.
 
     Output: `actual`, in each step since the first `follow`.
     """
@@ -39,7 +39,7 @@ class HandOfGod(ModelPlugin):
     target: Pose | None = None
 
     def load(self) -> None:
-        """Read the tags; find the link and let it have no weight."""
+        """Read the tags; find the link and turn off its gravity."""
         read = self.params.read
         self._link, self._mount = self.link('linkName')
         self.frame = read('frameId', 'hog')
@@ -57,7 +57,7 @@ class HandOfGod(ModelPlugin):
         self.actual: Output[FrameTransform] = self.output('actual')
 
     def follow(self, pose: Pose) -> None:
-        """Pull the link to a pose in the world until told else.
+        """Pull the link towards a pose in the world, until the next call.
 
         Raises:
             ValueError: a number is not finite.
@@ -68,11 +68,11 @@ class HandOfGod(ModelPlugin):
         self.reset()
 
     def reset(self) -> None:
-        """Go on pulling."""
+        """Keep the target."""
         self.due = NEVER if self.target is None else self.world.clock.steps + 1
 
     def before_step(self) -> None:
-        """Pull."""
+        """Apply the springs."""
         if self.target is None:
             return
         pose, (linear, angular) = self._link.state()
@@ -88,7 +88,7 @@ class HandOfGod(ModelPlugin):
         self.watches, self.due = self.is_read, self.world.clock.steps + 1
 
     def after_step(self) -> None:
-        """Tell where the link is."""
+        """Send the pose of the link."""
         pose = compose(self._link.pose, self._mount)
         self.actual.send(FrameTransform('world', f'{self.frame}_actual', pose))
 
@@ -98,10 +98,10 @@ class HandOfGod(ModelPlugin):
         """Return the effort of a spring that is critically damped for an inertia.
 
         Args:
-            away: how far it is to go.
-            least: the inertia along the axis that moves most easily.
+            away: displacement to the target.
+            least: the least inertia of all axes.
         """
-        # Damping c = 2 sqrt(k I) of an explicit step h must keep c h / I at 1 or less.
+        # With explicit steps h the critical damping c = 2 sqrt(k I) must satisfy c h / I <= 1.
         step = self.world.physics.step_size
         stiffness = min(stiffness, (least / step) ** 2 / (4.0 * inertia))
         damping = 2.0 * math.sqrt(stiffness * inertia)
@@ -109,7 +109,7 @@ class HandOfGod(ModelPlugin):
 
 
 def _half_rotation(q: tuple[float, float, float, float]) -> Vector:
-    """Return half the angle [rad] of a rotation, the shorter way round, along its axis."""
+    """Return half the angle [rad] of a rotation times its axis; the angle is at most pi."""
     x, y, z, w = q if q[3] >= 0.0 else tuple(-part for part in q)
     sine = math.sqrt(x * x + y * y + z * z)
     share = math.atan2(sine, w) / sine if sine else 1.0

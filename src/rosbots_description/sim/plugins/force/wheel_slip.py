@@ -1,8 +1,8 @@
-"""Wheel slip: tyres that give way by a share of the speed at which they roll.
+"""Wheel slip: tyres with a slip proportional to their rolling speed.
 
-Tags and meaning are those of libgazebo_ros_wheel_slip.so in gazebo_ros_pkgs 2.9.2: with slip
-compliance C a tyre of rim speed v that is held by friction F under the normal force N slides by
-v C F / N, along its axle by the lateral compliance and ahead by the longitudinal one.
+Tags and meaning are those of libgazebo_ros_wheel_slip.so in gazebo_ros_pkgs 2.9.2: a tyre of rim
+speed v under friction force F and normal force N slips at v C F / N, with C the lateral slip
+compliance along its axle and the longitudinal one ahead.
 """
 
 import logging
@@ -27,10 +27,10 @@ NUMBERS = ('slip_compliance_lateral', 'slip_compliance_longitudinal', 'wheel_nor
 
 @dataclass(frozen=True)
 class SlippingWheel:
-    """A wheel whose tyre gives way."""
+    """A wheel with slip compliance."""
 
     joint: 'Joint'
-    lateral: float  # slip compliance, of the speed at the rim
+    lateral: float  # slip compliance, relative to the rim speed
     longitudinal: float
     normal_force: float  # [N]
     radius: float  # [m]
@@ -38,16 +38,16 @@ class SlippingWheel:
 
 @register('libgazebo_ros_wheel_slip.so')
 class WheelSlip(PeriodicPlugin):
-    """Sets how easily the tyres of a model slip, at every step."""
+    """Sets the slip compliance of a model's tyres, at every step."""
 
     prefix = 'wheel_slip: '
 
     def find_namespace(self, given: str | None) -> str:
-        """Return the namespace, which is within that of the model."""
+        """Return the namespace, which is below that of the model."""
         return f'{self.model.name}/{(given or "").strip("/ ") or "wheel_slip"}'
 
     def load(self) -> None:
-        """Read the wheels; one that cannot slip is left out with a sentence.
+        """Read the wheels; one that cannot slip is left out with an error in the log.
 
         Raises:
             PluginError: there is none.
@@ -67,14 +67,14 @@ class WheelSlip(PeriodicPlugin):
     def set_compliance(
         self, lateral: float | None = None, longitudinal: float | None = None
     ) -> None:
-        """Give all wheels these slip compliances; what is None or negative stays."""
+        """Set the slip compliances of all wheels; None or negative: unchanged."""
         if lateral is not None and lateral >= 0.0:
             self.wheels = [replace(wheel, lateral=lateral) for wheel in self.wheels]
         if longitudinal is not None and longitudinal >= 0.0:
             self.wheels = [replace(wheel, longitudinal=longitudinal) for wheel in self.wheels]
 
     def update(self, _elapsed: float) -> None:
-        """Let each tyre slip by its speed."""
+        """Set the slip compliance of each tyre according to its speed."""
         for wheel in self.wheels:
             slip = abs(wheel.joint.velocity) * wheel.radius / wheel.normal_force
             slips = slip * wheel.lateral, slip * wheel.longitudinal

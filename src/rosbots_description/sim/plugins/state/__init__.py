@@ -1,4 +1,4 @@
-"""Plugins that tell the state of a model, or set it; importing registers them."""
+"""Plugins that report or set the state of a model; importing registers them."""
 
 from . import joint_pose_trajectory, joint_state_publisher, p3d  # noqa: F401
 from .joint_pose_trajectory import JointPoseTrajectory

@@ -1,9 +1,9 @@
-"""Joints are put where a trajectory has them, point by point, while nothing else moves.
+"""Set joint positions along a trajectory, point by point, while physics is disabled.
 
 Tags and behaviour are those of libgazebo_ros_joint_pose_trajectory.so in gazebo_ros_pkgs 2.9.2: a
-point holds for its own `time_from_start`, physics of the whole world is off from when the
-trajectory comes to when its last point is over, and joints keep their velocities. As a trajectory
-ends, or with its model, physics goes on; Gazebo's stays off if one takes the place of another.
+point holds for its own `time_from_start`; physics of the whole world is disabled from the arrival
+of a trajectory to the end of its last point; joints keep their velocities. Physics is enabled when
+a trajectory ends or its model is deleted; Gazebo's stays disabled if another one replaces it.
 """
 
 import logging
@@ -36,14 +36,14 @@ class JointPoseTrajectory(ModelPlugin):
     def play(
         self, frame: str, start_ns: int, joints: Sequence[str], points: Sequence[Point]
     ) -> None:
-        """Play a trajectory in place of any other.
+        """Play a trajectory; it replaces any other.
 
-        Joints that are not there are named, and the others move.
+        Unknown joints are named in the log, and the others move.
 
         Args:
-            frame: the link that is to stay where it is; it may be of another model, which then
-                moves. The world by its names: the model stays.
-            start_ns: when to begin [ns, simulated]; a past time means now.
+            frame: the link to keep in place; it may be of another model, which then moves. A name
+                of the world: the model keeps its pose.
+            start_ns: start time [ns, simulated]; a past time means now.
         Raises:
             ValueError: a position is not finite.
         """
@@ -72,7 +72,7 @@ class JointPoseTrajectory(ModelPlugin):
         self._set_due()
 
     def before_step(self) -> None:
-        """Put the joints where the next point has them; after the last one let physics go on."""
+        """Set the joints to the next point; after the last one enable physics."""
         is_there = self.world.models.get(self._model.name) is self._model
         if self._next == len(self._points) or not is_there:
             self.restart()

@@ -1,7 +1,7 @@
-"""The states of a model's joints, of those that are listed and in that order.
+"""The states of the listed joints of a model, in the order of the list.
 
 Tags, defaults and timing are those of libgazebo_ros_joint_state_publisher.so in gazebo_ros_pkgs
-2.9.2. A joint that is not there is named, and the others are told; Gazebo crashes.
+2.9.2. An unknown joint is named in the log, and the others are published; Gazebo crashes.
 """
 
 import logging
@@ -17,7 +17,7 @@ logger = logging.getLogger(__name__)
 
 @register('libgazebo_ros_joint_state_publisher.so')
 class JointStatePublisher(PeriodicPlugin):
-    """Tell positions and velocities of the `joints` in <jointName>. Output: `joint_states`."""
+    """Report positions and velocities of the `joints` in <jointName>. Output: `joint_states`."""
 
     prefix = 'GazeboRosJointStatePublisher Plugin (ns = {}/) '
     absent_namespace = empty_namespace = '{}'
@@ -37,7 +37,7 @@ class JointStatePublisher(PeriodicPlugin):
         self.joint_states: Output[JointStates] = self.output('joint_states')
 
     def report(self) -> None:
-        """Tell the states."""
+        """Send the states."""
         states = [joint.state() for joint in self.joints]
         positions, velocities = zip(*states, strict=True) if states else ((), ())
         self.joint_states.send(JointStates(

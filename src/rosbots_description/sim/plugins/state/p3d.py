@@ -1,10 +1,10 @@
 """The true pose and twist of a link, in the world or in another link.
 
-Tags, defaults and timing are those of libgazebo_ros_p3d.so in gazebo_ros_pkgs 2.9.2, with what is
-odd about it: noise is on the twist only, <xyzOffset> is added in the axes of the frame, and in the
-frame of another link rotations are multiplied in the wrong order and velocities turned the wrong
-way. A link that a fixed joint made part of another has its true pose; in Gazebo the offset between
-the two has the wrong sign.
+Tags, defaults and timing are those of libgazebo_ros_p3d.so in gazebo_ros_pkgs 2.9.2, including its
+oddities: noise is on the twist only, <xyzOffset> is added in the axes of the frame, and in the
+frame of another link rotations are multiplied in the wrong order and velocities rotated by the
+inverse. A link that fixed joint reduction merged has its true pose; in Gazebo its offset from the
+parent has the wrong sign.
 """
 
 import logging
@@ -36,9 +36,9 @@ _WORLD = {*WORLD_FRAMES, '/world'} - {''}
 
 @register('libgazebo_ros_p3d.so')
 class P3D(PeriodicPlugin):
-    """Tell where <bodyName> is in <frameName>, and how it moves, in the axes of that frame.
+    """Report pose and twist of <bodyName> in <frameName>, in the axes of that frame.
 
-    Output: `odometry`. `body` is the name of the link, or of what that was reduced into.
+    Output: `odometry`. `body` is the name of the link, or of its parent after reduction.
     """
 
     prefix = 'gazebo_ros_p3d plugin: '
@@ -50,7 +50,7 @@ class P3D(PeriodicPlugin):
     def load(self) -> None:
         """Read the tags; find the link and the frame.
 
-        A frame that is not there is an error in the log, and then nothing is ever told.
+        An unknown frame is an error in the log, and nothing is published.
         """
         params, read = self.params, self.params.read
         self._link, self._mount = self.link('bodyName')
@@ -73,7 +73,7 @@ class P3D(PeriodicPlugin):
         self.odometry: Output[Odometry] = self.output('odometry', is_known)
 
     def report(self) -> None:
-        """Tell pose and twist."""
+        """Send pose and twist."""
         pose, twist = self._link.state_at(self._mount)
         if self._frame is not None:
             link, mount = self._frame
@@ -83,7 +83,7 @@ class P3D(PeriodicPlugin):
         self.odometry.send(Odometry(pose, self._noisy(twist) if self.noise else twist))
 
     def _noisy(self, twist: Twist) -> Twist:
-        """Return the twist with noise that is the same in each run, whoever has read before."""
+        """Return the twist with noise, which is reproducible whatever other readers do."""
         who = self.model.name, self.spec.name, self.params.values['topicName']
         source = random.Random(f'{who} {self.world.clock.now_ns}')
         return Twist(*(add(one, self._sample(source)) for one in twist))
@@ -93,7 +93,7 @@ class P3D(PeriodicPlugin):
 
 
 def _seen_from(frame: Pose, moving: Twist, pose: Pose, twist: Twist) -> tuple[Pose, Twist]:
-    """Return pose and twist in a frame that moves, as upstream has them."""
+    """Return pose and twist in a moving frame, by upstream's formula."""
     back = conjugate(frame.orientation)
     position = rotate(back, subtract(pose.position, frame.position))
     return Pose(position, multiply(pose.orientation, back)), Twist(*(

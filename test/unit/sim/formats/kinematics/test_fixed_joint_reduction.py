@@ -175,7 +175,7 @@ def test_a_robot_below_world_is_fixed_and_reduced_further_up():
 
 def test_what_stands_in_the_world_link_itself_is_named_as_not_simulated(caplog):
     load(link('world', 0, f'<collision>{BALL}</collision>') + link('a') + joint('j', 'world', 'a'))
-    assert "'world': a root of that name stands for the world itself" in caplog.text
+    assert "'world': a root of that name is the world itself" in caplog.text
 
 
 def test_a_movable_link_without_mass_vanishes_with_all_below_it(caplog):

@@ -156,7 +156,7 @@ def test_files_that_include_each_other_are_refused(tmp_path):
     ('<uri>model://../etc</uri>', "'..' is not accepted"),
     ('<uri>https://fuel.gazebosim.org/1.0/turtle</uri>', 'not fetched from the network'),
     ('<uri>file:///nowhere/at/all</uri>', "'/nowhere/at/all' does not exist"),
-    ('<uri>model://sun</uri>', 'describes no <model>'),
+    ('<uri>model://sun</uri>', 'contains no <model>'),
     ('<uri>model://bare</uri>', 'neither model.config nor model.sdf'),
     ('<uri>model://dumb</uri>', 'names no description'),
     ('<uri>model://gone</uri>', 'cannot be read'),

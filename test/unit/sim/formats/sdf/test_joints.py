@@ -100,7 +100,7 @@ def test_endless_limits_are_none(lower, upper):
 def test_limits_the_wrong_way_round_are_switched_and_named(caplog):
     made = only(inside='<axis><limit><lower>1</lower><upper>-1</upper></limit></axis>')
     assert (made.lower, made.upper) == (-1.0, 1.0)
-    assert 'the two are switched' in caplog.text
+    assert 'the two are swapped' in caplog.text
 
 
 @pytest.mark.parametrize('kind', ['ball', 'universal', 'screw', 'revolute2', 'gearbox'])
@@ -127,13 +127,13 @@ def test_several_trees_are_one_model():
 def test_the_joint_that_closes_a_ring_is_left_out_and_named(caplog):
     spec = load(joint('a', 'b') + joint('b', 'c') + joint('a', 'c'))
     assert [made.name for made in spec.joints] == ['ab', 'bc']
-    assert "joint 'ac': it closes a ring of joints" in caplog.text
+    assert "joint 'ac': it closes a kinematic loop" in caplog.text
 
 
 def test_a_second_joint_to_the_world_closes_a_ring(caplog):
     spec = load(joint('world', 'a') + joint('a', 'b') + joint('world', 'b'))
     assert [made.name for made in spec.joints] == ['worlda', 'ab']
-    assert 'closes a ring' in caplog.text
+    assert 'closes a kinematic loop' in caplog.text
 
 
 def test_a_link_below_two_joints_turns_one_of_them_round():
@@ -155,7 +155,7 @@ def test_what_hangs_on_the_world_in_the_end_hangs_on_it_from_the_start():
 @pytest.mark.parametrize('text, part', [
     (joint(kind='hinge'), "type 'hinge' is unknown"),
     (joint('', 'b', name='j'), 'it has no <parent>'),
-    (joint('a', 'a'), "connects 'a' with itself"),
+    (joint('a', 'a'), "connects 'a' to itself"),
     (joint('a', 'world'), 'the world cannot be the child'),
     (joint() + joint(), "there are two joints 'ab'"),
     (joint(inside='<axis><dynamics><damping>-1</damping></dynamics></axis>'),

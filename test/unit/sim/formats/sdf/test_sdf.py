@@ -131,7 +131,7 @@ def test_a_plane_has_a_unit_normal():
 def test_a_plane_in_a_model_that_moves_is_left_out_and_named(caplog):
     body = link('<collision name="c"><geometry><plane/></geometry></collision>')
     assert load(body).links[0].collisions == ()
-    assert 'an endless plane cannot move' in caplog.text
+    assert 'an infinite plane cannot move' in caplog.text
 
 
 def test_a_mesh_is_found_along_the_model_path_and_scaled(tmp_path):
@@ -370,7 +370,7 @@ def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
     (link(name=''), 'a <link> without name'),
     (link(name='world'), "a link cannot be called 'world'"),
     (link() + link(), "there are two links 'a'"),
-    (link('<inertial><mass>-1</mass></inertial>'), 'mass -1 kg is wrong'),
+    (link('<inertial><mass>-1</mass></inertial>'), 'mass -1 kg is not valid'),
     (link('<inertial><mass>heavy</mass></inertial>'), "<mass> is 'heavy'"),
     (link('<inertial><inertia><ixx>-1</ixx></inertia></inertial>'), '<ixx> is -1'),
     (link('<pose>0 0 nan 0 0 0</pose>'), 'it takes six finite numbers'),
@@ -391,7 +391,7 @@ def test_what_is_broken_is_refused_with_the_place_and_the_fault(body, part):
 @pytest.mark.parametrize('text, part', [
     ('<robot name="r"/>', 'the first element is <robot>'),
     ('<sdf version="1.6"/>', 'neither a <model> nor a <world> with an <include>'),
-    ('<sdf version="new"><model name="m"/></sdf>', 'version="new" is wrong'),
+    ('<sdf version="new"><model name="m"/></sdf>', 'version="new" is not valid'),
     ('<sdf version="1.6"><model name="m">', 'not well-formed XML'),
 ])
 def test_a_text_that_is_no_sdf_is_refused(text, part):

@@ -81,10 +81,10 @@ def test_a_model_that_cannot_be_simulated_is_left_out_with_an_error(caplog):
     world = load(broken + BOX.format('good', '0 0 0 0 0 0') + '<include><uri>model://no</uri></include>')
     assert [model.name for model, _ in world.models] == ['good']
     assert len(world.faults) == 2
-    assert 'mass 0 kg is wrong' in world.faults[0]
+    assert 'mass 0 kg is not valid' in world.faults[0]
     assert "'model://no' is not to be found" in world.faults[1]
     errors = [record.getMessage() for record in caplog.records if record.levelno == logging.ERROR]
-    assert errors == [f'{fault}; the world stands without this model' for fault in world.faults]
+    assert errors == [f'{fault}; this model is left out' for fault in world.faults]
 
 
 def test_physics_is_read():
@@ -119,7 +119,7 @@ def test_the_default_physics_is_taken_of_several():
 
 def test_another_engine_is_named(caplog):
     load('<physics type="bullet"/>')
-    assert "physics type 'bullet' is not here" in caplog.text
+    assert "physics type 'bullet' is not available" in caplog.text
 
 
 @pytest.mark.parametrize(('model', 'cone', 'said'), [
@@ -197,16 +197,16 @@ def test_what_is_broken_in_the_world_itself_is_refused(body, part):
 
 
 @pytest.mark.parametrize('body, said, without', [
-    ('<light type="laser" name="l"/>', "light type 'laser' is unknown", 'without this light'),
-    ('<light type="point"/>', 'a <light> without name', 'without this light'),
+    ('<light type="laser" name="l"/>', "light type 'laser' is unknown", 'this light is left out'),
+    ('<light type="point"/>', 'a <light> without name', 'this light is left out'),
     ('<light name="l"><pose>a b</pose></light>', 'it takes six finite numbers', 'this light'),
-    ('<frame/>', 'a <frame> without name', 'without this frame'),
-    ('<frame name="f"><pose>far away</pose></frame>', 'six finite numbers', 'without this frame'),
-    (BOX.format('b', '1 2 nan'), 'it takes six finite numbers', 'without this model'),
+    ('<frame/>', 'a <frame> without name', 'this frame is left out'),
+    ('<frame name="f"><pose>far away</pose></frame>', 'six finite', 'this frame is left out'),
+    (BOX.format('b', '1 2 nan'), 'it takes six finite numbers', 'this model is left out'),
     ('<include><uri>model://ground_plane</uri><name>g</name><pose>a</pose></include>',
-     'it takes six finite numbers', 'without this model'),
-    ('<include><uri>https://fuel/x</uri></include>', 'not fetched', 'without this model'),
-    ('<model/>', 'a <model> without name', 'without this model'),
+     'it takes six finite numbers', 'this model is left out'),
+    ('<include><uri>https://fuel/x</uri></include>', 'not fetched', 'this model is left out'),
+    ('<model/>', 'a <model> without name', 'this model is left out'),
     ('<state world_name="w"><model name="m"><pose>a</pose></model></state>',
      'it takes six finite numbers', "the world's <state> is not applied"),
 ])

@@ -98,13 +98,13 @@ def test_a_flag_of_a_lumped_link_counts_for_its_heir_with_a_warning(caplog):
     spec = load('<gazebo reference="b"><turnGravityOff>true</turnGravityOff></gazebo>')
     assert spec.link('a').gravity is False
     assert spec.link('c').gravity is True
-    assert "'b': gravity, selfCollide or damping set for a link behind a fixed joint" in caplog.text
+    assert "'b': gravity, selfCollide or damping set for a reduced link" in caplog.text
 
 
 def test_an_unknown_material_is_grey_with_a_warning(caplog):
     spec = load('<gazebo reference="c"><material>Gazebo/Puce</material></gazebo>')
     assert spec.link('c').visuals[0].material == Material(script='Gazebo/Puce')
-    assert "<gazebo reference='c'>: material 'Gazebo/Puce' is none of Gazebo's" in caplog.text
+    assert "<gazebo reference='c'>: material 'Gazebo/Puce' is not one of Gazebo's" in caplog.text
 
 
 def test_a_visual_block_gives_a_colour():
@@ -152,7 +152,7 @@ def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere()
 
 
 def test_a_namespace_that_xml_cannot_hold_is_an_error():
-    with pytest.raises(ModelError, match=r"robot_namespace is 'a.*which has a control character"):
+    with pytest.raises(ModelError, match=r"robot_namespace is 'a.*which contains a control"):
         load(plugin(''), robot_namespace='a\x01b')
 
 
@@ -199,7 +199,7 @@ def test_what_is_not_simulated_is_named_once(caplog):
 
 def test_a_block_for_nothing_is_named_with_what_might_be_meant(caplog):
     load('<gazebo reference="ac"/>')
-    assert "there is no link or joint of that name, the block is ignored" in caplog.text
+    assert "there is no link or joint of that name; the block is ignored" in caplog.text
 
 
 @pytest.mark.parametrize(('tag', 'text'), [

@@ -122,7 +122,7 @@ def test_limits_the_wrong_way_round_are_switched_with_a_warning(caplog):
     (j,) = load(link('a') + link('b') + joint(
         'j', 'a', 'b', 'prismatic', '<limit lower="2" upper="-1" effort="0" velocity="0"/>')).joints
     assert (j.lower, j.upper, j.effort, j.velocity) == (-1.0, 2.0, 0.0, 0.0)
-    assert 'the two are switched' in caplog.text
+    assert 'the two are swapped' in caplog.text
 
 
 @pytest.mark.parametrize('kind', ['floating', 'planar'])
@@ -130,7 +130,7 @@ def test_a_joint_that_ties_nothing_leaves_its_child_free_with_a_warning(kind, ca
     spec = load(link('a') + link('b') + joint('j', 'a', 'b', kind, '<origin xyz="0 0 2"/>'))
     assert spec.joints == ()
     assert spec.link('b').pose.position == (0.0, 0.0, 2.0)
-    assert f"joint 'j': a {kind} joint ties nothing here" in caplog.text
+    assert f"joint 'j': a {kind} joint imposes no constraint here" in caplog.text
 
 
 def test_all_shapes_are_read():
@@ -176,7 +176,7 @@ def test_a_material_without_colour_is_grey_with_a_warning(caplog):
     spec = load('<material name="blue"><color rgba="0 0 1 1"/></material>'
                 + link('a', MASS + visual))
     assert spec.links[0].visuals[0].material == Material()
-    assert "material 'bleu': it has no <color> anywhere, it is shown grey; did you mean 'blue'?" \
+    assert "material 'bleu': it has no <color> anywhere; grey is shown; did you mean 'blue'?" \
         in caplog.text
 
 
@@ -215,15 +215,15 @@ def test_what_a_simulator_has_no_use_for_is_no_matter(caplog):
 
 @pytest.mark.parametrize(('body', 'expected'), [
     ('', 'the model has no <link>'),
-    (link('a') + link('a'), "there is a link 'a' already in line 1"),
+    (link('a') + link('a'), "the link 'a' is already defined in line 1"),
     (link('a') + link('b') + link('c') + joint('j', 'a', 'b') + joint('j', 'a', 'c'),
-     "joint 'j': there is a joint 'j' already in line 1"),
-    (link('a') + link('b'), "2 links are child of no joint: 'a' (line 1), 'b' (line 1)"),
+     "joint 'j': the joint 'j' is already defined in line 1"),
+    (link('a') + link('b'), "2 links are not the child of any joint: 'a' (line 1), 'b' (line 1)"),
     (link('a') + link('b') + joint('j', 'a', 'b') + joint('k', 'b', 'a'),
-     "joint 'j': the joints form a ring; one link must be child of no joint"),
+     "joint 'j': the joints form a loop; one link must have no parent joint"),
     (link('a') + link('b') + link('c') + joint('j', 'b', 'c') + joint('k', 'c', 'b'),
-     "the joints of 'b', 'c' form a ring apart from the root 'a'"),
-    (link('a') + joint('j', 'a', 'a'), 'the joints form a ring'),
+     "the joints of 'b', 'c' form a loop that is not connected to the root 'a'"),
+    (link('a') + joint('j', 'a', 'a'), 'the joints form a loop'),
     (link('a') + link('b') + link('c') + joint('j', 'a', 'c') + joint('k', 'b', 'c'),
      "joint 'k': child link 'c' is already the child of joint 'j' (line 1)"),
     (link('base') + link('wheel') + joint('j1', 'base', 'whel'),
@@ -280,18 +280,18 @@ def inertial(mass='1', **moments):
     (inertial('1,5'), 'value="1,5" of <mass> is wrong'),
     (inertial('nan'), 'value="nan" of <mass> is wrong'),
     (inertial(ixx='-1'),
-     'ixx="-1" of <inertia> is wrong; a moment of inertia is greater than zero'),
+     'ixx="-1" of <inertia> is not valid; a moment of inertia must be greater than zero'),
     (inertial(iyy='inf'), 'iyy="inf" of <inertia> is wrong'),
     (link('a', '<inertial><mass value="1"/></inertial>'), 'an <inertial> without <inertia'),
     (link('a', '<inertial><inertia ixx="1" iyy="1" izz="1"/></inertial>'),
      'an <inertial> without <mass'),
     (link('a', '<inertial><mass value="1"/><inertia ixx="1" izz="1"/></inertial>'),
      '<inertia> has no iyy'),
-    (geometry('<box size="1 -1 1"/>'), 'size="1 -1 1" of <box> is wrong; a size must be greater'),
+    (geometry('<box size="1 -1 1"/>'), 'size="1 -1 1" of <box> is not valid; a size must be'),
     (geometry('<box size="1 1"/>'), 'size="1 1" of <box> is wrong; it takes three finite numbers'),
     (geometry('<box/>'), '<box> has no size'),
-    (geometry('<sphere radius="-1"/>'), 'radius="-1" of <sphere> is wrong'),
-    (geometry('<cylinder radius="1" length="-1"/>'), 'length="-1" of <cylinder> is wrong'),
+    (geometry('<sphere radius="-1"/>'), 'radius="-1" of <sphere> is not valid'),
+    (geometry('<cylinder radius="1" length="-1"/>'), 'length="-1" of <cylinder> is not valid'),
     (geometry('<capsule radius="1"/>'), "geometry 'capsule' is unknown; there are box, cylinder"),
     (geometry('<mesh/>'), 'a <mesh> without filename'),
     (geometry(''), 'a <collision> without shape'),

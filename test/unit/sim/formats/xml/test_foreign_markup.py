@@ -36,7 +36,7 @@ def test_what_is_no_number_may_be_unexpanded(caplog):
     spec = load(f'{LINK}</link><gazebo><plugin name="p" filename="libx.so"><ns>$(arg n)/a</ns>'
                 '</plugin></gazebo>')
     assert spec.plugins[0].element.child('ns').text == '$(arg n)/a'
-    assert f'taken as it stands: $(arg n)/a in <ns> (line 2); {CURE}' in caplog.messages[-1]
+    assert f'taken literally: $(arg n)/a in <ns> (line 2); {CURE}' in caplog.messages[-1]
 
 
 @pytest.mark.parametrize('body', [

@@ -96,7 +96,7 @@ def test_a_shape_of_a_urdf_without_size_is_left_out(kind, geometry, caplog):
     ((level, sentence),) = said(caplog)
     assert level == 'WARNING'
     assert sentence.startswith("model 'bot' (bot.urdf): line 2: link 'a': ")
-    assert sentence.endswith(f'makes it empty; the {kind} is left out')
+    assert sentence.endswith(f'reduces it to nothing; the {kind} is left out')
 
 
 @pytest.mark.parametrize('geometry', [
@@ -126,7 +126,7 @@ def test_a_model_stands_without_what_it_includes_and_without_the_joint_to_that(c
     assert [level for level, _ in said(caplog)] == ['ERROR', 'ERROR']
     assert caplog.messages[0].startswith("b.sdf, line 2: model 'm': 'model://hokuyo' is not to be")
     assert caplog.messages[1].startswith("b.sdf, line 3: joint 'j': <child> names 'hokuyo::link'")
-    assert caplog.messages[1].endswith("; the model stands without joint 'j'")
+    assert caplog.messages[1].endswith("; joint 'j' is left out")
 
 
 def test_links_without_mass_are_among_what_is_left_out():
@@ -165,4 +165,4 @@ def test_a_plugin_of_a_link_is_named_with_its_library(caplog):
     ((level, sentence),) = said(caplog)
     assert level == logging.getLevelName(logging.WARNING)
     assert 'libgazebo_ros_elevator.so is known but not supported yet' in sentence
-    assert sentence.endswith('put it into a <gazebo> without reference')
+    assert sentence.endswith('move it to a <gazebo> without reference')
