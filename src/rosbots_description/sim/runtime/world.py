@@ -352,7 +352,7 @@ class World:
         try:
             sensor.start()
         except SimError as error:
-            logger.error('%s: %s; the model lives on without it', where, error)
+            logger.error('%s: %s; the model is spawned without it', where, error)
             model.left_out.append(called)
             return
         model.sensors.append(sensor)
@@ -378,7 +378,7 @@ class World:
         try:
             plugin.start()
         except SimError as error:
-            logger.error('%s: %s; the model lives on without it', where, error)
+            logger.error('%s: %s; the model is spawned without it', where, error)
             model.left_out.append(called)
             return
         model.plugins.append(plugin)

@@ -166,7 +166,7 @@ def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
     assert old in text
     model = world.spawn(text.replace(old, new), 'ibot')
     assert sentence in caplog.text
-    assert 'the model lives on without it' in caplog.text
+    assert 'the model is spawned without it' in caplog.text
     with pytest.raises(NotFoundError):
         model.plugin('imu')
     world.run(20)

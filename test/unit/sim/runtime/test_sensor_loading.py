@@ -82,7 +82,7 @@ def test_one_that_makes_no_sense_costs_no_model(inside, sentence, caplog):
     ((level, text),) = said(caplog)
     assert level == 'ERROR'
     assert text.startswith("model 'bot', ray 's' of link 'a': ")
-    assert text.endswith(f'{sentence}; the model lives on without it')
+    assert text.endswith(f'{sentence}; the model is spawned without it')
     assert model.left_out == ["ray 's'"]
     with pytest.raises(NotFoundError, match="has no sensor 's'; its sensors: none"):
         model.sensor('s')

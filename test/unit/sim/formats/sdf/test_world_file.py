@@ -78,7 +78,8 @@ def test_two_models_of_one_name_get_different_ones(caplog):
 
 def test_a_model_that_cannot_be_simulated_is_left_out_with_an_error(caplog):
     broken = '<model name="bad"><link name="a"><inertial><mass>0</mass></inertial></link></model>'
-    world = load(broken + BOX.format('good', '0 0 0 0 0 0') + '<include><uri>model://no</uri></include>')
+    included = '<include><uri>model://no</uri></include>'
+    world = load(broken + BOX.format('good', '0 0 0 0 0 0') + included)
     assert [model.name for model, _ in world.models] == ['good']
     assert len(world.faults) == 2
     assert 'mass 0 kg is not valid' in world.faults[0]
