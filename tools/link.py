@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Link this project's packages into a catkin workspace: `./rosbots link WORKSPACE`.
 
-A package of the user's wins. Where the workspace has one of the same name, ours is left out; so is
-our robot where a workspace below it, as sourced in the terminal, has a package of that name. A
-clone that lies in the source space itself is hidden from catkin then, by a file CATKIN_IGNORE.
+The user's packages have precedence. If the workspace has a package of the same name, ours is not
+linked; nor is our robot if an underlying workspace, sourced in the terminal, has a package of that
+name. A clone inside the source space is then hidden from catkin by a file CATKIN_IGNORE.
 """
 
 import os
@@ -20,14 +20,14 @@ HIDE = ROOT / 'CATKIN_IGNORE'
 
 
 def main() -> int:
-    """Link what lies in the first folder into the workspace, and say what was done."""
+    """Link the packages in the first folder into the workspace, and report it."""
     if len(sys.argv) != 3:
         return _complain('link takes one workspace, for example: ./rosbots link ~/catkin_ws')
     ours = {folder.name: folder for folder in sorted(Path(sys.argv[1]).absolute().iterdir())
             if (folder / 'package.xml').exists()}
     source = Path(sys.argv[2]).absolute() / 'src'
     if not source.is_dir():
-        return _complain(f'there is no folder {source}; a catkin workspace has its packages there')
+        return _complain(f'there is no folder {source}; give the root of a catkin workspace')
     theirs = _find_theirs(source, ours)
     if source.resolve() in ROOT.parents:
         _hide(ROBOT in theirs)

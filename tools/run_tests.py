@@ -2,8 +2,8 @@
 """Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
 
 Phases: lint (ruff, mypy, catkin_lint, launch files), unit (pytest, no ROS master), engine (pytest,
-physics without a window), rostest (each test/rostest/*.test on a master of its own). A phase
-without any test counts as failed, so nothing passes by being absent.
+PyBullet without a window), rostest (each test/rostest/*.test with its own master). A phase without
+any test counts as failed.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ def with_exit_code(count: Count, code: int) -> Count:
     return count
 
 
-def announce(phase: str, name: str, count: Count, seconds: float) -> None:
-    """Print one line about what has just run."""
+def print_result(phase: str, name: str, count: Count, seconds: float) -> None:
+    """Print one line with the result of a check."""
     verdict = 'FAILED' if count.failed else 'ok'
     skipped = f', {count.skipped} skipped' if count.skipped else ''
     print(f'{phase:8} {name:42} {verdict:6} {count.passed} passed, {count.failed} failed{skipped}'
@@ -80,7 +80,7 @@ def run_command(phase: str, name: str, command: list[str]) -> Count:
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, check=False)
     count = Count(failed=1) if done.returncode else Count(passed=1)
-    announce(phase, name, count, time.monotonic() - start)
+    print_result(phase, name, count, time.monotonic() - start)
     if done.returncode:
         print(done.stdout)
     return count
@@ -111,7 +111,7 @@ def run_pytest(phase: str, word: str, measure: tuple[str, ...] = ()) -> Count:
     code = subprocess.run([sys.executable, *measure, '-m', 'pytest', '-q', f'--junitxml={report}',
                            '-k', word, f'test/{phase}'], cwd=ROOT, check=False).returncode
     count = with_exit_code(count_report(report), code)
-    announce(phase, f'test/{phase}', count, time.monotonic() - start)
+    print_result(phase, f'test/{phase}', count, time.monotonic() - start)
     return count
 
 
@@ -153,7 +153,7 @@ def run_rostest(path: Path) -> Count:
                               check=False).returncode
     reports = results.rglob('rosunit-*.xml')
     count = with_exit_code(sum((count_report(report) for report in reports), Count()), code)
-    announce('rostest', path.name, count, time.monotonic() - start)
+    print_result('rostest', path.name, count, time.monotonic() - start)
     if count.failed:
         lines = log.read_text(errors='replace').splitlines()
         print('\n'.join(f'    {line}' for line in lines[-OUTPUT_LINES:]))

@@ -206,7 +206,7 @@ class EnvironmentsTest(unittest.TestCase):
         printed = done.stdout + done.stderr
         self.assertEqual(done.returncode, 0, printed)
         self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)
-        self.assertIn("this machine's name, nowhere, leads nowhere", printed)
+        self.assertIn('the hostname nowhere cannot be resolved', printed)
 
     def test_without_a_display_the_launch_file_gives_a_sentence_and_a_world(self):
         surroundings = {name: value for name, value in os.environ.items() if name != 'DISPLAY'}

@@ -95,7 +95,7 @@ class NetworkTest(SimulatorTest):
         self.unpause()
         stepping.join(5.0)
         self.assertFalse(responses[0].success)
-        self.assertIn('somebody unpaused', responses[0].status_message)
+        self.assertIn('was unpaused', responses[0].status_message)
 
     def test_the_same_steps_give_the_same_motion(self):
         step = proxy('step', Step)

@@ -131,7 +131,7 @@ class ProcessTest(unittest.TestCase):
         self.assertRegex(
             printed, rf'this simulator ends: process {second.pid} on .* taken over the name')
         wait_until(self._has_only_the_ground, 'the second server answering')
-        self.assertIn(f'takes the place of the node /gazebo, process {first.pid} on ',
+        self.assertIn(f'replaces the node /gazebo, process {first.pid} on ',
                       self._end(second))
 
     def test_a_server_begins_after_one_that_was_killed(self):

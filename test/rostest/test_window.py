@@ -24,7 +24,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 STEP = 40.0  # [s, wall] for a program to come up on a slow machine
-GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: there is a simulator again'
+GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: the simulator is running again'
 # Of itself RViz does so in one start of 28.
 CRASHED = 'gzclient: RViz crashed as it opened'
 

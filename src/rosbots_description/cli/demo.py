@@ -60,7 +60,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         _run(arguments.output)
     except KeyboardInterrupt:
-        print('\ndemo: interrupted; everything it had started has ended', file=sys.stderr)
+        print('\ndemo: interrupted; all its processes have ended', file=sys.stderr)
         return _INTERRUPTED
     except (DemoError, OSError) as error:
         print(f'demo: {error}', file=sys.stderr)

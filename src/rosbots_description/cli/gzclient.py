@@ -141,7 +141,7 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
         if code not in CRASHES or time.monotonic() - started > OPENS:
             break
         _say(f'RViz crashed as it opened ({signal.Signals(-code).name}); '
-             + ('it is started again' if left else f'no window after {STARTS} starts'))
+             + ('restarting it' if left else f'no window after {STARTS} starts'))
     return code if code >= 0 else 128 - code  # as shells tell of a signal
 
 
@@ -153,10 +153,10 @@ def _teller() -> Callable[[bool], None]:
 
     def tell(there: bool) -> None:
         if there:
-            _say('there is a simulator again')
+            _say('the simulator is running again')
             notice.withdraw()
         else:
-            _say(f'{NOTICE}; this window shows what it showed last')
+            _say(f'{NOTICE}; this window shows its last state')
             notice.show()
 
     return tell

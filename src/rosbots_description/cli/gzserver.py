@@ -30,35 +30,35 @@ def parser() -> argparse.ArgumentParser:
     )
     add = made.add_argument
     add('world', nargs='?', default=EMPTY_WORLD,
-        help='world file, by path or along GAZEBO_RESOURCE_PATH; our own are worlds/empty.world, '
+        help='world file, by path or along GAZEBO_RESOURCE_PATH; included are worlds/empty.world, '
              f'maze, room and shapes; default {EMPTY_WORLD}')
     add('-u', '--pause', action='store_true', help='start paused')
     add('-e', '--physics', metavar='ENGINE', default=ENGINE,
         help='accepted for compatibility; the engine is always PyBullet')
     add('--seed', type=int, metavar='NUMBER', default=0,
         help='of the noise of sensors; the same seed gives the same run, default 0')
-    add('--iters', type=_count, metavar='NUMBER', help='end after so many steps')
+    add('--iters', type=_count, metavar='NUMBER', help='exit after this number of steps')
     add('--verbose', action='store_true', help='log debug messages too')
     add('-r', '--record', action='store_true', help='not supported')
     for name in ('encoding', 'path', 'period', 'filter'):
         add(f'--record_{name}', metavar=name.upper(), help='not supported')
     add('--record_resources', action='store_true', help='not supported')
     add('-p', '--play', metavar='FILE', help='not supported')
-    add('-o', '--profile', metavar='NAME', help="accepted; the world's default physics counts")
-    add('--lockstep', action='store_true', help='accepted; steps and sensors always go together')
+    add('-o', '--profile', metavar='NAME', help="accepted; the world's default physics is used")
+    add('--lockstep', action='store_true', help='accepted; sensors are always in lockstep')
     add('-s', '--server-plugin', action='append', metavar='FILE', default=[],
         help='accepted; the plugins of gazebo_ros are built in')
-    add('--minimal_comms', action='store_true', help='accepted; there is little to save')
+    add('--minimal_comms', action='store_true', help='accepted; no effect')
     add('--replace', action='store_true',
-        help='ours: take the place of a simulator that runs on the same ROS master, which ends')
-    add('-v', '--version', action='version', version=_VERSION, help='say what this is, and end')
+        help='not in Gazebo: shut down and replace a simulator on the same ROS master')
+    add('-v', '--version', action='version', version=_VERSION, help='print the version and exit')
     return made
 
 
 def _count(text: str) -> int:
     number = int(text)
     if number < 0:
-        raise argparse.ArgumentTypeError(f'{text} steps cannot be made; give 0 or more')
+        raise argparse.ArgumentTypeError(f'{text} is negative; the number of steps is 0 or more')
     return number
 
 
@@ -119,8 +119,8 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
     if given.physics != ENGINE:
         found.append((
             logging.INFO,
-            f"physics engine '{given.physics}' is simulated by PyBullet, as every engine is here; "
-            'parameters are those of ode',
+            f"physics engine '{given.physics}' is not available; PyBullet is used, with the "
+            'parameters of ode',
         ))
     recording = (given.record_encoding, given.record_path, given.record_period,
                  given.record_filter, given.record_resources)
@@ -131,6 +131,6 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
     if given.profile:
         found.append((
             logging.WARNING,
-            f"--profile {given.profile} is not supported: the world's default physics counts",
+            f"--profile {given.profile} is not supported: the world's default physics is used",
         ))
     return tuple(found)

@@ -92,7 +92,7 @@ def test_rviz_that_crashes_as_it_opens_is_started_again(tmp_path, number, times)
     _, said = process.communicate(timeout=10.0)
     assert process.returncode == 0
     assert said.splitlines() == [
-        f'gzclient: RViz crashed as it opened (SIG{number}); it is started again'] * times
+        f'gzclient: RViz crashed as it opened (SIG{number}); restarting it'] * times
 
 
 def test_rviz_that_crashes_each_time_is_given_up(tmp_path):

@@ -1,4 +1,4 @@
-"""Which topics stand for which plugin; importing registers the adapters."""
+"""The topics of each plugin; importing registers the adapters."""
 
 from . import (  # noqa: F401
     cameras,

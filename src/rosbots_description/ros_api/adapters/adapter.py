@@ -1,4 +1,4 @@
-"""What joins one plugin to ROS, by the declarations of its class."""
+"""Connect one plugin to ROS, by the declarations of its class."""
 
 import logging
 import re
@@ -30,7 +30,9 @@ _TAG = re.compile('<([^<>]+)>')
 
 
 class Adapter:
-    """Opens and closes what is declared; making one raises `PluginError` if a name is none for ROS.
+    """Opens and closes the declared topics and services of a plugin.
+
+    The constructor raises `PluginError` if a name is not a valid ROS name.
 
     `open` and `close` talk to the ROS master, on the registrar's thread; `connect`, `refresh` and
     `disconnect` are called on the thread that owns the world.
@@ -43,7 +45,7 @@ class Adapter:
         self.plugin = plugin
         self._connected = False
         self._watch = ReaderWatch(lambda: server.loop.post(self.refresh))
-        self._opened: list[Callable[[], None]] = []  # what closes it
+        self._opened: list[Callable[[], None]] = []  # functions to call in `close`
         self.endpoints = [one.join(self) for one in declared]
 
     def open(self) -> None:
@@ -52,18 +54,18 @@ class Adapter:
             endpoint.open()
 
     def connect(self) -> None:
-        """Join the plugin's outputs to the topics that were opened, from now on."""
+        """Connect the plugin's outputs to the opened topics."""
         self._connected = True
         self.refresh()
 
     def refresh(self) -> None:
-        """Join those outputs to their topics that have readers there, and no others."""
+        """Connect the outputs whose topics have subscribers, and disconnect the others."""
         if self._connected:
             for endpoint in self.endpoints:
                 endpoint.refresh()
 
     def disconnect(self) -> None:
-        """Let the plugin's outputs go nowhere."""
+        """Disconnect the plugin's outputs."""
         self._connected = False
         for endpoint in self.endpoints:
             endpoint.disconnect()
@@ -74,22 +76,22 @@ class Adapter:
             close()
 
     def text(self, template: str) -> str:
-        """Return `template` with `<tag>` replaced by what the plugin has read as that tag."""
+        """Return `template` with `<tag>` replaced by the plugin's value of that tag."""
         return _TAG.sub(lambda tag: str(self.plugin.params.values[tag[1]]), template)
 
     @cached_property
     def tf_prefix(self) -> str:
-        """Return the parameter tf_prefix; asks the ROS master for it once."""
+        """The parameter tf_prefix, read from the ROS master once."""
         return find_tf_prefix(self.plugin.namespace)
 
     def frame(self, name: str) -> str:
-        """Return a frame as messages name it."""
+        """Return a frame name with the prefix, as used in messages."""
         return frame_name(self.tf_prefix, name)
 
     def advertise(
         self, topic: str, message_class: type[Message], queue_size: int, latch: bool = False
     ) -> rospy.Publisher | None:
-        """Publish on a topic from now on; None, with an error, if this node sends others there."""
+        """Advertise a topic; None, with an error, if this node publishes another type on it."""
         if not self._is_free(topic, message_class, published_types()):
             return None
         watch = self._watch
@@ -101,7 +103,7 @@ class Adapter:
     def subscribe(
         self, topic: str, message_class: type[Message], take: Callable, queue_size: int
     ) -> rospy.Subscriber | None:
-        """Take messages from now on; None, with an error, if this node takes others there."""
+        """Subscribe to a topic; None, with an error, if this node subscribes to another type."""
         if not self._is_free(topic, message_class, subscribed_types()):
             return None
         subscriber = rospy.Subscriber(topic, message_class, take, queue_size=queue_size)
@@ -109,25 +111,25 @@ class Adapter:
         return subscriber
 
     def on_close(self, close: Callable[[], None]) -> None:
-        """Call `close()` when the plugin goes."""
+        """Call `close()` when the plugin is unloaded."""
         self._opened.append(close)
 
     def _is_free(
         self, topic: str, message_class: type[Message], types: Mapping[str, str]
     ) -> bool:
-        """Tell whether `types` has the topic with no other type; rospy would mix the two."""
+        """Return whether `types` has no other type for the topic; rospy would mix the two."""
         if not is_for_all(topic):
-            logger.warning('%s: the topic %s is only for nodes in Python: - or a dot is in it',
+            logger.warning('%s: C++ nodes cannot use the topic %s: its name contains - or a dot',
                            where(self.plugin), topic)
         there = types.get(rospy.resolve_name(topic), message_class._type)
         if there != message_class._type:
             logger.error(
-                "%s: the topic %s is left out as %s: this node has it as %s; give it another name",
+                '%s: the topic %s is not opened as %s: this node uses it as %s; rename it',
                 where(self.plugin), topic, message_class._type, there,
             )
         return there == message_class._type
 
 
 def where(plugin: ModelPlugin) -> str:
-    """Name a plugin in a message."""
+    """Return the name of a plugin for messages."""
     return f"model '{plugin.model.name}', plugin '{plugin.spec.name}'"

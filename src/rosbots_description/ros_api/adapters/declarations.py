@@ -1,6 +1,6 @@
-"""What can be declared of a plugin's topics and services.
+"""Declarations of a plugin's topics and services.
 
-Names stand in the plugin's namespace, and `<tag>` in one stands for what was read as that tag.
+Names are relative to the plugin's namespace; `<tag>` in a name is replaced by the value of the tag.
 """
 
 import logging
@@ -20,7 +20,7 @@ from .adapter import Adapter
 
 logger = logging.getLogger(__name__)
 
-COMPLAINT_PERIOD = 5.0  # least time between two complaints about bad commands [s, wall]
+COMPLAINT_PERIOD = 5.0  # minimum time between two errors about invalid commands [s, wall]
 
 # Number of the header, time [ns] and reading -> the message as it goes over the wire.
 Pack = Callable[[int, int, Any], bytes]
@@ -30,10 +30,10 @@ class Declaration(Protocol):
     """One topic or service of all plugins of a class."""
 
     def join(self, adapter: Adapter) -> 'Endpoint':
-        """Return that of the adapter's plugin.
+        """Return the endpoint of the adapter's plugin.
 
         Raises:
-            PluginError: it cannot have its name.
+            PluginError: its name is invalid.
         """
 
 
@@ -50,31 +50,31 @@ class Endpoint:
         """Register it."""
 
     def refresh(self) -> None:
-        """Join the plugin's output to it as long as somebody reads there."""
+        """Connect the plugin's output while there are subscribers."""
 
     def disconnect(self) -> None:
-        """Let the plugin's output go nowhere."""
+        """Disconnect the plugin's output."""
 
     def log(self, text: str) -> None:
-        """Say at debug level what upstream says; {} stands for the name as it was written."""
+        """Log upstream's message at debug level; {} is replaced by the name as written."""
         if text:
             logger.debug('%s%s', self.adapter.plugin.log_prefix, text.format(self.text))
 
 
 @dataclass(frozen=True)
 class Publishes:
-    """The readings of an output become messages of a topic, while that has readers."""
+    """Publish the readings of an output on a topic, while it has subscribers."""
 
     output: str
     topic: str
     message: type[Message]
-    convert: Callable[[Any], Message] = lambda reading: reading  # makes a message of a reading
-    frame: str | None = None  # of the header, which is then filled in; it is a name, too
+    convert: Callable[[Any], Message] = lambda reading: reading  # reading -> message
+    frame: str | None = None  # if given, fill in the header; a name that may contain <tag>
     queue: int = 1
     latch: bool = False
-    pack: Callable[[Adapter], Pack] | None = None  # in place of `convert`, where it must be fast
-    always: bool = False  # there is the topic even if the description asks for no such output
-    log: str = ''  # what is said once it is advertised
+    pack: Callable[[Adapter], Pack] | None = None  # replaces `convert` where speed matters
+    always: bool = False  # advertise even if the description does not request the output
+    log: str = ''  # debug message after advertising
 
     def join(self, adapter: Adapter) -> 'PublishedTopic':
         """Return the topic of the adapter's plugin."""
@@ -82,7 +82,7 @@ class Publishes:
 
 
 class PublishedTopic(Endpoint):
-    """A topic that takes readings from an output, if the plugin has it."""
+    """A topic that publishes the readings of an output, if the plugin has it."""
 
     _pack: Pack | None = None
 
@@ -109,15 +109,15 @@ class PublishedTopic(Endpoint):
 
     @property
     def has_output(self) -> bool:
-        """Tell whether the description asks for the output."""
+        """Whether the description requests the output."""
         return self._output is not None
 
     def is_wanted(self) -> bool:
-        """Tell whether somebody reads it."""
+        """Return whether the topic has subscribers."""
         return has_readers(self.publisher)
 
     def refresh(self) -> None:
-        """Take readings as long as somebody reads."""
+        """Connect the output while there are subscribers."""
         output = self._output
         if output is None:
             return
@@ -129,7 +129,7 @@ class PublishedTopic(Endpoint):
         self._connected = wanted
 
     def disconnect(self) -> None:
-        """Take no readings any more."""
+        """Disconnect the output."""
         if self._output is not None and self._connected:
             self._output.disconnect(self.send)
         self._connected = False
@@ -149,16 +149,16 @@ class PublishedTopic(Endpoint):
 
 @dataclass(frozen=True)
 class Subscribes:
-    """The messages of a topic become calls of a method of the plugin, between two steps."""
+    """Call a method of the plugin for each message of a topic, between two steps."""
 
     topic: str
     message: type[Message]
     call: str  # the method
-    # Gives its arguments, or raises ValueError that tells why not.
+    # Returns the method's arguments; raises ValueError for an invalid message.
     read: Callable[[Message], tuple[Any, ...]]
     queue: int = 1
-    log_before: str = ''  # what is said before it is subscribed to
-    log: str = ''  # and afterwards
+    log_before: str = ''  # debug message before subscribing
+    log: str = ''  # debug message after subscribing
 
     def join(self, adapter: Adapter) -> 'SubscribedTopic':
         """Return the topic of the adapter's plugin."""
@@ -166,7 +166,7 @@ class Subscribes:
 
 
 class SubscribedTopic(Endpoint):
-    """A topic that commands a plugin; what cannot be read is dropped, and the last one stays."""
+    """A topic that commands a plugin; invalid messages are dropped and change nothing."""
 
     def __init__(self, adapter: Adapter, declared: Subscribes) -> None:
         super().__init__(adapter, declared.topic)
@@ -194,7 +194,7 @@ class SubscribedTopic(Endpoint):
 
 
 def finite(*fields: str) -> Callable[[Message], tuple[float, ...]]:
-    """Return what reads numbers of a message, such as 'linear.x', and wants them to be finite."""
+    """Return a function that reads finite numbers from a message, such as 'linear.x'."""
     getters = [attrgetter(field) for field in fields]
 
     def read(message: Message) -> tuple[float, ...]:
@@ -202,7 +202,7 @@ def finite(*fields: str) -> Callable[[Message], tuple[float, ...]]:
         bad = [f'{field} {number}' for field, number in zip(fields, numbers, strict=True)
                if not math.isfinite(number)]
         if bad:
-            raise ValueError(f'{" and ".join(bad)}; it takes finite numbers')
+            raise ValueError(f'{" and ".join(bad)}; numbers must be finite')
         return numbers
 
     return read
@@ -210,18 +210,18 @@ def finite(*fields: str) -> Callable[[Message], tuple[float, ...]]:
 
 @dataclass(frozen=True)
 class Offers:
-    """Something else of ROS that lives as long as the plugin, such as a service."""
+    """Another ROS interface with the lifetime of the plugin, such as a service."""
 
     name: str
-    make: Callable[[Adapter, str], Callable[[], None]]  # offers it, and returns what ends that
+    make: Callable[[Adapter, str], Callable[[], None]]  # opens it, returns a function to close it
 
     def join(self, adapter: Adapter) -> 'Offered':
-        """Return that of the adapter's plugin."""
+        """Return the endpoint of the adapter's plugin."""
         return Offered(adapter, self)
 
 
 class Offered(Endpoint):
-    """What is offered."""
+    """An interface that was declared by `Offers`."""
 
     def __init__(self, adapter: Adapter, declared: Offers) -> None:
         super().__init__(adapter, declared.name)

@@ -1,11 +1,11 @@
 """The topics of drives.
 
 Subscribes:
-    <ns>/<commandTopic> (geometry_msgs/Twist): what the drive follows; the last counts.
+    <ns>/<commandTopic> (geometry_msgs/Twist): velocity command; it holds until the next one.
 Publishes:
     <ns>/<odometryTopic> (nav_msgs/Odometry), if the plugin sends odometry.
     /tf (tf2_msgs/TFMessage): odometry frame to base frame, if the plugin sends it. Beside a
-        robot_state_publisher: odometry frame to the root of what that holds together.
+        robot_state_publisher: odometry frame to the root of its static tree.
         diff_drive and tricycle_drive: the wheels too, if publishWheelTF.
     <ns>/joint_states (sensor_msgs/JointState): diff_drive (right, left) and tricycle_drive (with
         velocities and efforts), if publishWheelJointState.
@@ -94,7 +94,7 @@ class WheelFrames(Publishes):
 class WheelFramesTopic(PublishedTopic):
     """A topic that is not for robots beside a robot_state_publisher.
 
-    That is a node which reads our joint states and holds frames still.
+    That is a node that subscribes to our joint states and publishes static transforms.
     """
 
     def is_wanted(self) -> bool:

@@ -1,9 +1,9 @@
-"""The topics of plugins that push.
+"""The topics of plugins that apply forces.
 
 Subscribes:
-    <ns>/<topicName> (geometry_msgs/Wrench): what force pushes with; the last counts.
-    /tf, /tf_static (tf2_msgs/TFMessage): hand_of_god follows <frameId>_desired in world, by what
-        was heard last of each frame between the two.
+    <ns>/<topicName> (geometry_msgs/Wrench): the wrench of force; it acts until the next one.
+    /tf, /tf_static (tf2_msgs/TFMessage): hand_of_god follows <frameId>_desired in world, by the
+        latest transform of each frame in between.
 Publishes:
     /tf (tf2_msgs/TFMessage): hand_of_god, world to <frameId>_actual in each step once it follows.
 """

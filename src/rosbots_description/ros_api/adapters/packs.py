@@ -1,4 +1,4 @@
-"""Readings that are sent often, laid out by hand: `Publishes` takes these as `pack`."""
+"""Serializers of readings that are published often: `pack` of `Publishes`."""
 
 import logging
 from typing import Any
@@ -62,9 +62,10 @@ class RootedTransformPack(TransformPack):
         if self._told != moved.child:
             self._told = moved.child
             logger.debug(
-                '%sanother node holds %s still in %s, so %s -> %s is published in place of %s -> '
-                '%s: TF keeps one parent for each frame', self.adapter.plugin.log_prefix,
-                edge.child, moved.child, moved.parent, moved.child, edge.parent, edge.child,
+                '%sanother node publishes a static transform to %s from %s, so %s -> %s is '
+                'published instead of %s -> %s: a TF frame has one parent',
+                self.adapter.plugin.log_prefix, edge.child, moved.child, moved.parent, moved.child,
+                edge.parent, edge.child,
             )
 
 

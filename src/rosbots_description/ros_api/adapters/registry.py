@@ -15,11 +15,11 @@ from .declarations import Declaration
 
 logger = logging.getLogger(__name__)
 
-# rospy prints so on standard error; we log it, where everything else about a model stands.
+# rospy prints this on standard error; it is logged with the model's other messages instead.
 warnings.filterwarnings('ignore', '.* is not a legal ROS graph resource name', UserWarning)
 
-# Least time between topics that come and topics that go, or go and come [s, wall]. A rospy
-# subscriber that is still connecting when a topic goes misses the next publisher for good.
+# Minimum time between opening and closing topics, and vice versa [s, wall]. A rospy subscriber that
+# is still connecting when a topic is closed never connects to the next publisher.
 SETTLING = 0.15
 
 _TOPICS: dict[type[ModelPlugin], tuple[Declaration, ...]] = {}
@@ -56,7 +56,7 @@ class Adapters:
             try:
                 made = Adapter(self._server, plugin, topics_of(type(plugin)))
             except PluginError as error:
-                logger.error('%s: %s; the model lives on without its topics', where(plugin), error)
+                logger.error('%s: %s; the plugin has no topics', where(plugin), error)
                 continue
             self._open[plugin] = made
             self._server.registrar.post(partial(self._change, 'come', made.open))

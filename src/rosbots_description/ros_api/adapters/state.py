@@ -1,4 +1,4 @@
-"""The topics of plugins that tell or set states.
+"""The topics of plugins that publish or set states.
 
 Subscribes:
     <ns>/<topicName> (trajectory_msgs/JointTrajectory): what joint_pose_trajectory plays.
@@ -43,7 +43,7 @@ def read_trajectory(message: JointTrajectory) -> tuple[Any, ...]:
     for index, point in enumerate(message.points):
         bad = [position for position in point.positions if not math.isfinite(position)]
         if bad:
-            raise ValueError(f'positions of point {index} {bad[0]}; it takes finite numbers')
+            raise ValueError(f'positions of point {index} {bad[0]}; numbers must be finite')
         points.append((point.positions, point.time_from_start.to_nsec()))
     header = message.header
     return header.frame_id, header.stamp.to_nsec(), message.joint_names, points

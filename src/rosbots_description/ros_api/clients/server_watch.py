@@ -1,8 +1,8 @@
-"""Whether the simulator is still there, told to who looks at its window.
+"""Watch the simulator from its window, and show a notice when it is gone.
 
 Publishes:
     gazebo/view/markers (visualization_msgs/MarkerArray, latched): the notice, once the simulator
-        has gone; one that comes again clears the scene and shows its own.
+        is gone; a new simulator clears the scene and shows its own markers.
 """
 
 import socket

@@ -1,4 +1,4 @@
-"""Plain values to messages and back."""
+"""Conversion between plain values and messages."""
 
 from .conversions import (
     fill_pose,

@@ -1,8 +1,8 @@
-"""Messages of which only numbers change, as they go over the wire.
+"""Serialization of messages in which only the numbers change.
 
-Most of such a message is the same each time, so that writing it all again, as genpy does, costs
-several times what the numbers cost. On the wire a message is its size and its fields in order;
-numbers are little-endian, and a text or a list stands behind its length.
+Serializing the constant parts each time, as genpy does, takes several times as long as the numbers
+alone. A serialized message is its size followed by its fields in order; numbers are little-endian,
+strings and lists are preceded by their length.
 """
 
 import struct

@@ -1,4 +1,4 @@
-"""Turns away numbers that no world can have, with the field that holds them."""
+"""Reject numbers that are not finite, with the name of their field."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The node /gazebo: a world, the loop that owns it, and everything that connects it to ROS.
+"""The node /gazebo: a world, the loop that owns it, and its ROS interface.
 
 Parameters:
     ~enable_ros_network (bool, true): false leaves only /clock, the time parameter and plugins.
@@ -6,7 +6,7 @@ Parameters:
     ~extensions (bool, true): false leaves out all topics and services that Gazebo does not have.
     ~strict (bool, false): true brings back flaws of Gazebo that a client may rely on.
     ~pub_clock_frequency (int, 0) [Hz]: how often /clock is published; 0: at every step.
-    /use_sim_time is set to true if nobody has set it.
+    /use_sim_time (bool): set to true if it is not set.
 """
 
 import gc
@@ -57,45 +57,45 @@ from .world_loading import fill_world, held_records, read_world, replay
 logger = logging.getLogger(__name__)
 
 NAME = 'gazebo'
-LAST_ANSWERS = 1.0  # how long requests are answered after the last step [s, wall]
-MASTER_PERIOD = 0.5  # time between two looks for a master [s, wall]
-REMINDER = 10.0  # time between two warnings that there is none [s, wall]
-# A callback thread that computes may keep the loop waiting for this long [s]; Python's own 5 ms
+LAST_ANSWERS = 1.0  # time to finish pending requests after the last step [s, wall]
+MASTER_PERIOD = 0.5  # period of looking for a master [s, wall]
+REMINDER = 10.0  # period of the warning that there is none [s, wall]
+# The longest time a computing callback thread can block the loop [s]; Python's default of 5 ms
 # would be five steps.
 SWITCH_INTERVAL = 0.0005
 
 
 @dataclass(frozen=True)
 class Options:
-    """What the command line says about a run."""
+    """The options of a run, from the command line."""
 
-    world: str  # its file, by path or as it is called along the search path
+    world: str  # its file: a path, or a name on the search path
     paused: bool = False
-    steps: int | None = None  # make so many, then end; None: until told to stop
-    remarks: tuple[tuple[int, str], ...] = ()  # what to log at start: level and text
+    steps: int | None = None  # number of steps to make; None: until stopped
+    remarks: tuple[tuple[int, str], ...] = ()  # messages to log at start: level and text
     verbose: bool = False  # log debug messages too
-    replace: bool = False  # end the simulator that has this one's name
+    replace: bool = False  # shut down a simulator with the same node name
     seed: int = 0  # of the noise of sensors
 
 
 def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
-    """Be the node until it is told to stop; return the exit code.
+    """Run the node until it is stopped; return the exit code.
 
     Args:
         options: what to simulate and how.
-        ros_arguments: name remappings and parameters as ROS writes them, e.g. `__name:=gazebo`.
+        ros_arguments: ROS name remappings and parameters, e.g. `__name:=gazebo`.
 
     Raises:
-        SimError: the world cannot be read, there can be no master, or a simulator runs on it, and
-            nothing has been done; or a model of the world cannot be brought in, and the node has
-            been shut down again.
+        SimError: the world cannot be read, the address of the master is invalid, or a simulator is
+            already running on it, and no node was started; or the world cannot be populated, and
+            the node was shut down again.
 
     """
     _on_signals(signal.default_int_handler)
     with held_records() as records:
         spec = read_world(options.world)
     try:
-        # The sandbox is a copy of this process before there are threads and connections.
+        # The sandbox forks this process before it has threads and connections.
         with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
             _wait_for_master()
             _take_name(node_name(NAME, ros_arguments), options.replace)
@@ -135,14 +135,14 @@ def _simulate(
     world.paused, world.seed = options.paused, options.seed
     _connect(server, spec)
     watch_master(server.registrar, server.parameters)
-    gc.freeze()  # else each full collection looks at all modules, for tens of steps
-    gc.collect()  # else the next waits until a quarter of all those objects has come anew
+    gc.freeze()  # otherwise each full collection scans all modules, which takes tens of steps
+    gc.collect()  # otherwise the next one waits until the number of objects has grown by a quarter
     loop.run(options.steps)
     wait_for_answers(LAST_ANSWERS)
 
 
 def _connect(server: Server, spec: WorldSpec) -> None:
-    """Offer everything, in the order in which Gazebo does."""
+    """Advertise all topics and services, in Gazebo's order."""
     networked = rospy.get_param('~enable_ros_network', True)
     extensions = networked and rospy.get_param('~extensions', True)
     server.world.strict = rospy.get_param('~strict', False)
@@ -175,17 +175,17 @@ def _use_simulated_time() -> None:
 
 
 def _advertise_reconfigure(server: Server) -> None:
-    """Offer dynamic_reconfigure last; loading its library must not keep the world waiting."""
+    """Advertise dynamic_reconfigure last; importing its library must not block the world."""
     from ..reconfigure.physics import advertise_reconfigure
 
     advertise_reconfigure(server)
 
 
 def _wait_for_master() -> None:
-    """Wait for a ROS master, complaining as Gazebo does; nothing of ROS's logging works yet.
+    """Wait for a ROS master, with Gazebo's warning; ROS logging does not work yet.
 
     Raises:
-        SimError: there can be none at the address that is given.
+        SimError: ROS_MASTER_URI is invalid.
     """
     require_address()
     reminder = time.monotonic()
@@ -197,20 +197,20 @@ def _wait_for_master() -> None:
 
 
 def _take_name(name: str, replace: bool) -> None:
-    """See to it that no simulator loses its name by accident.
+    """Make sure that no running simulator is shut down by accident.
 
     Raises:
-        SimError: one has that name, and it is not to be replaced.
+        SimError: a running node has that name, and `replace` is false.
     """
     if not replace:
         require_free(name)
     elif other := holder(name):
-        _warn(f'this simulator takes the place of the node {name}, {other}')
+        _warn(f'this simulator replaces the node {name}, {other}')
 
 
 def _end(loop: Loop) -> None:
-    """Stop the loop since the node shuts down; say so if another simulator has its name."""
-    if not loop.stopping:  # told by the master or by rosnode kill
+    """Stop the loop at node shutdown; warn if another simulator has taken the name."""
+    if not loop.stopping:  # shut down by the master or by rosnode kill
         name = rospy.get_name()
         if other := successor(name, rospy.get_node_uri()):
             leave_rosout()

@@ -17,11 +17,10 @@ _MANIFESTS = ('manifest.xml', 'package.xml')  # of a package; the first one ther
 def find_package(name: str) -> str | None:
     """Return the directory of the ROS package `name` on ROS_PACKAGE_PATH, or None.
 
-    Looking through the whole path takes a while, so it is done once, and again for a package that
-    was not there yet.
+    Crawling the whole path is slow, so it is done once, and again for an unknown package.
 
     Raises:
-        NotFoundError: a manifest on the path is no XML, so that no package can be looked up.
+        NotFoundError: a manifest on the path is not XML, so that no package can be looked up.
     """
     try:
         return _packages().get_path(name)
@@ -40,17 +39,17 @@ def _packages() -> rospkg.RosPack:
         packages.list()  # looks through the whole path
     except (ElementTree.ParseError, AttributeError) as error:  # the latter: it has no <name>
         raise NotFoundError(
-            f'no ROS package can be looked up, as a package.xml along ROS_PACKAGE_PATH is broken '
-            f'({error}); mend it, or put a file CATKIN_IGNORE beside it'
+            f'no ROS package can be looked up because a package.xml on ROS_PACKAGE_PATH is broken '
+            f'({error}); fix it, or put a file CATKIN_IGNORE beside it'
         ) from error
     return packages
 
 
 @cache
 def exported_directories(attribute: str) -> tuple[str, ...]:
-    """Return what packages export by <gazebo_ros ATTRIBUTE="..."/>, e.g. gazebo_model_path.
+    """Return the paths exported by <gazebo_ros ATTRIBUTE="..."/>, e.g. gazebo_model_path.
 
-    Looking at every manifest takes a while, so it is done once, when first needed.
+    Reading every manifest is slow, so it is done once, when first needed.
     """
     packages, found = _packages(), []
     for name in packages.list():
@@ -63,13 +62,13 @@ def exported_directories(attribute: str) -> tuple[str, ...]:
 def _exports(package: str, attribute: str) -> list[str]:
     """Return the values that a package's manifest exports under `attribute`.
 
-    Whatever else is wrong with it, such as an address that is none, is the business of who builds
-    the package: rospack, which Gazebo asks, does not look there either.
+    Other errors in the manifest, such as an invalid address, are ignored, as rospack does, which
+    Gazebo uses.
     """
     for name in _MANIFESTS:
         with contextlib.suppress(OSError):
             text = Path(package, name).read_bytes()
-            if attribute.encode() not in text:  # takes far less than to parse it
+            if attribute.encode() not in text:  # much faster than parsing
                 return []
             with contextlib.suppress(ElementTree.ParseError):
                 exports = ElementTree.fromstring(text).iterfind('export/gazebo_ros')
@@ -78,8 +77,8 @@ def _exports(package: str, attribute: str) -> list[str]:
     return []
 
 
-# Where model:// leads: along GAZEBO_MODEL_PATH, the packages' paths and, as in Gazebo, into the
-# folder where users keep models.
+# model:// is looked up along GAZEBO_MODEL_PATH, the packages' exported paths and, as in Gazebo,
+# in the user's model folder.
 find_model = ModelSearch([
     lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
     lambda: exported_directories('gazebo_model_path'),

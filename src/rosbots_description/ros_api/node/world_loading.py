@@ -1,4 +1,4 @@
-"""From the name of a world, as people write it behind `world_name:=`, to a world that is full."""
+"""Find the world file named by `world_name:=`, read it and populate the world."""
 
 import logging
 import os
@@ -20,23 +20,23 @@ _LIBRARY = __name__.partition('.')[0]
 def read_world(name: str) -> WorldSpec:
     """Find and read a world file; needs neither a ROS master nor a node.
 
-    The name is a path, or stands along GAZEBO_RESOURCE_PATH, among our own worlds, or along what
-    packages export as gazebo_media_path, in this order.
+    The name is a path, absolute or relative to GAZEBO_RESOURCE_PATH, to the included worlds or to a
+    gazebo_media_path that a package exports, in this order.
 
     Raises:
-        SimError: there is no such file, or it holds no world; one sentence says what and where.
+        SimError: there is no such file, or it contains no world.
     """
     return open_world(_find(name), find_model=find_model, find_package=find_package)
 
 
 def fill_world(world: World, spec: WorldSpec) -> None:
-    """Put the models and lights of a world that was read into one that is empty."""
+    """Add the models and lights of `spec` to an empty world."""
     populate(world, spec)
     world.lights.update({light.name: light for light in spec.lights})
 
 
 def own_worlds() -> list[str]:
-    """Return how the worlds that come with the simulator are called, e.g. 'worlds/empty.world'."""
+    """Return the names of the included worlds, e.g. 'worlds/empty.world'."""
     return [f'worlds/{path.name}' for path in sorted(_OWN.glob('worlds/*.world'))]
 
 
@@ -57,7 +57,7 @@ def held_records() -> Iterator[list[logging.LogRecord]]:
 
 
 def replay(records: list[logging.LogRecord]) -> None:
-    """Log what was held, at the levels that are shown now."""
+    """Log the held records, at the levels that are enabled now."""
     for record in records:
         logger = logging.getLogger(record.name)
         if logger.isEnabledFor(record.levelno):
@@ -80,12 +80,12 @@ def _find(name: str) -> Path:
     try:
         return find_world(name, _places())
     except NotFoundError as error:
-        raise NotFoundError(f'{error}; always there are: {", ".join(own_worlds())}') from None
+        raise NotFoundError(f'{error}; included worlds: {", ".join(own_worlds())}') from None
 
 
 def _places() -> Iterator[str]:
     places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_OWN)]
     yield from places
-    for path in exported_directories('gazebo_media_path'):  # what takes long comes last
+    for path in exported_directories('gazebo_media_path'):  # slow, so it comes last
         if path not in places:
             yield path

@@ -1,6 +1,6 @@
-"""Settings by dynamic_reconfigure. Its library takes long to load.
+"""Settings by dynamic_reconfigure, whose library is slow to import.
 
-Each module is imported where it is needed.
+So each module is imported only where it is needed.
 """
 
 __all__ = ['camera', 'physics', 'wheel_slip']

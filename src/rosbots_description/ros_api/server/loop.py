@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 DEADLINE = 60.0  # how long a caller waits for its command [s, wall]
-BATCH = 0.005  # longest time without a look at the queue [s, wall]
-BACKLOG = 0.0005  # steps that interest nobody may be put off until they take this long [s, wall]
+BATCH = 0.005  # the queue is checked at least this often [s, wall]
+BACKLOG = 0.0005  # steps without due hooks are deferred up to this amount of work [s, wall]
 _CLOSING = 'the simulator is shutting down'
-MAX_LAG = 0.2  # steps that are later than this are not made up for [s, wall]
+MAX_LAG = 0.2  # if the loop is later than this, it does not catch up [s, wall]
 
 
 Result = TypeVar('Result')
@@ -36,9 +36,9 @@ class LoopError(SimError):
 class Loop:
     """Runs a World on the thread that calls `run`; other threads hand it commands.
 
-    While the world is paused no step is made, and commands are still served. Steps that interest
-    nobody are made later, in one go, but before the next command or task: nobody sees a world that
-    is behind.
+    While the world is paused no steps are made, but commands are served. Steps without due hooks
+    are deferred and made in one call, at the latest before the next command or task, so that no
+    caller sees a world that lags behind.
     """
 
     def __init__(
@@ -46,10 +46,10 @@ class Loop:
         world: 'World',
         batch: Callable[[], AbstractContextManager] = contextlib.nullcontext,
     ) -> None:
-        """Own nothing yet; see `run`.
+        """Create the loop; `run` starts it.
 
         Args:
-            batch: makes what surrounds every run of steps that go together.
+            batch: makes a context manager that is entered around each batch of steps.
         """
         self._world = world
         self._batch = batch
@@ -60,7 +60,7 @@ class Loop:
         self._owner: int | None = None
         self._next_step = 0.0  # when the next step is due [s, monotonic]
         self._step_cost = 0.0  # smoothed wall time of one step [s]
-        self._left: int | None = None  # steps still to be made; None: no end
+        self._left: int | None = None  # steps still to make; None: no limit
 
     def call(self, command: Callable[[], Result], deadline: float = DEADLINE) -> Result:
         """Carry out `command()` between two steps and return its result, or raise its exception.
@@ -83,19 +83,19 @@ class Loop:
         except CancelledError:
             raise LoopError(_CLOSING) from None
         except TimeoutError:
-            state = 'was not begun' if future.cancel() else 'is still not finished'
+            state = 'was not started' if future.cancel() else 'is not finished'
             raise LoopError(
                 f'the simulator was busy for {deadline:g} s and the request {state}; '
-                'try again, or see whether a model is too heavy to simulate'
+                'try again, or check whether a model is too expensive to simulate'
             ) from None
 
     def beside(self, work: Callable[[], Result]) -> Result:
-        """Return `work()`, or raise its exception; it has a thread of its own, beside the steps.
+        """Return `work()`, or raise its exception; it runs on a new thread, parallel to the steps.
 
-        The caller's context variables are there, too.
+        The work runs in the caller's context (contextvars).
 
         Raises:
-            LoopError: the simulator is shutting down; nobody waits for the work any more.
+            LoopError: the simulator is shutting down; the result of the work is discarded.
 
         """
         future: Future[Result] = Future()
@@ -117,11 +117,11 @@ class Loop:
 
     @property
     def stopping(self) -> bool:
-        """Tell whether `run` was told to return, or has returned."""
+        """Whether `stop` was called, or `run` has returned."""
         return self._stopping
 
     def stop(self) -> None:
-        """Let `run` return after the step in hand; safe in signal handlers."""
+        """Make `run` return after the current step; safe in signal handlers."""
         self._stopping = True
         self._commands.put(_nothing)
 
@@ -147,7 +147,7 @@ class Loop:
 
     def _do(self, command: Callable[[], None]) -> None:
         if self._world.paused:
-            self._next_step = time.monotonic()  # no pause is made up for, however short
+            self._next_step = time.monotonic()  # do not catch up for a pause, however short
         _guard(command)
 
     def _run_tasks(self) -> None:
@@ -156,7 +156,7 @@ class Loop:
             if now >= task.next_run:
                 _guard(task.run)
                 task.next_run += task.period
-                if task.next_run <= now:  # more than a period late: what was missed is left out
+                if task.next_run <= now:  # more than a period late: skip the missed runs
                     task.next_run = now + task.period
 
     def _advance(self) -> None:
@@ -169,7 +169,7 @@ class Loop:
         if rate > 0.0:
             if now - self._next_step > MAX_LAG:
                 self._next_step = now
-            # After a change of rate the next step may stand far ahead.
+            # After a change of rate the next step may be far in the future.
             self._next_step = min(self._next_step, now + 1.0 / rate)
             if now < self._next_step:
                 return
@@ -214,7 +214,7 @@ class Loop:
 
 
 class _Task:
-    """Something that is done every `period` [s, wall]."""
+    """A function that runs every `period` [s, wall]."""
 
     def __init__(self, period: float, run: Callable[[], None]) -> None:
         self.period = period
@@ -223,25 +223,25 @@ class _Task:
 
 
 def _carry_out(future: Future[Result], command: Callable[[], Result]) -> None:
-    """Run `command` unless its caller has given up, and hand the outcome over."""
+    """Run `command` unless its caller has given up, and set the result of the future."""
     if not future.set_running_or_notify_cancel():
         return
     try:
         result = command()
-    except Exception as error:  # every fault of a command belongs to its caller
+    except Exception as error:  # every exception of a command goes to its caller
         future.set_exception(error)
     else:
         future.set_result(result)
 
 
 def _guard(run: Callable[[], None]) -> None:
-    """Run something nobody waits for; a fault in it is logged and must not end the simulation."""
+    """Run a function without a waiting caller; log its errors, so that the simulation continues."""
     try:
         run()
     except SimError as error:
         logger.error('%s', error)
     except Exception:
-        logger.exception('internal fault; the simulation goes on')
+        logger.exception('internal error; the simulation goes on')
 
 
 def _nothing() -> None:

@@ -1,4 +1,4 @@
-"""What services, topics and adapters work with."""
+"""The state that services, topics and adapters share."""
 
 import threading
 from collections import Counter
@@ -30,6 +30,6 @@ class Server:
     stepping: threading.Lock = field(default_factory=threading.Lock)  # one caller of step at a time
 
     def physics_changed(self) -> None:
-        """Tell those who show the physics settings that a service has changed them."""
+        """Notify the listeners that a service has changed the physics settings."""
         for listener in self.physics_listeners:
             listener()

@@ -1,10 +1,10 @@
-"""The frames that other nodes hold still, so that the simulator gives no frame a second parent.
+"""The static transforms of other nodes, so that the simulator gives no frame a second parent.
 
-By the article's numbers the simulator publishes odom -> base_link and base_footprint -> wheels. A
-robot_state_publisher beside it holds base_footprint -> base_link still and turns the wheels. TF
-keeps one parent for each frame, so the robot falls apart, and every listener complains about each
-wheel (TF_REPEATED_DATA; TF_OLD_DATA if that node follows the wall clock). So we move what the other
-node holds together as a whole, and leave the wheels to it.
+With the tutorial's parameters the simulator publishes odom -> base_link and base_footprint ->
+wheels. A robot_state_publisher publishes base_footprint -> base_link as a static transform, and the
+wheels. TF keeps one parent per frame, so the robot falls apart, and every listener prints warnings
+for each wheel (TF_REPEATED_DATA; TF_OLD_DATA if that node uses the wall clock). So the simulator
+publishes the transform to the root of the static tree, and leaves the wheels to the other node.
 
 Subscribes:
     /tf_static (tf2_msgs/TFMessage).
@@ -23,16 +23,16 @@ from ..transport import publisher_names, sender_of
 from .loop import Loop
 
 STATIC_TOPIC = '/tf_static'
-PERIOD = 0.5  # time between two looks whether who published is still there [s, wall]
+PERIOD = 0.5  # how often it is checked which publishers still exist [s, wall]
 
-Parents = Mapping[str, tuple[str, Pose]]  # by frame: its parent, and where it stands in that
+Parents = Mapping[str, tuple[str, Pose]]  # by frame: its parent, and its pose in the parent
 
 
 class StaticFrames:
-    """What other nodes publish on /tf_static; any thread may read it.
+    """The static transforms of other nodes on /tf_static; any thread may read them.
 
-    `parents` and `nodes` are replaced and never changed: what was read stays true to itself.
-    `listeners` are called when they were, on the thread that owns the world.
+    `parents` and `nodes` are replaced and never modified, so a reader has a consistent copy.
+    `listeners` are called after each replacement, on the thread that owns the world.
     """
 
     def __init__(self) -> None:
@@ -40,10 +40,10 @@ class StaticFrames:
         self._watching = False
         self.listeners: list[Callable[[], None]] = []
         self.parents: Parents = {}
-        self.nodes: frozenset[str] = frozenset()  # names of those that publish here
+        self.nodes: frozenset[str] = frozenset()  # names of the publishing nodes
 
     def watch(self, loop: Loop) -> None:
-        """Listen from now on."""
+        """Subscribe to /tf_static."""
         self._watching = True
         subscriber = rospy.Subscriber(
             STATIC_TOPIC, TFMessage, lambda message: loop.post(lambda: self._take(message))
@@ -59,7 +59,7 @@ class StaticFrames:
         self.add(sender_of(message), message)
 
     def add(self, node: str, message: TFMessage) -> None:
-        """Note what a node holds still; what is no pose is left out, as TF leaves it out."""
+        """Store the transforms of a node; invalid ones are ignored, as in TF."""
         held = dict(self._by_node.get(node, ()))
         for transform in message.transforms:
             try:
@@ -72,9 +72,9 @@ class StaticFrames:
         self._merge()
 
     def expect(self, nodes: set[str]) -> None:
-        """Count on nodes from which nothing has come yet, though the master knows of them.
+        """Add nodes that are registered as publishers, though no message of theirs has arrived.
 
-        Nobody counts as long as nothing is listened to.
+        No effect before `watch`.
         """
         if self._watching:
             for node in nodes:
@@ -82,7 +82,7 @@ class StaticFrames:
             self._merge()
 
     def keep(self, nodes: set[str]) -> None:
-        """Forget what was published by any other node than these: it has gone."""
+        """Remove the transforms of all nodes but these; the others are gone."""
         gone = self._by_node.keys() - nodes
         if gone:
             for node in gone:
@@ -99,9 +99,9 @@ class StaticFrames:
 
 
 def from_root(edge: FrameTransform, parents: Parents) -> FrameTransform:
-    """Return the edge that moves the whole tree in which others hold the child of `edge` still.
+    """Return the transform from the parent of `edge` to the root of its child's static tree.
 
-    It is `edge` itself where nobody does, or where they hold it in its parent already.
+    It is `edge` itself if its child has no static parent, or if that is the parent of `edge`.
     """
     parent, root, pose = edge
     if root not in parents:

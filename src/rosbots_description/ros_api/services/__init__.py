@@ -1,4 +1,4 @@
-"""The services of the node, grouped by what they are about; importing registers them."""
+"""The services of the node, grouped by subject; importing registers them."""
 
 from . import (  # noqa: F401
     joints,

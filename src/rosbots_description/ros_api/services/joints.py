@@ -1,4 +1,4 @@
-"""Services about joints: their state, their limits, and pushes on them."""
+"""Services about joints: their state, their limits, and external efforts."""
 
 import contextlib
 from dataclasses import replace
@@ -26,14 +26,14 @@ from ..messages import RequestError, require_finite
 from ..server import Server
 from .registry import refuse, service
 
-_ENDLESS = 1e16  # a limit of this size means none, as in SDF [rad or m]
+_UNLIMITED = 1e16  # a limit of at least this magnitude means none, as in SDF [rad or m]
 
 
 @service('get_joint_properties', GetJointProperties)
 def get_joint_properties(
     server: Server, request: GetJointPropertiesRequest
 ) -> GetJointPropertiesResponse:
-    """Tell position [rad or m] and rate; type and damping stay empty, as in Gazebo."""
+    """Return position [rad or m] and rate; type and damping stay empty, as in Gazebo."""
     response = GetJointPropertiesResponse()
     joint = server.world.find_joint(request.joint_name)
     if joint is None and not _is_fixed(server.world, request.joint_name):
@@ -48,9 +48,9 @@ def get_joint_properties(
 def set_joint_properties(
     server: Server, request: SetJointPropertiesRequest
 ) -> SetJointPropertiesResponse:
-    """Change limits, damping and motor of a joint; what an empty array stands for stays.
+    """Change limits, damping and motor of a joint; an empty array changes nothing.
 
-    Of the other fields, which belong to ODE's solver, nothing has a counterpart here.
+    The other fields are parameters of ODE's solver and have no counterpart here.
     """
     require_finite(request)
     joint = server.world.find_joint(request.joint_name)
@@ -65,7 +65,7 @@ def set_joint_properties(
 def apply_joint_effort(
     server: Server, request: ApplyJointEffortRequest
 ) -> ApplyJointEffortResponse:
-    """Push a joint [N m or N] from `start_time`, for `duration`; negative: for ever."""
+    """Apply an effort [N m or N] from `start_time`, for `duration`; negative: without end."""
     require_finite(request)
     joint = server.world.find_joint(request.joint_name)
     if joint is not None:
@@ -78,7 +78,7 @@ def apply_joint_effort(
 
 @service('clear_joint_forces', JointRequest)
 def clear_joint_forces(server: Server, request: JointRequestRequest) -> JointRequestResponse:
-    """End all pushes on joints of that plain name, in all models."""
+    """Remove all efforts on joints of that unscoped name, in all models."""
     server.world.external_forces.cancel(
         lambda target: isinstance(target, Joint) and target.name == request.joint_name
     )
@@ -86,7 +86,7 @@ def clear_joint_forces(server: Server, request: JointRequestRequest) -> JointReq
 
 
 def _is_fixed(world: World, name: str) -> bool:
-    """Tell whether a model has a joint of that plain or scoped name that cannot move."""
+    """Return whether a model has a fixed joint of that plain or scoped name."""
     return any(
         name in (joint.name, f'{model.name}::{joint.name}')
         for model in world.models.values()
@@ -96,7 +96,7 @@ def _is_fixed(world: World, name: str) -> bool:
 
 
 def _change(joint: Joint, config: ODEJointProperties) -> None:
-    """Apply what has a counterpart here; of each array only the first axis counts."""
+    """Apply the fields that have a counterpart here; only the first axis of each array is used."""
     velocity, effort = changed_motor(joint.spec.name, joint.motor, config)
     changes = {}
     for field, values in (
@@ -105,7 +105,7 @@ def _change(joint: Joint, config: ODEJointProperties) -> None:
         with contextlib.suppress(IndexError):
             changes[field] = values[0]
     spec = changed_spec(joint.spec, changes)
-    # Nothing above changes the joint, so a request that is refused leaves all as it was.
+    # Nothing above changes the joint, so a rejected request has no effect.
     if (velocity, effort) != joint.motor:
         joint.set_motor(velocity, effort)
     if spec != joint.spec:
@@ -117,10 +117,10 @@ def _change(joint: Joint, config: ODEJointProperties) -> None:
 def changed_motor(
     name: str, motor: tuple[float, float], config: ODEJointProperties
 ) -> tuple[float, float]:
-    """Return the target velocity [rad/s or m/s] and greatest effort [N m or N] asked for.
+    """Return the requested target velocity [rad/s or m/s] and maximum effort [N m or N].
 
     Raises:
-        RequestError: the greatest effort is negative.
+        RequestError: the maximum effort is negative.
 
     """
     velocity = config.vel[0] if config.vel else motor[0]
@@ -136,11 +136,11 @@ def changed_spec(spec: JointSpec, changes: dict[str, float]) -> JointSpec:
     """Return the joint with other limits or damping.
 
     Raises:
-        RequestError: the lower limit would be above the upper one, or damping would drive.
+        RequestError: the lower limit is above the upper one, or damping is negative.
 
     """
     fields: dict[str, Any] = {
-        name: None if name != 'damping' and abs(value) >= _ENDLESS else value
+        name: None if name != 'damping' and abs(value) >= _UNLIMITED else value
         for name, value in changes.items()
     }
     changed = replace(spec, **fields)

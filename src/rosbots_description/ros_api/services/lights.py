@@ -1,4 +1,4 @@
-"""Services about lights. They shine only in pictures that others make of the world."""
+"""Services about lights. Lights are stored for clients; they do not affect rendering here."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ _ATTENUATION = ('attenuation_constant', 'attenuation_linear', 'attenuation_quadr
 def get_light_properties(
     server: Server, request: GetLightPropertiesRequest
 ) -> GetLightPropertiesResponse:
-    """Report a light's colour and how it fades."""
+    """Return a light's diffuse colour and attenuation."""
     response = GetLightPropertiesResponse()
     light = server.world.lights.get(request.light_name)
     if light is None:
@@ -44,7 +44,7 @@ def get_light_properties(
 def set_light_properties(
     server: Server, request: SetLightPropertiesRequest
 ) -> SetLightPropertiesResponse:
-    """Change a light; every field counts, zeros included."""
+    """Change a light; every field is used, zeros included."""
     require_finite(request)
     lights, name = server.world.lights, request.light_name
     if name not in lights:
@@ -64,7 +64,7 @@ def set_light_properties(
 
 @service('delete_light', DeleteLight)
 def delete_light(server: Server, request: DeleteLightRequest) -> DeleteLightResponse:
-    """Delete a light; an unknown name is answered in Gazebo's words, but at once."""
+    """Delete a light; an unknown name gets Gazebo's text, but at once."""
     name = request.light_name
     if server.world.lights.pop(name, None) is None:
         text = f'DeleteLight: Timeout reached while removing light "{name}"'

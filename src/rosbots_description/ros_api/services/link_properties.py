@@ -1,4 +1,4 @@
-"""Services about what links weigh."""
+"""Services about the inertial properties of links."""
 
 from dataclasses import replace
 
@@ -22,20 +22,20 @@ from .links import NO_LINK, find_link
 from .registry import refuse, service
 
 _MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
-# What SDF says of a link that says nothing, which only a static one may do.
-_UNWRITTEN = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
+# SDF's default of a link without <inertial>, which only static models may have.
+_DEFAULT = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
 
 
 @service('get_link_properties', GetLinkProperties)
 def get_link_properties(
     server: Server, request: GetLinkPropertiesRequest
 ) -> GetLinkPropertiesResponse:
-    """Tell mass, centre of mass and inertia about it; all in the axes of the link."""
+    """Return mass, centre of mass and the inertia about it, in the axes of the link."""
     response = GetLinkPropertiesResponse()
     link = find_link(server.world, request.link_name)
     if link is None:
         return refuse(response, f'GetLinkProperties: {NO_LINK}')
-    inertial = in_link_axes(link.spec.inertial or _UNWRITTEN)
+    inertial = in_link_axes(link.spec.inertial or _DEFAULT)
     response.com.position = Point(*inertial.pose.position)
     response.com.orientation.w = 1.0
     response.gravity_mode, response.mass = link.spec.gravity, inertial.mass
@@ -49,9 +49,9 @@ def get_link_properties(
 def set_link_properties(
     server: Server, request: SetLinkPropertiesRequest
 ) -> SetLinkPropertiesResponse:
-    """Change mass, centre of mass, inertia and weight of a link; it goes on moving.
+    """Change mass, centre of mass, inertia and gravity mode of a link; its velocity is kept.
 
-    As in Gazebo the orientation of `com` does not matter: the tensor is in the link's axes.
+    As in Gazebo the orientation of `com` is ignored: the tensor is in the link's axes.
     """
     require_finite(request)
     link = find_link(server.world, request.link_name)
@@ -78,10 +78,10 @@ def set_link_properties(
 
 
 def _movable(link: Link, inertial: Inertial) -> Inertial:
-    """Return what can be simulated.
+    """Return an inertial that can be simulated.
 
     Raises:
-        RequestError: mass or inertia are those of nothing that moves.
+        RequestError: mass or inertia are out of range for a moving link.
 
     """
     if inertial.mass <= 0.0:
@@ -92,7 +92,7 @@ def _movable(link: Link, inertial: Inertial) -> Inertial:
     moments = (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz)
     if not LIGHTEST <= inertial.mass <= HEAVIEST or max(map(abs, moments)) > MOST_INERT:
         raise RequestError(
-            f"mass and inertia of link '{link.scoped_name}' are those of no body: "
+            f"mass or inertia of link '{link.scoped_name}' is out of range: "
             f'{LIGHTEST:g} to {HEAVIEST:g} kg and at most {MOST_INERT:g} kg m^2 are accepted'
         )
     if not is_positive(inertial):

@@ -1,4 +1,4 @@
-"""Services about links: their state, and pushes on them."""
+"""Services about links: their state, and external wrenches."""
 
 from gazebo_msgs.srv import (
     ApplyBodyWrench,
@@ -41,14 +41,14 @@ _NO_FRAME = (
 
 
 def find_link(world: World, name: str) -> Link | None:
-    """Return the link that the name finds first; None if it finds something else first."""
+    """Return the link of that name; None if the first entity of that name is not a link."""
     entity = world.find_entity(name)
     return entity if isinstance(entity, Link) else None
 
 
 @service('get_link_state', GetLinkState)
 def get_link_state(server: Server, request: GetLinkStateRequest) -> GetLinkStateResponse:
-    """Tell a link's pose and twist relative to an entity or the world."""
+    """Return a link's pose and twist relative to an entity or the world."""
     world, response = server.world, GetLinkStateResponse()
     link = find_link(world, request.link_name)
     if link is None:
@@ -68,9 +68,9 @@ def get_link_state(server: Server, request: GetLinkStateRequest) -> GetLinkState
 
 @service('set_link_state', SetLinkState)
 def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkStateResponse:
-    """Bring a link to a pose and a velocity, given in a link or the world.
+    """Set a link's pose and velocity, given in the frame of a link or the world.
 
-    As in Gazebo the frame's velocity is subtracted from the one given, which is not turned.
+    As in Gazebo v = v_given - v_frame, without a rotation.
     """
     require_finite(request)
     state = request.link_state
@@ -95,7 +95,7 @@ def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkState
 
 @service('apply_body_wrench', ApplyBodyWrench)
 def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyBodyWrenchResponse:
-    """Push a link at its centre of mass from `start_time`, for `duration`; negative: for ever."""
+    """Apply a wrench to a link from `start_time`, for `duration`; negative: without end."""
     require_finite(request)
     world = server.world
     link = find_link(world, request.body_name)
@@ -119,7 +119,7 @@ def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyB
 
 @service('clear_body_wrenches', BodyRequest)
 def clear_body_wrenches(server: Server, request: BodyRequestRequest) -> BodyRequestResponse:
-    """End all pushes on the link of that scoped name."""
+    """Remove all wrenches on the link of that scoped name."""
     server.world.external_forces.cancel(
         lambda target: isinstance(target, Link) and target.scoped_name == request.body_name
     )
@@ -134,12 +134,12 @@ def world_wrench(
     Args:
         force: in the axes of the frame, acting at `point`.
         torque: in the axes of the frame.
-        point: in the frame [m]; without a frame, an arm from the body.
-        frame: where the frame stands in the world; None: force and torque are in world axes.
-        body: where the pushed link stands in the world.
+        point: in the frame [m]; without a frame, relative to the body.
+        frame: pose of the frame in the world; None: force and torque are in world axes.
+        body: pose of the link in the world.
 
-    Upstream expresses the wrench in the body's axes and then uses it as if in the world's; this is
-    what its documentation says instead.
+    Upstream rotates the wrench into the body's axes and then applies it in world axes; this follows
+    its documentation instead.
     """
     torque = add(torque, cross(point, force))
     if frame is None:

@@ -18,14 +18,14 @@ from ..messages import read_pose, read_twist, require_finite
 from ..server import Server
 from .registry import refuse, service
 
-_INNER = '::'  # between the name of an inner model and what it has
+_INNER = '::'  # separates the name of a nested model from those of its parts
 
 
 @service('get_model_properties', GetModelProperties)
 def get_model_properties(
     server: Server, request: GetModelPropertiesRequest
 ) -> GetModelPropertiesResponse:
-    """Tell what a model consists of, by plain names; parts of inner models are theirs."""
+    """Return the parts of a model by their plain names, without those of nested models."""
     response = GetModelPropertiesResponse()
     model = server.world.find_model(request.model_name)
     if model is None:
@@ -43,7 +43,7 @@ def get_model_properties(
 
 @service('set_model_state', SetModelState)
 def set_model_state(server: Server, request: SetModelStateRequest) -> SetModelStateResponse:
-    """Bring a model to a pose and a velocity, both given in an entity or the world.
+    """Set a model's pose and velocity, both given in the frame of an entity or the world.
 
     As in Gazebo the velocity of the frame itself is not added.
     """
@@ -72,7 +72,7 @@ def set_model_state(server: Server, request: SetModelStateRequest) -> SetModelSt
 def set_model_configuration(
     server: Server, request: SetModelConfigurationRequest
 ) -> SetModelConfigurationResponse:
-    """Put joints at positions [rad or m] within their limits; unknown names are passed over."""
+    """Set joint positions [rad or m], clamped to their limits; unknown names are ignored."""
     require_finite(request)
     response = SetModelConfigurationResponse()
     model = server.world.find_model(request.model_name)

@@ -21,7 +21,7 @@ logger = logging.getLogger(__name__)
 
 @service('delete_model', DeleteModel, registers=True)
 def delete_model(server: Server, request: DeleteModelRequest) -> DeleteModelResponse:
-    """Take a model, its plugins and their topics away."""
+    """Delete a model with its plugins and their topics."""
     name = request.model_name
     try:
         server.world.delete(name)
@@ -32,14 +32,14 @@ def delete_model(server: Server, request: DeleteModelRequest) -> DeleteModelResp
 
 
 class _CountedState(GetModelStateResponse):
-    """A response whose header.seq is ours; rospy would put the number of the call there."""
+    """A response with our own header.seq; rospy would set the number of the call."""
 
     _has_header = False
 
 
 @service('get_model_state', GetModelState)
 def get_model_state(server: Server, request: GetModelStateRequest) -> GetModelStateResponse:
-    """Tell a model's pose and twist relative to an entity or the world."""
+    """Return a model's pose and twist relative to an entity or the world."""
     response = _CountedState()
     model = server.world.find_model(request.model_name)
     if model is None:
@@ -66,9 +66,9 @@ def get_model_state(server: Server, request: GetModelStateRequest) -> GetModelSt
 
 
 def relative_state(state: tuple[Pose, Twist], frame: tuple[Pose, Twist]) -> tuple[Pose, Twist]:
-    """Return a state as seen from a frame, both given in the world.
+    """Return a state relative to a frame, both given in the world.
 
-    The velocity is R_frame^-1 (v - v_frame) without the w x r term, as Gazebo has it.
+    The velocity is R_frame^-1 (v - v_frame) without the w x r term, as in Gazebo.
     """
     (pose, twist), (frame_pose, frame_twist) = state, frame
     back = conjugate(frame_pose.orientation)

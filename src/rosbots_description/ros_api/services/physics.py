@@ -1,4 +1,4 @@
-"""Services about the physics of the world: step, pace, gravity and the solver."""
+"""Services about the physics of the world: step size, update rate, gravity and the solver."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ from .registry import service
 def get_physics_properties(
     server: Server, _request: GetPhysicsPropertiesRequest
 ) -> GetPhysicsPropertiesResponse:
-    """Tell the settings that count at this moment."""
+    """Return the current settings."""
     physics = server.world.physics
     return GetPhysicsPropertiesResponse(
         time_step=physics.step_size,
@@ -40,12 +40,12 @@ def get_physics_properties(
 def set_physics_properties(
     server: Server, request: SetPhysicsPropertiesRequest
 ) -> SetPhysicsPropertiesResponse:
-    """Use other settings from the next step on; every field counts, zeros included.
+    """Change the settings from the next step on; every field is used, zeros included.
 
-    The friction model, which the request does not have, stays.
+    The friction model is not part of the request and is kept.
 
-    The real-time factor that the simulator keeps to, if the machine can, is `max_update_rate`
-    times `time_step`; a rate of 0 asks for as much as there is.
+    The target real-time factor is `max_update_rate` * `time_step`; a rate of 0 means as fast as
+    possible.
     """
     physics = replace(
         server.world.physics,

@@ -16,11 +16,11 @@ logger = logging.getLogger(__name__)
 
 Answer = Callable[[Server, Any], Message]
 
-REGISTRATION = 5.0  # how long a reply waits for the ROS master to know of topics [s, wall]
+REGISTRATION = 5.0  # how long a response waits for the registration of topics [s, wall]
 
 
 class CallError(SimError):
-    """A request that Gazebo answers with an error of the call itself, not with success=False."""
+    """A request for which Gazebo fails the call itself, instead of returning success=False."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Service:
     type: type[Any]
     answer: Answer
     prepare: Answer | None
-    registers: bool  # changes which topics there are; the reply waits for that
+    registers: bool  # adds or removes topics; the response waits for their registration
     on_loop: bool = True  # whether `answer` runs on the loop's thread or on the caller's
 
 
@@ -47,13 +47,13 @@ def service(
     on_loop: bool = True,
     table: dict[str, Service] = SERVICES,
 ) -> Callable[[Answer], Answer]:
-    """Return a decorator that offers `answer(server, request) -> response` as service ~`name`.
+    """Return a decorator that makes `answer(server, request) -> response` the service ~`name`.
 
     The function runs on the thread that owns the world; with `on_loop=False` on the caller's, where
-    it may touch the world only by `server.loop.call`. Slow work that does not need the world
-    goes into `prepare(server, request)`, whose result is what `answer` gets as its request; a
-    response it returns is sent at once. Either may raise `SimError`, which becomes success=False
-    with its sentence, or `CallError`, which becomes an error of the call.
+    it may use the world only by `server.loop.call`. Slow work that does not need the world goes
+    into `prepare(server, request)`. Its result is passed to `answer` as the request; if it is a
+    response, it is sent at once. Either may raise `SimError`, which becomes success=False with its
+    message, or `CallError`, which makes the call fail.
     """
 
     def add(answer: Answer) -> Answer:
@@ -73,7 +73,7 @@ def refuse(response: Message, text: str) -> Message:
 
 
 def advertise(server: Server, table: Mapping[str, Service]) -> list[rospy.Service]:
-    """Offer the services of a table in the node's private namespace."""
+    """Advertise the services of a table in the node's private namespace."""
     return [
         rospy.Service(f'~{entry.name}', entry.type, _handler(server, entry))
         for entry in table.values()
@@ -94,7 +94,7 @@ def respond(server: Server, entry: Service, request: Message) -> Message:
     """Return the response to `request`; called on a thread that does not own the world.
 
     Raises:
-        CallError: the call itself is to fail.
+        CallError: the call itself fails.
 
     """
     response_class = entry.type._response_class
@@ -112,17 +112,17 @@ def respond(server: Server, entry: Service, request: Message) -> Message:
         return _failure(entry, response_class(), str(error))
     if entry.registers and not server.registrar.wait(REGISTRATION):
         logger.warning(
-            '%s: the ROS master was not told of all topics within %g s; it will be later',
+            '%s: the ROS master has not registered all topics within %g s; it will be done later',
             entry.name, REGISTRATION,
         )
     return response
 
 
 def _failure(entry: Service, response: Message, sentence: str) -> Message:
-    """Return `response` with success=False and the sentence in the words of the service."""
+    """Return `response` with success=False and the message, prefixed by the service's type."""
     if hasattr(response, 'success'):
         return refuse(response, f'{entry.type.__name__}: Failure - {sentence}')
-    # The type is shared by several services then, as std_srvs/Empty is.
+    # Types without `success`, such as std_srvs/Empty, are shared by several services.
     text = f'{entry.name}: Failure - {sentence}'
     logger.error('%s', text)
     raise CallError(text)

@@ -13,28 +13,28 @@ from .registry import service
 
 @service('pause_physics', Empty)
 def pause_physics(server: Server, _request: EmptyRequest) -> EmptyResponse:
-    """Stop simulated time; no effect while it stands."""
+    """Pause simulated time; no effect if it is paused."""
     server.world.paused = True
     return EmptyResponse()
 
 
 @service('unpause_physics', Empty)
 def unpause_physics(server: Server, _request: EmptyRequest) -> EmptyResponse:
-    """Let simulated time go on; no effect while it does."""
+    """Continue simulated time; no effect if it is running."""
     server.world.paused = False
     return EmptyResponse()
 
 
 @service('reset_world', Empty)
 def reset_world(server: Server, _request: EmptyRequest) -> EmptyResponse:
-    """Bring every model back to its spawn pose, at rest; time and joint angles go on."""
+    """Return every model to its spawn pose, at rest; time and joint angles are kept."""
     server.world.reset_world()
     return EmptyResponse()
 
 
 @service('reset_simulation', Empty)
 def reset_simulation(server: Server, _request: EmptyRequest) -> EmptyResponse:
-    """Begin again at time zero with every model as it was spawned."""
+    """Restart at time zero with every model as it was spawned."""
     server.world.reset_simulation()
     return EmptyResponse()
 
@@ -43,7 +43,7 @@ def reset_simulation(server: Server, _request: EmptyRequest) -> EmptyResponse:
 def get_world_properties(
     server: Server, _request: GetWorldPropertiesRequest
 ) -> GetWorldPropertiesResponse:
-    """Tell time [s] and model names in world order; like Gazebo, always claims to render."""
+    """Return time [s] and model names in world order; as in Gazebo rendering_enabled is true."""
     return GetWorldPropertiesResponse(
         sim_time=server.world.clock.now,
         model_names=list(server.world.models),

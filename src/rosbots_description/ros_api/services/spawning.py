@@ -1,4 +1,4 @@
-"""The services that bring models and lamps into the world."""
+"""The services that spawn models and lights."""
 
 import logging
 from collections.abc import Callable
@@ -24,7 +24,7 @@ from .registry import EXTENSIONS, CallError, refuse, service
 
 logger = logging.getLogger(__name__)
 
-# [m] How deep a model may stand in another unnoticed: the spawn heights of published robots are
+# [m] An overlap up to this depth is not reported: the spawn heights of published robots are
 # rounded to centimetres.
 DEEP = 0.01
 
@@ -42,8 +42,8 @@ _DONE = 'SpawnModel: Successfully spawned entity'
 
 
 @dataclass(frozen=True)
-class _Arrival:
-    """A model that only has to be put into the world; `pose` is given in the frame `frame`."""
+class _Prepared:
+    """A compiled model that is ready to be added to the world; `pose` is in the frame `frame`."""
 
     name: str
     model: CompiledModel
@@ -51,8 +51,8 @@ class _Arrival:
     frame: str
 
 
-def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnModelResponse:
-    """Do what is slow about the spawn of a URDF; faults Gazebo's client never sees are told."""
+def _read_urdf(server: Server, request: SpawnModelRequest) -> _Prepared | SpawnModelResponse:
+    """Parse, compile and test a URDF; errors for which Gazebo's call fails are logged here."""
     if root_tag(request.model_xml) != 'robot':
         logger.error('SpawnModel: Failure - entity format is invalid.')
         raise CallError(
@@ -60,7 +60,7 @@ def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnMo
             'This service takes URDF: XML whose outermost element is <robot>'
         )
     try:
-        return _arrival(server, request, lambda: _load_urdf(server, request))
+        return _prepare(server, request, lambda: _load_urdf(server, request))
     except UnknownPackage as error:
         logger.critical('%s', error)
         raise CallError(f'SpawnModel: Failure - {error}') from None
@@ -68,18 +68,18 @@ def _read_urdf(server: Server, request: SpawnModelRequest) -> _Arrival | SpawnMo
 
 def _read_sdf(
     server: Server, request: SpawnModelRequest
-) -> _Arrival | LightSpec | SpawnModelResponse:
-    """Do what is slow about the spawn of a URDF, an SDF model or a light."""
+) -> _Prepared | LightSpec | SpawnModelResponse:
+    """Parse, compile and test a URDF or an SDF model, or parse a light."""
     kind = root_tag(request.model_xml)
     if kind == 'robot':
-        return _arrival(server, request, lambda: _load_urdf(server, request))
+        return _prepare(server, request, lambda: _load_urdf(server, request))
     if kind not in ('sdf', 'gazebo'):
         return refuse(SpawnModelResponse(), _NO_FORMAT)
     light = load_sdf_light(request.model_xml, request.model_name)
     if light is not None:
-        # The frame must be there although, as in Gazebo, a lamp stands where its description says.
+        # The frame must exist although, as in Gazebo, a light has the pose in its description.
         return server.loop.call(lambda: _frame_refusal(server, request.reference_frame)) or light
-    return _arrival(server, request, lambda: load_sdf(
+    return _prepare(server, request, lambda: load_sdf(
         request.model_xml,
         request.model_name,
         robot_namespace=request.robot_namespace,
@@ -98,10 +98,10 @@ def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, P
     )
 
 
-def _arrival(
+def _prepare(
     server: Server, request: SpawnModelRequest, load: Callable[[], tuple[ModelSpec, Pose]]
-) -> _Arrival | SpawnModelResponse:
-    """Parse, compile and try the engine on it, while the simulation goes on."""
+) -> _Prepared | SpawnModelResponse:
+    """Parse the model, compile it and test it in the sandbox, while the simulation goes on."""
     name, frame = request.model_name, request.reference_frame
     if not name:
         raise ModelError('model_name is empty; give the model a name')
@@ -112,31 +112,31 @@ def _arrival(
     spec, origin = load()
     model = server.world.compile(spec)
     server.sandbox.require(model, server.world.physics, caller_waits)
-    return _Arrival(name, model, compose(pose, origin), frame)
+    return _Prepared(name, model, compose(pose, origin), frame)
 
 
 @service('spawn_urdf_model', SpawnModel, prepare=_read_urdf, registers=True)
 @service('spawn_sdf_model', SpawnModel, prepare=_read_sdf, registers=True)
-def spawn_model(server: Server, arrival: _Arrival | LightSpec) -> SpawnModelResponse:
-    """Put a model or a lamp that has been read into the world."""
-    if isinstance(arrival, LightSpec):
-        return _spawn_light(server, arrival)
-    refusal = _refusal(server, arrival.name, arrival.frame)
-    if refusal is not None:  # someone else was quicker
+def spawn_model(server: Server, prepared: _Prepared | LightSpec) -> SpawnModelResponse:
+    """Add a prepared model or a light to the world."""
+    if isinstance(prepared, LightSpec):
+        return _spawn_light(server, prepared)
+    refusal = _refusal(server, prepared.name, prepared.frame)
+    if refusal is not None:  # the name was taken meanwhile
         return refusal
-    frame_pose, _ = server.world.frame(arrival.frame)
-    model = server.world.spawn(arrival.model, arrival.name, compose(frame_pose, arrival.pose))
+    frame_pose, _ = server.world.frame(prepared.frame)
+    model = server.world.spawn(prepared.model, prepared.name, compose(frame_pose, prepared.pose))
     if not (model.static or model.body.fixed_roots):
         warn_overlap(server.world, model)
     return SpawnModelResponse(True, _DONE)
 
 
 def warn_overlap(world: World, model: Model) -> None:
-    """Say so when a model is about to be thrown out of something that it stands in."""
+    """Warn if a model overlaps others, which will push it out."""
     deep = {name: depth for name, depth in world.overlaps(model).items() if depth > DEEP}
     if deep:
         logger.warning(
-            "model '%s' was spawned inside %s, which will push it out; give it room by x, y or z",
+            "model '%s' was spawned inside %s, which will push it out; change its x, y or z",
             model.name,
             ' and '.join(f"'{name}' ({depth:.2g} m deep)" for name, depth in deep.items()),
         )
@@ -146,16 +146,16 @@ def warn_overlap(world: World, model: Model) -> None:
 def get_model_omissions(
     server: Server, request: GetModelOmissionsRequest
 ) -> GetModelOmissionsResponse:
-    """Tell what of a model's description is not simulated; Gazebo's answer has no place for it."""
+    """Return the parts of a model's description that are not simulated; not in Gazebo."""
     model = server.world.models.get(request.model_name)
     if model is None:
-        # Not logged: spawn_model asks for whatever it has spawned, lights too.
+        # Not logged: spawn_model also calls it after spawning a light.
         return GetModelOmissionsResponse(False, 'GetModelOmissions: model does not exist', [])
     return GetModelOmissionsResponse(True, 'GetModelOmissions: got omissions', model.left_out)
 
 
 def _spawn_light(server: Server, light: LightSpec) -> SpawnModelResponse:
-    """Put a lamp where its description says; as in Gazebo the initial pose does not count."""
+    """Add a light at the pose in its description; as in Gazebo the initial pose is ignored."""
     if not light.name:
         raise ModelError('model_name is empty; give the light a name')
     if light.name in server.world.lights:
@@ -175,7 +175,7 @@ def _initial_pose(request: SpawnModelRequest) -> Pose:
 
 
 def _refusal(server: Server, name: str, frame: str) -> SpawnModelResponse | None:
-    """Return Gazebo's answer to a frame that is not there or a name that is; else None."""
+    """Return Gazebo's response to an unknown frame or a name that is taken; otherwise None."""
     refusal = _frame_refusal(server, frame)
     if refusal is None and name in server.world.models:
         logger.error('SpawnModel: Failure - model name %s already exist.', name)

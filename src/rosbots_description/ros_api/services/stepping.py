@@ -1,4 +1,4 @@
-"""Single steps, which Gazebo offers only by its own transport: a service of ours."""
+"""Single steps: a service that Gazebo does not have; it offers them only by its own transport."""
 
 from functools import partial
 
@@ -9,15 +9,15 @@ from .registry import EXTENSIONS, refuse, service
 
 CHUNK = 20  # steps between which other services are served
 
-_BUSY = 'Step: steps for another caller are being made; wait for their end'
+_BUSY = 'Step: another caller is stepping the simulation; wait until it is done'
 _END = 'Step: simulated time ended after {} steps; call reset_simulation'
 
 
 @service('step', Step, on_loop=False, table=EXTENSIONS)
 def step(server: Server, request: StepRequest) -> StepResponse:
-    """Advance paused time by exactly so many steps; the same steps give the same motion.
+    """Make exactly the requested number of steps while paused.
 
-    They are made in small portions, so that no other service waits for all of them.
+    They are made in small portions, so that other services respond in between.
     """
     if not server.stepping.acquire(blocking=False):
         return refuse(StepResponse(sim_time=_now(server)), _BUSY)
@@ -38,13 +38,13 @@ def step(server: Server, request: StepRequest) -> StepResponse:
 
 
 def _make(server: Server, steps: int) -> int | None:
-    """Make steps, on the world's own thread; return how many, or None while time runs."""
+    """Make steps, on the world's own thread; return how many, or None if it is not paused."""
     return server.world.run(steps) if server.world.paused else None
 
 
 def _refusal(made: int) -> str:
     if made:
-        return f'Step: somebody unpaused the simulation after {made} steps'
+        return f'Step: the simulation was unpaused after {made} steps'
     return 'Step: the simulation is running; call pause_physics first'
 
 

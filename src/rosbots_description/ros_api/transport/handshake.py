@@ -1,4 +1,4 @@
-"""Keeps odd connections from blocking all others.
+"""Keep faulty connections from blocking all others.
 
 rospy reads the header of each incoming connection on the thread that accepts them, waits without
 limit, and stops accepting for good when no more files can be opened. A client that connects and
@@ -49,7 +49,7 @@ def accept_connections(server: TCPServer) -> None:
             complained = False
         except (OSError, RuntimeError) as error:  # no more files, or no more threads
             if not (complained or server.is_shutdown):
-                logger.warning('no connection can be accepted for now: %s', error)
+                logger.warning('cannot accept connections at the moment: %s', error)
             complained = True
             time.sleep(_SHORTAGE)
 
@@ -59,7 +59,7 @@ def _receive(server: TCPServer, connection: socket.socket, address: tuple) -> No
     if speaks_tcpros(connection):
         server.inbound_handler(connection, address)
     else:
-        logger.debug('turned away a connection from %s that is not TCPROS', address)
+        logger.debug('rejected a connection from %s that is not TCPROS', address)
         connection.close()
 
 

@@ -50,7 +50,7 @@ def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
         with buffer.getbuffer() as content:
             (length,) = _LENGTH.unpack_from(content)
         if length > LONGEST_MESSAGE:
-            sentence = f'a message of {length} bytes is not received; at most {LONGEST_MESSAGE} are'
+            sentence = f'a message of {length} bytes is rejected; the limit is {LONGEST_MESSAGE}'
             logger.warning('%s', sentence)
             raise TransportTerminated(sentence)
     return count

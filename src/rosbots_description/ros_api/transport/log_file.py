@@ -78,4 +78,4 @@ class _Complaint:
             self._said = True
             # Logged, it would come back here.
             sys.stderr.write(f'[WARN] [{time.time():f}]: log file {self._path} cannot be written '
-                             f'({error.strerror}); it may lack messages, make room there\n')
+                             f'({error.strerror}); messages may be missing, free some space\n')

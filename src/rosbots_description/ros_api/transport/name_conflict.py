@@ -73,8 +73,8 @@ def require_free(name: str) -> None:
     other = holder(name)
     if other:
         raise NameTakenError(
-            f'a simulator runs on this ROS master already: the node {name}, {other}. End that one '
-            'first, or take its place with the option --replace (extra_gazebo_args:=--replace)'
+            f'a simulator is already running on this ROS master: the node {name}, {other}. Stop it '
+            'first, or replace it with the option --replace (extra_gazebo_args:=--replace)'
         )
 
 

@@ -20,14 +20,14 @@ def topic_name(namespace: str, topic: str) -> str:
     Doubled slashes collapse, a leading one stays; a namespace beginning with ~ is in this node's.
 
     Raises:
-        PluginError: that is no name for ROS.
+        PluginError: it is not a valid ROS name.
     """
     given = topic if topic.startswith('/') else f'{namespace}/{topic}'
     name = resolve_name(re.sub('/+', '/', given), rospy.get_name())
     if not _GLOBAL_NAME.fullmatch(name):
         raise PluginError(
-            f"'{name}' is no name for a topic: a-z, A-Z, 0-9 and _ may stand in it, with slashes "
-            "between them; mend the tags that it is made of, or the model's name"
+            f"'{name}' is not a valid topic name: use a-z, A-Z, 0-9 and _, separated by slashes; "
+            "change the tags that it is made of, or the model's name"
         )
     return name
 

@@ -33,10 +33,10 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     outlive_full_disk()
     if reason:
         rospy.logwarn('log file %s cannot be written (%s), so there is none; set ROS_LOG_DIR to a '
-                      'folder that can be written', path, reason)
+                      'writable folder', path, reason)
     if lost_name:
-        rospy.logwarn("this machine's name, %s, leads nowhere, so only programs on this machine "
-                      'reach this node; name it in /etc/hosts, or set ROS_HOSTNAME or ROS_IP',
+        rospy.logwarn('the hostname %s cannot be resolved, so only programs on this machine can '
+                      'reach this node; add it to /etc/hosts, or set ROS_HOSTNAME or ROS_IP',
                       lost_name)
 
 

@@ -1,4 +1,4 @@
-"""A thread that tells the ROS master what comes and goes, so that the simulation need not wait."""
+"""A thread that registers and unregisters with the ROS master, so that no step waits for it."""
 
 import logging
 import threading
@@ -35,4 +35,4 @@ class Registrar:
             except rospy.ROSInterruptException:  # the node is shutting down
                 return
             except Exception:
-                logger.exception('the ROS master did not take a registration')
+                logger.exception('a registration with the ROS master failed')

@@ -58,7 +58,7 @@ def _watch(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> No
         if rospy.core.is_shutdown_requested():  # who is shutting down has unregistered on purpose
             return
         if known is None and not gone:
-            logger.warning('the ROS master is gone; the simulation goes on and waits for a new one')
+            logger.warning('the ROS master is gone; the simulation goes on and waits for it')
         if known is False:
             registrar.post(lambda: _introduce(parameters))
             registrar.wait(PATIENCE)

@@ -1,9 +1,9 @@
-"""Where the models stand, for a camera that follows one of them.
+"""The poses of the models, for a view that follows one of them.
 
 Publishes:
     ~view/frames (tf2_msgs/TFMessage, as on /tf_static): world to each model, named as the model;
-        all to who begins to look, then those that moved. The window knows no other frames: on /tf
-        a robot may have two parents, or none, and stamps that run backward.
+        all of them for a new subscriber, then those that moved. The window uses no other frames,
+        because on /tf a robot may have two parents, or none, and stamps that jump back.
 """
 
 import rospy

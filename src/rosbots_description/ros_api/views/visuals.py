@@ -1,10 +1,10 @@
-"""What the world looks like, for RViz: free of cost while nobody looks.
+"""The visuals of the world as markers for RViz; no cost without subscribers.
 
 Publishes:
-    ~visual_markers (visualization_msgs/MarkerArray, latched): all visuals to who begins to look,
-        then those that moved, came or went.
-    ~view/markers (visualization_msgs/MarkerArray, latched): the same for gzclient, in mesh files
-        of this machine that its sun lights.
+    ~visual_markers (visualization_msgs/MarkerArray, latched): all visuals for a new subscriber,
+        then those that moved, were added or removed.
+    ~view/markers (visualization_msgs/MarkerArray, latched): the same for gzclient, as mesh files
+        on this machine, with baked sunlight.
 """
 
 from collections.abc import Sequence

@@ -53,7 +53,7 @@ def test_a_plugin_whose_topics_have_no_ros_name_has_none(server, caplog, tags):
     adapters.model_spawned(model)
     (record,) = caplog.records
     assert record.message.startswith("model 'robot', plugin 'drive': '/")
-    assert 'is no name for a topic' in record.message
+    assert 'is not a valid topic name' in record.message
     adapters.model_deleted(model)
     assert not server.jobs
 
@@ -62,7 +62,7 @@ def test_a_topic_that_the_node_has_with_another_type_is_left_out(adapter, caplog
     there = rospy.Publisher('/clock', Clock, queue_size=1)
     caplog.clear()
     assert adapter.advertise('/clock', Odometry, 1) is None
-    assert 'this node has it as rosgraph_msgs/Clock' in caplog.text
+    assert 'this node uses it as rosgraph_msgs/Clock' in caplog.text
     assert adapter.advertise('/clock', Clock, 1) is not None  # as two robots share /tf
     adapter.close()
     assert there.impl.data_class is Clock
@@ -73,7 +73,7 @@ def test_messages_of_another_type_never_come_as_commands(adapter, caplog):
     there = rospy.Subscriber('/commands', Clock, queue_size=1)
     caplog.clear()
     assert adapter.subscribe('/commands', Twist, pytest.fail, 1) is None
-    assert 'this node has it as rosgraph_msgs/Clock' in caplog.text
+    assert 'this node uses it as rosgraph_msgs/Clock' in caplog.text
     there.unregister()
 
 

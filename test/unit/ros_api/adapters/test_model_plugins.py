@@ -87,7 +87,7 @@ def test_a_trajectory_is_read_with_times_in_nanoseconds():
         JointTrajectoryPoint(positions=[0.5], time_from_start=Duration(1, 7))])
     assert read_trajectory(message) == ('a', 3_000_000_005, ['j'], [([0.5], 1_000_000_007)])
     message.points[0].positions = [NAN]
-    with pytest.raises(ValueError, match='positions of point 0 nan; it takes finite numbers'):
+    with pytest.raises(ValueError, match='positions of point 0 nan; numbers must be finite'):
         read_trajectory(message)
 
 

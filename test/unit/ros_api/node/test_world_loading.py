@@ -116,7 +116,7 @@ def test_a_manifest_that_catkin_refuses_still_exports(tmp_path, places, flaw):
 def test_a_manifest_that_nobody_can_read_is_one_sentence(tmp_path, places, text):
     write(tmp_path / 'packages' / 'houses' / 'package.xml', text)
     places(tmp_path / 'packages')
-    with pytest.raises(NotFoundError, match=r'a package\.xml along ROS_PACKAGE_PATH is broken'):
+    with pytest.raises(NotFoundError, match=r'a package\.xml on ROS_PACKAGE_PATH is broken'):
         packages.find_package('houses')
 
 

@@ -218,7 +218,7 @@ def test_a_command_that_waited_too_long_is_never_carried_out(start):
     loop = start(CountingWorld(rate=1000.0))
     release, done = threading.Event(), []
     loop.post(lambda: release.wait(JOIN))
-    with pytest.raises(LoopError, match=r'busy for 0.05 s and the request was not begun'):
+    with pytest.raises(LoopError, match=r'busy for 0.05 s and the request was not started'):
         loop.call(lambda: done.append(1), deadline=0.05)
     release.set()
     loop.call(lambda: None)

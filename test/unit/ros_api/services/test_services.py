@@ -74,7 +74,7 @@ def test_a_master_that_was_not_told_in_time_is_complained_of(told, caplog):
     server = SimpleNamespace(loop=SERVER.loop, registrar=SimpleNamespace(wait=lambda _: told))
     entry = Service('s', DeleteModel, lambda *_: DONE, None, registers=True)
     assert respond(server, entry, None) is DONE
-    assert ('was not told of all topics within 5 s' in caplog.text) != told
+    assert ('has not registered all topics within 5 s' in caplog.text) != told
 
 
 def test_a_refused_call_is_an_error_of_the_call():

@@ -147,4 +147,4 @@ def test_after_a_shortage_of_files_connections_are_accepted_again(ends, caplog):
     accept_connections(listener)
     assert received(listener, 1) == [ours]
     (record,) = caplog.records
-    assert 'no connection can be accepted for now: [Errno 24] Too many open files' in record.message
+    assert 'cannot accept connections at the moment: [Errno 24] Too many' in record.message

@@ -28,7 +28,7 @@ def test_a_topic_stands_in_its_namespace_unless_it_is_global(namespace, topic, e
     ('/', 'odom\n'),
 ])
 def test_what_no_ros_node_could_read_is_no_topic(namespace, topic):
-    with pytest.raises(PluginError, match='is no name for a topic'):
+    with pytest.raises(PluginError, match='is not a valid topic name'):
         topic_name(namespace, topic)
 
 

@@ -61,8 +61,8 @@ def test_the_example_works_on_its_topics(spinner, monkeypatch, caplog):
     plugin.world.run(100)
     angles = [message.data for message in wire.publishers['/angle'].sent]
     assert angles == pytest.approx([3.0 * 0.001 * step for step in (1, 21, 41, 61, 81)])
-    assert plugin.spun.motor == (3.0, 2.0)
+    assert plugin.driven.motor == (3.0, 2.0)
     wire.subscribers['/spin'](Float64(math.nan))
-    assert 'Spinner(ns = ): dropped a command on spin with data nan; it takes finite' in caplog.text
+    assert 'Spinner(ns = ): dropped a command on spin with data nan; numbers must' in caplog.text
     plugin.world.reset_simulation()
-    assert plugin.spun.motor == (0.0, 2.0)
+    assert plugin.driven.motor == (0.0, 2.0)
