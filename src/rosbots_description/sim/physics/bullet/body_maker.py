@@ -1,4 +1,4 @@
-"""Makes PyBullet's bodies of what compiler.py makes of links and joints."""
+"""Creates PyBullet bodies from compiled models (compiler.py)."""
 
 import os
 from collections.abc import Sequence
@@ -18,11 +18,11 @@ from .generated_urdf import AUXILIARY_MASS, Tree, filtered_links
 from .springs import compliance
 from .tuning import Tuning
 
-ANY_SPEED = 1e6  # [rad/s or m/s] PyBullet would stop every joint at 100
+ANY_SPEED = 1e6  # [rad/s or m/s]; PyBullet's default limit is 100
 
 
 def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
-    """Return the masses of a tree, and which of its joints move masses as they turn."""
+    """Return the inertial and joint parameters of a tree."""
     parts = tuple(
         Mass(body.parts[link.name].index, link.inertial.mass, of_link, link.gravity)
         for link, of_link in zip(tree.links, moments, strict=True)
@@ -45,7 +45,7 @@ def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
 
 
 class BodyMaker:
-    """Makes bodies in one PyBullet world. They move as rigid bodies do, with no motor on."""
+    """Creates bodies in one PyBullet world: rigid bodies, with all motors off."""
 
     def __init__(self, client: int, tuning: Tuning) -> None:
         """Work in the world of that PyBullet client."""
@@ -54,22 +54,22 @@ class BodyMaker:
         self._collision_filter = CollisionFilter(client)
         self._friction_pairs = FrictionPairs()
         self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
-        # What gives way, how, and the rate at which its overlaps are taken away [1/s].
+        # Compliant parts: surface, and the rate at which their penetration is corrected [1/s].
         self._soft: dict[Place, tuple[Surface, float]] = {}
         self._step_size = 0.001
 
     def set_step_size(self, step_size: float) -> None:
-        """Simulate in steps of that size [s] from now on; what soft contacts do depends on it."""
+        """Set the step size [s]; the damping of compliant contacts depends on it."""
         if step_size != self._step_size:
             self._step_size = step_size
             for place in self._soft:
                 self._set_spring(place)
 
     def add_tree(self, body: Body, compiled: CompiledTree, model_pose: Pose) -> None:
-        """Put links that joints connect into the world, and note in `body` where they are.
+        """Add a kinematic tree to the world, and record its links and joints in `body`.
 
         Args:
-            model_pose: where the model's frame is.
+            model_pose: pose of the model's frame in the world.
         """
         tree = compiled.tree
         place = compose(model_pose, tree.links[0].pose)
@@ -82,7 +82,7 @@ class BodyMaker:
         if tree.fixed_base:
             body.fixed_roots.add(tree.links[0].name)
         index_of = self._indices(number)
-        # In a call of its own: together with an inertia PyBullet gives that inertia to the base.
+        # A separate call: given an inertia as well, PyBullet would assign it to the base.
         pybullet.changeDynamics(
             number,
             -1,
@@ -123,11 +123,11 @@ class BodyMaker:
                 body, tree.links[0].name, Place(other, -1), one.contact_parts[0][0])
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
-        """Let those links of a model pass through each other that do so in Gazebo."""
+        """Disable collisions between the links of a model that do not collide in Gazebo."""
         if len(body.bodies) == 1 and not any(link.self_collide for link in spec.links):
-            return  # one body without the self-collision flag never touches itself
+            return  # a body without the self-collision flag never collides with itself
         if spec.static:
-            return  # static bodies do not touch each other
+            return  # static bodies do not collide with each other
         places = body.surfaces
         for own in places.values():
             for one, other in combinations(own, 2):
@@ -159,9 +159,9 @@ class BodyMaker:
         if self._tuning.exact_cylinders:
             flags |= pybullet.URDF_USE_IMPLICIT_CYLINDER
         if sum(link.self_collide for link in tree.links) > 1:
-            # Quadruples the cost of a step, so only where asked for.
+            # Makes a step four times as expensive, so only on request.
             flags |= pybullet.URDF_USE_SELF_COLLISION
-        # A file that lives in memory only: no disk to fill, nothing left behind.
+        # A file in memory: uses no disk space and needs no clean-up.
         descriptor = os.memfd_create('model')
         try:
             os.write(descriptor, text.encode())
@@ -178,7 +178,7 @@ class BodyMaker:
             os.close(descriptor)
 
     def _indices(self, number: int) -> dict[str, int]:
-        """Return PyBullet's index of every link of a body; the root `l0` is the base, -1."""
+        """Return PyBullet's index of each link of a body; the root `l0` is the base, -1."""
         indices = {'l0': -1}
         for index in range(pybullet.getNumJoints(number, self._client)):
             indices[pybullet.getJointInfo(number, index, self._client)[12].decode()] = index
@@ -196,7 +196,7 @@ class BodyMaker:
     def _set_contact_part(
         self, body: Body, link: str, place: Place, part: CompiledContactPart | None
     ) -> None:
-        """Set up what a link touches with at a place of a body, and note it in `body`."""
+        """Set the contact properties of a part of a link, and record the part in `body`."""
         if part is None:
             return
         body.surfaces[link].append(place)
@@ -209,7 +209,7 @@ class BodyMaker:
             physicsClientId=self._client,
         )
         if part.restitution:
-            # Else PyBullet brakes what is about to touch, and nothing is left to be given back.
+            # Else PyBullet slows a body before it touches, so that no speed is left for a bounce.
             pybullet.changeDynamics(
                 *place, contactProcessingThreshold=0.0, physicsClientId=self._client
             )
@@ -223,7 +223,7 @@ class BodyMaker:
             self.scale_friction(place, part.axes.scales)
 
     def _set_spring(self, place: Place) -> None:
-        """Let a part give way as its surface does in steps of the present size."""
+        """Set contact stiffness and damping of a compliant part for the current step size."""
         surface, rate = self._soft[place]
         stiffness, damping = contact_spring(surface, self._step_size, rate)
         pybullet.changeDynamics(
@@ -234,13 +234,13 @@ class BodyMaker:
         )
 
     def _parting_rate(self, place: Place) -> float:
-        """Return the rate at which contacts of a part take away an overlap [1/s]."""
+        """Return the rate at which contacts of a part correct penetration [1/s]."""
         low, high = pybullet.getAABB(*place, self._client)
         reach = max(b - a for a, b in zip(low, high, strict=True))
         return parting_rate(reach, self._tuning.push_out)
 
     def _set_filter(self, place: Place, side: Side) -> None:
-        """Let a part meet those it is to meet; a new mu changes whom others meet."""
+        """Set the collision filter of a part; a new mu changes the masks of other parts."""
         self._sides[place] = side, (0, 0)
         changed = list(self._sides) if self._friction_pairs.add(side.mu) else [place]
         for one in changed:
@@ -251,5 +251,5 @@ class BodyMaker:
                 pybullet.setCollisionFilterGroupMask(*one, *now, self._client)
 
     def scale_friction(self, place: Place, scales: Sequence[float]) -> None:
-        """Let a part hold these shares of its friction along its own axes."""
+        """Scale the friction of a part along its own axes."""
         pybullet.changeDynamics(*place, anisotropicFriction=scales, physicsClientId=self._client)

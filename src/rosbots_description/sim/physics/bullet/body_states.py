@@ -1,7 +1,7 @@
-"""Read and set the motion of bodies in a PyBullet world, their motors and applied forces.
+"""Reads and sets the motion of bodies in a PyBullet world, their motors and applied forces.
 
-Conventions are converted here: PyBullet's poses are those of the centre of mass, ours those of the
-link frame; its quaternions are (x, y, z, w) like ours.
+Converts conventions: PyBullet's poses are of the centre of mass, ours of the link frame.
+Quaternions are (x, y, z, w) in both.
 """
 
 import math
@@ -16,29 +16,29 @@ from .client import pybullet
 from .fast_rotation import FastBodies
 from .solver_iterations import Motor
 
-# Forces are clamped to this. Squares of greater numbers overflow, and NaN then spreads to all that
-# the body touches, the ground first.
+# Forces are clamped to this value. The squares of greater ones overflow to NaN, which spreads
+# through contacts to other bodies, first of all to the ground.
 _ANY_FORCE = 1e15  # [N or N m]
 
-Push = tuple[Callable[..., None], tuple[Any, ...]]  # what to call, with what
+Push = tuple[Callable[..., None], tuple[Any, ...]]  # method, arguments
 
 
 class BodyStates:
-    """Reads and sets how the bodies of one PyBullet world move; see `PhysicsEngine`."""
+    """State of the bodies of one PyBullet world; see `PhysicsEngine`."""
 
     def __init__(self, client: int) -> None:
         """Work in the world of that PyBullet client."""
         self._client = client
         self._enabled = True
         self._fast = FastBodies(client)
-        self._driven: dict[Body, None] = {}  # those with motors, in the order they came
+        self._driven: dict[Body, None] = {}  # bodies with motors, in the order they were added
         self._pushes: list[Push] = []  # since the last step
-        # What has been read since the last step, by PyBullet's body, in the order of Body.indices:
-        # reading one joint costs as much as reading all of a body's.
+        # Joint states read since the last step, by PyBullet's body, in the order of Body.indices:
+        # reading one joint costs as much as reading all joints of a body.
         self._joint_readings: dict[int, Sequence[tuple[Any, ...]]] = {}
 
     def motion(self, body: Body) -> Motion:
-        """Return where a model is and how it moves, all of it."""
+        """Return poses and twists of roots, joint states and motor commands of a model."""
         return Motion(
             {link: self.link_state(body, link) for link in body.roots},
             {name: state[:2] for name, state in self.joint_states(body).items()},
@@ -46,7 +46,7 @@ class BodyStates:
         )
 
     def set_motion(self, body: Body, motion: Motion) -> None:
-        """Let a model be where another one of the same links and joints was, moving as it did."""
+        """Set the motion of a model to one recorded from a model of the same links and joints."""
         self._joint_readings.clear()
         self.set_root_poses(body, {link: pose for link, (pose, _) in motion.roots.items()})
         for link, (_, twist) in motion.roots.items():
@@ -56,13 +56,13 @@ class BodyStates:
             self.set_joint_motor(body, name, *motion.motors[name])
 
     def has_diverged(self, body: Body) -> bool:
-        """Tell whether any link of a model moves by numbers that are not finite, or of no world."""
-        # Also a static one: what hits it with endless speed leaves it with a velocity of NaN.
+        """Tell whether any coordinate or velocity of a model is not finite or out of range."""
+        # Static models too: a hit at infinite speed gives them a velocity of NaN.
         return not all(
             math.isfinite(number) and abs(number) < LARGEST for number in self._coordinates(body))
 
     def _coordinates(self, body: Body) -> Iterator[float]:
-        """Yield all coordinates and velocities of a model: of its roots, and of its joints."""
+        """Yield all coordinates and velocities of the roots and joints of a model."""
         for number in body.bodies:
             for numbers in pybullet.getBasePositionAndOrientation(number, self._client):
                 yield from numbers
@@ -120,9 +120,9 @@ class BodyStates:
         return state
 
     def set_root_poses(self, body: Body, poses: Mapping[str, Pose]) -> None:
-        """Put the frames of root links at these poses; the links they carry come along.
+        """Set the poses of root link frames; joint positions do not change.
 
-        Velocities stay; PyBullet would zero them.
+        Velocities are kept, which PyBullet would zero.
         """
         for link, pose in poses.items():
             part = body.parts[link]
@@ -135,7 +135,7 @@ class BodyStates:
             self._fast.disturb(part.body)
 
     def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
-        """Let a root link move with this velocity of its origin, in world axes; joints go on.
+        """Set the twist of a root link at its origin, in world axes; joint velocities are kept.
 
         A root that is fixed to the world stays at rest.
         """
@@ -149,7 +149,7 @@ class BodyStates:
         self._fast.set_in_motion(part.body)
 
     def set_twist(self, body: Body, twist: Twist) -> None:
-        """Let all links move with this velocity of their root's origin, in world axes."""
+        """Set the twist of all roots at their origins, in world axes, and stop all joints."""
         self._joint_readings.clear()
         for link in body.roots:
             self.set_root_twist(body, link, twist)
@@ -160,7 +160,7 @@ class BodyStates:
     def joint_state(self, body: Body, joint: str) -> JointState:
         """Return the state of a joint."""
         position, velocity, _, effort = self._joint_reading(body, joint)
-        # Of a motor without effort PyBullet reports what it gave when it had some.
+        # PyBullet still reports the last effort of a motor that has been switched off.
         return JointState(position, velocity, effort if body.motors[joint][1] else 0.0)
 
     def joint_states(self, body: Body) -> dict[str, JointState]:
@@ -168,7 +168,7 @@ class BodyStates:
         return {name: self.joint_state(body, name) for name in body.joints}
 
     def _joint_reading(self, body: Body, joint: str) -> tuple[Any, ...]:
-        """Return PyBullet's state of a joint; all joints of a body are read in one call."""
+        """Return PyBullet's state of a joint; one call reads all joints of a body."""
         number, row = body.rows[joint]
         readings = self._joint_readings.get(number)
         if readings is None:
@@ -186,13 +186,13 @@ class BodyStates:
         self._fast.disturb(number)
 
     def motor(self, body: Body, joint: str) -> tuple[float, float]:
-        """Return the motor's target velocity and greatest effort."""
+        """Return the motor's target velocity and effort limit."""
         return body.motors[joint]
 
     def set_joint_motor(self, body: Body, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
         if body.motors.get(joint) == (velocity, effort):
-            return  # it does so already
+            return  # unchanged
         velocity = max(-ANY_SPEED, min(ANY_SPEED, velocity))
         body.motors[joint] = (velocity, effort)
         self._driven[body] = None
@@ -215,13 +215,13 @@ class BodyStates:
     def push(
         self, body: Body, link: str, force: Vector, torque: Vector, place: Vector | None = None
     ) -> None:
-        """Push a link during the next step: force [N] and torque [N m], beside other pushes.
+        """Apply a force [N] and a torque [N m] to a link in the next step, added to others.
 
         Args:
-            place: where the force acts [m], None for the centre of mass; all in world axes.
+            place: point of application [m], None for the centre of mass; all in world axes.
         """
         if not self._enabled:
-            return  # PyBullet would add them all up until its next step
+            return  # PyBullet would accumulate them until its next step
         part = body.parts[link]
         if place is None:
             place = compose(self.link_pose(body, link), part.com_in_origin).position
@@ -233,7 +233,7 @@ class BodyStates:
         self._fast.disturb(part.body)
 
     def push_joint(self, body: Body, joint: str, effort: float) -> None:
-        """Push a joint during the next step by `effort` [N m or N], beside its motor."""
+        """Apply `effort` [N m or N] to a joint in the next step, added to its motor's."""
         if not self._enabled:
             return
         effort = max(min(effort, _ANY_FORCE), -_ANY_FORCE)
@@ -244,13 +244,13 @@ class BodyStates:
         self._fast.disturb(body.joints[joint][0])
 
     def measure_reaction(self, body: Body, joint: str, wanted: bool = True) -> None:
-        """Begin or end to measure what a joint passes on."""
+        """Enable or disable the measurement of a joint's reaction."""
         self._joint_readings.clear()
         pybullet.enableJointForceTorqueSensor(*body.joints[joint], int(wanted), self._client)
 
     def joint_reaction(self, body: Body, joint: str) -> Wrench:
-        """Return what the parent did to the child through a joint in the last step."""
-        # PyBullet reports it in the principal axes of the child, without what the motor does.
+        """Return the wrench of the parent on the child through a joint in the last step."""
+        # PyBullet reports it in the principal axes of the child, without the motor's effort.
         values = self._joint_reading(body, joint)[2]
         turn = next(part.com_in_origin.orientation for part in body.parts.values()
                     if (part.body, part.index) == body.joints[joint])
@@ -264,13 +264,13 @@ class BodyStates:
 
 
 def _state_of_frame(part: Part, com: Pose, linear: Vector, angular: Vector) -> tuple[Pose, Twist]:
-    """Return pose and twist of a link's frame, by those of its centre of mass."""
+    """Return pose and twist of a link's frame, given those of its centre of mass."""
     pose = compose(com, part.origin_in_com)
     arm = subtract(pose.position, com.position)
     return pose, Twist(add(linear, cross(angular, arm)), angular)
 
 
 def _at_most(vector: Vector, most: float) -> Vector:
-    """Return a vector with its components clamped to `most`, to either side."""
+    """Return a vector with its components clamped to [-most, most]."""
     x, y, z = (max(min(component, most), -most) for component in vector)  # NaN stays
     return (x, y, z)

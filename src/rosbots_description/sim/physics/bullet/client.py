@@ -1,8 +1,8 @@
-"""PyBullet, imported without its chatter. No other module imports it."""
+"""PyBullet, imported without its banner. No other module imports it."""
 
 from .silence import silent
 
-with silent():  # it announces its build time
+with silent():  # it prints its build time
     import pybullet
 
 __all__ = ['pybullet']

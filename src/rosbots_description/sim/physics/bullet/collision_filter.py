@@ -1,14 +1,14 @@
-"""Which of PyBullet's bodies pass through each other, for as long as both of them are there."""
+"""Pairs of PyBullet bodies that do not collide, for as long as both exist."""
 
 from .body import Place
 from .client import pybullet
 
 
 class CollisionFilter:
-    """Pairs of parts that pass through each other.
+    """Pairs of parts that do not collide.
 
-    PyBullet notes such a pair by numbers, and goes on heeding it when a body has gone and its
-    number is that of another one, which would then fall through a floor.
+    PyBullet stores a pair by body number and keeps it when the body is removed. A new body that
+    reuses the number would then fall through a floor.
     """
 
     def __init__(self, client: int) -> None:
@@ -17,15 +17,16 @@ class CollisionFilter:
         self._pairs: dict[int, set[tuple[Place, Place]]] = {}  # by each body of a pair
 
     def add(self, one: Place, other: Place) -> None:
-        """Let two parts pass through each other."""
+        """Disable collisions between two parts."""
         self._set(one, other, touching=False)
         for place in (one, other):
             self._pairs.setdefault(place.body, set()).add((one, other))
 
     def forget(self, body: int) -> None:
-        """Let what gets the number of a body that has gone touch all.
+        """Drop the pairs of a removed body, whose number may be reused.
 
-        Of bodies that are there PyBullet would look for collisions anew, which takes its time.
+        Call this after the removal: for bodies that exist, PyBullet would search for collisions
+        again, which is slow.
         """
         for pair in self._pairs.pop(body, ()):
             self._set(*pair, touching=True)
@@ -33,7 +34,7 @@ class CollisionFilter:
                 self._pairs.get(place.body, set()).discard(pair)
 
     def clear(self) -> None:
-        """Forget all; PyBullet has done so, too."""
+        """Drop all pairs; PyBullet has been reset as well."""
         self._pairs.clear()
 
     def _set(self, one: Place, other: Place, touching: bool) -> None:

@@ -1,7 +1,7 @@
-"""What PyBullet takes of a model, made once from its description.
+"""Compiles a model's description for PyBullet, once per spawn.
 
-All that takes time about a new model, and all that the engine cannot take, is found out here, on
-any thread: meshes, surfaces, the text that PyBullet reads. World and crash sandbox use the result.
+Slow work and checks of the engine's limits are done here, on any thread: meshes, surfaces, the
+URDF that PyBullet reads. The world and the crash sandbox share the result.
 """
 
 import os
@@ -34,22 +34,22 @@ _MASSLESS = Inertial(0.0)
 
 @dataclass(frozen=True)
 class CompiledContactPart:
-    """What a part touches with, in PyBullet's terms."""
+    """Shapes and contact properties of a part, in PyBullet's terms."""
 
     shapes: tuple[Collision, ...]
     side: Side
     friction: float
     rolling_friction: float  # [m]
     restitution: float
-    surface: Surface  # as compliant as it is to be
+    surface: Surface  # with limited stiffness
     axes: FrictionAxes
 
 
 @dataclass(frozen=True)
 class CompiledBody:
-    """One of PyBullet's bodies: the URDF it is read from, and the contact parts of each link.
+    """One PyBullet body: the URDF it is loaded from, and the contact parts of each link.
 
-    The first one is the link's own, the others are its auxiliary links'; None: nothing touches.
+    The first part is on the link itself, the others are on its auxiliary links; None: no shapes.
     """
 
     text: str
@@ -58,12 +58,12 @@ class CompiledBody:
 
 @dataclass(frozen=True)
 class CompiledTree:
-    """Links that joints connect, and the bodies they become.
+    """A kinematic tree and the bodies that represent it.
 
-    Several bodies only where nothing moves; the first of them is the one that is asked.
+    Only a static tree has several bodies; states are read from the first one.
     """
 
-    tree: Tree  # without what is only seen or sensed
+    tree: Tree  # without visuals and sensors
     moments: tuple[Vector, ...]  # principal moments of inertia of each link [kg m^2]
     inertials: tuple[Pose, ...]  # centre of mass and principal axes, in the link's frame
     bodies: tuple[CompiledBody, ...]
@@ -77,13 +77,13 @@ class BulletModel(CompiledModel):
 
 
 def compile_model(spec: ModelSpec, meshes: EngineFiles) -> BulletModel:
-    """Make a model ready for the engine.
+    """Compile a model for the engine.
 
     Args:
-        meshes: makes the mesh files; it must not be closed before the model is gone.
+        meshes: writes the mesh files; it must stay open as long as the model is in use.
     Raises:
-        ModelError: there is more of something than the engine takes, or a mesh file cannot be read
-            or made; the sentence says what.
+        ModelError: the model exceeds a limit of the engine, or a mesh file cannot be read or
+            written; the message says which.
     """
     _require(spec, excess_of_parts(spec))
     groups = []
@@ -96,7 +96,7 @@ def compile_model(spec: ModelSpec, meshes: EngineFiles) -> BulletModel:
     def mesh_file(exact: bool, mesh: Mesh) -> str:
         if (exact, mesh) not in files:
             files[exact, mesh] = meshes.engine_file(mesh, exact)
-        return str(files[exact, mesh])  # only the model is to hold the file
+        return str(files[exact, mesh])  # a reference is kept by the model alone
 
     size = 0
     compiled = []
@@ -115,9 +115,9 @@ def _require(spec: ModelSpec, excess: str | None) -> None:
 
 
 def grouped(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> tuple[list[Groups], bool]:
-    """Return the groups of a tree's links anew: of the root first what lies inside.
+    """Return the groups of a tree's links, with occluded shapes of the root in a first group.
 
-    And whether there is something inside. What takes time about it is remembered.
+    The second value tells whether that group exists. Slow results are cached.
     """
     occluded_first = None
     if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
@@ -134,7 +134,7 @@ def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> Com
     coms = tuple(Pose(inertial.pose.position, orientation)
                  for inertial, orientation in zip(inertials, axes, strict=True))
     found = contact_parts(tree, *grouped(tree, groups, mesh_file), MAX_JOINTS + 1)
-    # A static tree is a rigid body for each of its parts.
+    # Each part of a static tree is a body of its own.
     bodies = [[[part]] for part in (*found[0], *slab(tree))] if tree.is_static else [found]
     return CompiledTree(tree, moments, coms, tuple(
         CompiledBody(
@@ -152,7 +152,7 @@ def _compiled_contact_parts(
     mass = jointed_mass(tree)
     compiled = []
     for link, joint, com, of_link in zip(tree.links, tree.joints, coms, body, strict=True):
-        # An auxiliary link has the frame of the joint above its link.
+        # An auxiliary link has the frame of its link's parent joint.
         auxiliary = joint.pose.orientation if joint else NO_ROTATION
         compiled.append(tuple(
             _compiled_contact_part(part, link, joint, mass, auxiliary if k else com.orientation)
@@ -164,7 +164,7 @@ def _compiled_contact_parts(
 def _compiled_contact_part(
     part: ContactPart, link: LinkSpec, joint: JointSpec | None, mass: float, turn: Quaternion
 ) -> CompiledContactPart | None:
-    """Return a contact part of a link; `turn` turns the axes it has in PyBullet into the link's."""
+    """Return a contact part of a link; `turn` rotates its axes in PyBullet into the link's axes."""
     if not part.shapes:
         return None
     surface = compliant(part.shapes[0].surface, mass)

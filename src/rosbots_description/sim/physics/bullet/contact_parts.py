@@ -1,4 +1,4 @@
-"""What a link touches with in PyBullet: its groups of shapes, each in the roles it is needed in."""
+"""Contact parts of a link in PyBullet: its groups of shapes, once for each role."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,7 +15,7 @@ _SLAB = Box((2e6, 2e6, 1e6))
 
 
 class ContactPart(NamedTuple):
-    """Shapes of equal surface, whom they meet, and the friction that PyBullet is to use there."""
+    """Shapes of equal surface, their collision filter, and their friction for PyBullet."""
 
     shapes: tuple[Collision, ...]
     side: Side
@@ -25,13 +25,13 @@ class ContactPart(NamedTuple):
 def contact_parts(
     tree: Tree, groups: Sequence[Groups], occluded_first: bool, max_parts: int
 ) -> list[list[ContactPart]]:
-    """Return what each link of a tree touches with; the first one is the link's own.
+    """Return the contact parts of each link of a tree; the first one is on the link itself.
 
     Args:
         groups: of each link, from shape_groups.py.
-        occluded_first: whether the first group of the root lies between the others.
-        max_parts: that the tree may have. If it would have more, every surface is there once, and
-            two of them, both smoother than 1, hold with the product of their mu.
+        occluded_first: whether the first group of the root is occluded by the others.
+        max_parts: limit for the tree. Above it each surface gets a single part, and the friction
+            of a pair with both mu < 1 is mu1 * mu2 instead of min(mu1, mu2).
     """
     kind = _kind(tree)
     found = []
@@ -46,10 +46,10 @@ def contact_parts(
 
 
 def slab(tree: Tree) -> list[ContactPart]:
-    """Return what boxes meet instead of a floor of planes, in the roles it is needed in.
+    """Return the boxes that replace a floor of planes in contacts with boxes, for each role.
 
-    Of a box above a plane PyBullet finds one corner in a step, and a box that falls flat would be
-    tipped by it; of a box above a box it finds four.
+    Between a box and a plane PyBullet finds one corner per step, which would tip a box that lands
+    flat. Between two boxes it finds four.
     """
     if not is_floor(tree):
         return []
@@ -83,6 +83,6 @@ def _in_both(part: ContactPart) -> ContactPart:
 
 
 def _tilt(plane: Plane) -> Pose:
-    """Return the rotation that brings z to the normal of a plane."""
+    """Return the rotation of z onto the normal of a plane."""
     x, y, z = plane.normal
     return Pose(orientation=normalise((-y, x, 0.0, 1.0 + z)) if z > -1.0 else (1.0, 0.0, 0.0, 0.0))

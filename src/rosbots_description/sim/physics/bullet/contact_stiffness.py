@@ -1,4 +1,4 @@
-"""How contacts push back: stiffness, damping, push-out and restitution, in PyBullet's terms."""
+"""Stiffness, damping, penetration correction and restitution of contacts, for PyBullet."""
 
 import math
 from dataclasses import replace
@@ -7,23 +7,22 @@ from ...description import FIXED, Surface
 from .generated_urdf import Tree
 
 _GRAVITY = 9.8  # [m/s^2]
-_STIFFEST = 1e12  # [N/m] the stiffness that SDF gives to contacts nobody described
+_STIFFEST = 1e12  # [N/m] SDF's default for kp
 
-# Deflection of one contact under all of a robot's weight [m]. Which of more than three rigid points
-# carry is undetermined; with this the load spreads as the shapes say.
+# Deflection of one contact under the whole weight of a robot [m]. With more than three rigid
+# contacts the load distribution is statically indeterminate; this compliance determines it.
 _DEFLECTION = 1e-3
-_PARTING_SPEED = 1.0  # [m/s] at which bodies part that overlap by all of their size
-_LEAST_REACH = 5e-6  # [m] what is smaller parts at no higher rate
-_PARTS_FREELY = 1.0  # [m/s] a max_vel from which on things may bounce
-_FASTEST_IMPACT = 100.0  # [m/s] a threshold beyond which nothing bounces
+_PARTING_SPEED = 1.0  # [m/s] for bodies that overlap by their whole size
+_LEAST_REACH = 5e-6  # [m] smaller bodies separate at the rate of this size
+_PARTS_FREELY = 1.0  # [m/s] least max_vel that allows a bounce
+_FASTEST_IMPACT = 100.0  # [m/s] a higher threshold means no bounce
 
 
 def restitution(surface: Surface) -> float:
-    """Return PyBullet's restitution of a surface: those of a pair are multiplied.
+    """Return the restitution of a surface for PyBullet, which multiplies those of a pair.
 
-    Gazebo takes the lesser of a pair, and lets nothing part faster than `max_vel`, which is 0.01
-    m/s unless somebody sets it. The root gives the same for equal ones, and for a pair of which
-    one has none.
+    Gazebo takes the lesser of a pair, and limits the rebound speed to `max_vel`, 0.01 m/s by
+    default. The square root agrees with Gazebo if both are equal or one of them is 0.
     """
     if surface.max_vel < _PARTS_FREELY or surface.threshold > _FASTEST_IMPACT:
         return 0.0
@@ -31,48 +30,48 @@ def restitution(surface: Surface) -> float:
 
 
 def overlap_share(step_size: float, rate: float) -> float:
-    """Return the share of an overlap that contacts take away in a step.
+    """Return the share of a penetration that contacts correct in a step (PyBullet's ERP).
 
     Args:
         step_size: duration of the step [s].
-        rate: at which bodies are pushed apart [1/s].
+        rate: of the correction [1/s].
     """
     return min(0.2, rate * step_size)
 
 
 def parting_rate(reach: float, push_out: float) -> float:
-    """Return the rate at which contacts take away an overlap [1/s].
+    """Return the rate at which contacts correct penetration [1/s].
 
     Args:
-        reach: the size of what overlaps [m]; nothing can overlap by more.
-        push_out: the rate for small things [1/s].
+        reach: size of the body [m], an upper bound of its penetration.
+        push_out: the rate for small bodies [1/s].
     """
     return min(push_out, _PARTING_SPEED / max(reach, _LEAST_REACH))
 
 
 def jointed_mass(tree: Tree) -> float:
-    """Return the mass [kg] of links that move on joints; 0 if the root is fixed."""
+    """Return the mass [kg] of a tree with movable joints; 0 if it has none or its root is fixed."""
     if tree.fixed_base or all(joint is None or joint.type == FIXED for joint in tree.joints):
         return 0.0
     return sum(link.inertial.mass for link in tree.links if link.inertial)
 
 
 def compliant(surface: Surface, mass: float) -> Surface:
-    """Return a surface that gives way at least as a robot of that mass [kg] does; 0 for none."""
+    """Return a surface with kp limited for a robot of that mass [kg]; 0 means no limit."""
     stiffest = mass * _GRAVITY / _DEFLECTION
     return replace(surface, kp=stiffest) if 0.0 < stiffest < surface.kp else surface
 
 
 def is_rigid(surface: Surface) -> bool:
-    """Tell whether nobody described how a surface gives way."""
+    """Tell whether the stiffness of a surface is SDF's default, which counts as rigid."""
     return surface.kp >= _STIFFEST
 
 
 def contact_spring(surface: Surface, step_size: float, rate: float) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of a contact of a surface that gives way.
+    """Return stiffness [N/m] and damping [N s/m] of a contact of a compliant surface.
 
-    It gives way by force / kp at rest, and is damped so much that it parts bodies no faster than
-    other contacts do; a kd of a user's could shoot them away. `rate` as in `overlap_share`.
+    Its static deflection is force / kp. Damping is at least what keeps it from separating bodies
+    faster than rigid contacts do; a lower kd could eject them. `rate` as in `overlap_share`.
     """
     least = step_size * surface.kp * (1.0 / overlap_share(step_size, rate) - 1.0)
     return surface.kp, max(surface.kd, least)

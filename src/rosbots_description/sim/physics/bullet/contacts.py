@@ -1,4 +1,4 @@
-"""Contacts and rays of one PyBullet world, by the names of the collisions in the ModelSpec."""
+"""Contacts and ray casts in one PyBullet world, with the collision names of the ModelSpec."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -15,16 +15,16 @@ from .body import Body, Place
 from .client import pybullet
 from .generated_urdf import MeshFile
 
-_MAX_RAYS = 8192  # in one call; PyBullet takes twice as many, and forgets the last one
+_MAX_RAYS = 8192  # in one call; PyBullet accepts 16384, but drops the last one
 
 
 class Surroundings:
-    """Reports what touches in a PyBullet world, and what rays meet there."""
+    """Reports contacts and casts rays in a PyBullet world."""
 
     def __init__(
         self, client: int, link_pose: Callable[[Body, str], Pose], mesh_file: MeshFile
     ) -> None:
-        """Look at the world of that PyBullet client.
+        """Work in the world of that PyBullet client.
 
         Args:
             link_pose: gives the pose of a link's frame.
@@ -35,7 +35,7 @@ class Surroundings:
         self._triangles: dict[Mesh, FloatArray] = {}
 
     def add(self, body: Body) -> None:
-        """Know a body by its names from now on."""
+        """Register the names of a body."""
         for link, places in body.surfaces.items():
             for place in places:
                 self._owners[place] = body, link
@@ -54,11 +54,11 @@ class Surroundings:
     def contacts(self, body: Body, link: str | None) -> list[Contact]:
         """Return contacts; see `PhysicsEngine.contacts`."""
         found = []
-        # Asked for one body PyBullet turns normals round where it is the second, but no friction.
+        # Queried for one body, PyBullet flips normals where it is the second, but not friction.
         for point in pybullet.getContactPoints(physicsClientId=self._client):
             _, a, b, index_a, index_b, on_a, on_b, normal, distance, load, *friction = point
             if distance > 0.0 and load <= 0.0:
-                continue  # a pair that is about to touch
+                continue  # near, but not touching
             one, other = Place(a, index_a), Place(b, index_b)
             force = tuple(load * n + friction[0] * p + friction[2] * q
                           for n, p, q in zip(normal, friction[1], friction[3], strict=True))
@@ -76,7 +76,7 @@ class Surroundings:
         return owner is body and link in (None, name)
 
     def cast_rays(self, starts: Points, ends: Points, named: bool) -> RayHits:
-        """Return what rays meet first; see `PhysicsEngine.cast_rays`."""
+        """Return the first hits of rays; see `PhysicsEngine.cast_rays`."""
         starts, ends = (np.asarray(points, dtype=float) for points in (starts, ends))
         if starts.ndim != 2 or starts.shape[1] != 3 or starts.shape != ends.shape:
             raise SimError(f'rays take starts and ends of one shape (n, 3), not {starts.shape} and '
@@ -96,7 +96,7 @@ class Surroundings:
         return RayHits(np.where(numbers >= 0, shares * lengths, math.inf), names)
 
     def _name(self, place: Place, spot: Vector) -> CollisionName:
-        """Return the collision of a part that is at a spot of its surface, in the world."""
+        """Return the collision of a part at a point of its surface, in the world."""
         body, link = self._owners[place]
         shapes = body.shapes[place]
         if len({shape.name for shape in shapes}) == 1:
@@ -107,7 +107,7 @@ class Surroundings:
         return CollisionName(body, link, nearest.name)
 
     def _distance(self, shape: Collision, point: Vector) -> float:
-        """Return how far a point of the link's frame is from the surface of a shape [m]."""
+        """Return the signed distance of a point in the link's frame to a shape's surface [m]."""
         x, y, z = local = rotate(conjugate(shape.pose.orientation),
                                  subtract(point, shape.pose.position))
         match shape.geometry:
@@ -127,7 +127,7 @@ class Surroundings:
 
 
 def _outside(reaches: Iterable[float]) -> float:
-    """Return the distance to a convex shape's surface of a point that is so far out each way."""
+    """Return the signed distance to a convex shape, given those along each of its directions."""
     reaches = list(reaches)
     if max(reaches) <= 0.0:
         return max(reaches)
@@ -135,7 +135,7 @@ def _outside(reaches: Iterable[float]) -> float:
 
 
 def _to_triangles(triangles: FloatArray, point: FloatArray) -> float:
-    """Return the distance of a point to the nearest of triangles (n, 3, 3) [m]."""
+    """Return the distance of a point to the nearest of n triangles, shape (n, 3, 3) [m]."""
     a, b, c = (triangles[:, k] - point for k in range(3))
     nearest = math.inf
     for start, end in ((a, b), (b, c), (c, a)):

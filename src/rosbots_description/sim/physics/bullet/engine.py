@@ -1,7 +1,7 @@
 """The physics engine: specs and names in, plain values out.
 
-PyBullet's defaults (damping, motors on every joint, a cap on joint speed) are switched off, so that
-bodies move as rigid-body mechanics has it.
+PyBullet's defaults (damping, a motor on each joint, a limit on joint speed) are switched off, so
+that bodies follow rigid-body mechanics.
 """
 
 from functools import partial
@@ -26,23 +26,23 @@ from .solver_iterations import CHECK, SolverEffort
 from .springs import Springs
 from .tuning import Tuning
 
-_TOGETHER = 20  # steps in one call, which costs less than a call each
-# Squared velocity [m^2/s^2] by which no contact or motor changes in the solver's last iteration.
-# PyBullet's own 1e-7 leaves a robot that is parked on a slope 0.01 mm/s.
+_TOGETHER = 20  # steps in one call, which is faster than a call for each
+# Convergence threshold of the solver: squared change of velocity [m^2/s^2] in an iteration. With
+# PyBullet's default, 1e-7, a robot parked on a slope creeps at 0.01 mm/s.
 _CONVERGED = 1e-8
-# What bodies that are gone were read from [bytes], some 45 of the article's robots. PyBullet keeps
-# two or three times that. To build the engine anew takes 5 ms for each robot that stays.
+# URDF and meshes of removed bodies [bytes], some 45 robots of the article. PyBullet leaks two or
+# three times as much. A rebuild of the engine takes 5 ms for each robot in the world.
 MAX_LEAKED = 1_500_000
 
 
 class Engine(BodyStates):
-    """One PyBullet world in this process, without window and without chatter."""
+    """One PyBullet world in this process, without a window or output."""
 
     def __init__(self, physics: PhysicsSettings, tuning: Tuning | None = None) -> None:
         """Open an empty world.
 
         Args:
-            tuning: other choices than the usual ones, to measure what they do.
+            tuning: settings other than the defaults, for measurements.
         """
         self._meshes = EngineFiles()
         self._tuning = tuning or Tuning()
@@ -51,14 +51,14 @@ class Engine(BodyStates):
         self._step = pybullet.stepSimulation
         self._effort = SolverEffort(self._set_iterations)
         self._until_look = CHECK  # steps
-        self._bodies: dict[Body, None] = {}  # in the order they came
+        self._bodies: dict[Body, None] = {}  # in the order they were added
         self._springs = Springs(self._client)
-        self._weightless: list[Body] = []  # those with links that feel no gravity
+        self._weightless: list[Body] = []  # bodies with links without gravity
         self._slipping = Slipping(self._client, self._maker.scale_friction, self._reach)
         self._surroundings = Surroundings(self._client, self.link_pose,
                                           partial(self._meshes.engine_file, exact=False))
         self._snapshots = Snapshots(self._client)
-        # Bytes that were read to make bodies that are gone; PyBullet keeps what it made of them.
+        # Bytes that removed bodies were loaded from; PyBullet does not free all of its memory.
         self._leaked = 0
         self.apply(physics)
 
@@ -69,7 +69,7 @@ class Engine(BodyStates):
         self._meshes.close()
 
     def apply(self, physics: PhysicsSettings) -> None:
-        """Use these settings from the next step on."""
+        """Apply these settings from the next step on."""
         self._gravity = physics.gravity
         self._cone = physics.friction_cone or self._tuning.friction_cone
         self._maker.set_step_size(physics.step_size)
@@ -81,9 +81,9 @@ class Engine(BodyStates):
             numSubSteps=0,
             contactERP=overlap_share(physics.step_size, self._tuning.push_out),
             enableConeFriction=self._cone,
-            collisionFilterMode=0,  # each of a pair must be willing to meet the other
-            enableFileCaching=0,  # else a second model under a file name gets the first one's text
-            minimumSolverIslandSize=1,  # what has converged waits for nobody else
+            collisionFilterMode=0,  # a pair collides if both masks allow it
+            enableFileCaching=0,  # file names are reused with other contents
+            minimumSolverIslandSize=1,  # islands converge independently
             solverResidualThreshold=_CONVERGED,
             jointFeedbackMode=pybullet.JOINT_FEEDBACK_IN_JOINT_FRAME,
             physicsClientId=self._client,
@@ -93,16 +93,16 @@ class Engine(BodyStates):
         self._together = _divisible(physics.step_size, _TOGETHER)
 
     def _reach(self, direction: Vector) -> float:
-        """Return how many times its limit friction can hold in a level direction, a unit vector."""
+        """Return the ratio of friction to mu N possible along a horizontal unit vector."""
         return 1.0 if self._cone else max(1.0, abs(direction[0]) + abs(direction[1]))
 
     @property
     def needs_rebuild(self) -> bool:
-        """Whether removed bodies have left much behind."""
+        """Whether removed bodies have leaked more than MAX_LEAKED."""
         return self._leaked > MAX_LEAKED
 
     def reset(self) -> None:
-        """Remove everything; the same bodies added again then move bit for bit as before."""
+        """Remove everything; the same bodies added again move bit-identically."""
         self._snapshots.clear()
         self._maker.reset()
         pybullet.setPhysicsEngineParameter(
@@ -137,10 +137,10 @@ class Engine(BodyStates):
                 self._effort.look(self._motors())
 
     def _step_alike(self, steps: int) -> None:
-        """Make steps in which the same bodies are fast."""
+        """Advance by steps between two checks for fast bodies."""
         step, client, fast = self._step, self._client, self._fast
         is_sprung = bool(self._springs)
-        if self._pushes and steps > 1:  # a push lasts as long as a call of PyBullet
+        if self._pushes and steps > 1:  # a push lasts for one call of PyBullet
             self._step_alike(1)
             steps -= 1
         self._pushes.clear()
@@ -162,7 +162,7 @@ class Engine(BodyStates):
                 fast.after_step()
 
     def _step_together(self, steps: int) -> None:
-        """Make so many steps in one call; motors are to be set with the size of a single step."""
+        """Advance by several steps in one call; motors are set at the size of a single step."""
         size, client = self._physics.step_size, self._client
         resize = pybullet.setPhysicsEngineParameter
         resize(fixedTimeStep=steps * size, numSubSteps=steps, physicsClientId=client)
@@ -170,26 +170,26 @@ class Engine(BodyStates):
         resize(fixedTimeStep=size, numSubSteps=0, physicsClientId=client)
 
     def enable(self, enabled: bool) -> None:
-        """Let bodies move in steps from now on, or not; see `PhysicsEngine`."""
+        """Enable or disable physics; see `PhysicsEngine`."""
         self._enabled = enabled
 
     def compile(self, spec: ModelSpec) -> BulletModel:
-        """Make a model ready to be added; any thread may ask.
+        """Compile a model, so that it can be added; may be called from any thread.
 
         Raises:
-            ModelError: the engine cannot take it; the sentence says why.
+            ModelError: the engine cannot simulate it; the message says why.
         """
         return compile_model(spec, self._meshes)
 
     def add(self, model: BulletModel, pose: Pose) -> Body:
-        """Put a model into the world, its frame at `pose`, all joints at zero."""
+        """Add a model to the world with its frame at `pose` and all joints at zero."""
         body, spec = Body(model.size), model.spec
         try:
             for tree in model.trees:
                 self._maker.add_tree(body, tree, pose)
             self._maker.exclude_collisions_within(body, spec)
         except BaseException:
-            self.remove(body)  # nothing half made stays behind unseen
+            self.remove(body)  # leave no partial model behind
             raise
         for joint in spec.joints:
             if joint.name in body.joints:
@@ -204,7 +204,7 @@ class Engine(BodyStates):
         return body
 
     def remove(self, body: Body) -> None:
-        """Take a model out of the world."""
+        """Remove a model from the world."""
         self._joint_readings.clear()
         if body in self._weightless:
             self._weightless.remove(body)
@@ -218,7 +218,7 @@ class Engine(BodyStates):
         self._maker.remove(body)
 
     def overlap(self, one: Body, other: Body) -> float:
-        """Return how deep two models reach into each other [m]; 0 if they do not."""
+        """Return the penetration depth of two models [m]; 0 if they do not overlap."""
         return max((
             -point[8] for first in one.bodies for second in other.bodies
             for point in pybullet.getClosestPoints(first, second, 0.0, physicsClientId=self._client)
@@ -231,7 +231,7 @@ class Engine(BodyStates):
     def set_slip_compliance(
         self, body: Body, link: str, axis: Vector, compliances: tuple[float, float]
     ) -> None:
-        """Let a link slip so from now on; see `PhysicsEngine`."""
+        """Set the slip compliance of a link; see `PhysicsEngine`."""
         self._slipping.set(body, link, (axis, compliances))
 
     def _let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
@@ -243,11 +243,11 @@ class Engine(BodyStates):
         return self._surroundings.contacts(body, link)
 
     def cast_rays(self, starts: Points, ends: Points, named: bool = False) -> RayHits:
-        """Return what rays meet first."""
+        """Return the first hits of rays."""
         return self._surroundings.cast_rays(starts, ends, named)
 
     def snapshot(self) -> BulletSnapshot:
-        """Return the state of everything, between two steps."""
+        """Return a snapshot of the whole state, between two steps."""
         idle = [body.joints[joint] for body in self._driven
                 for joint, (_, effort) in body.motors.items() if not effort]
         snapshot = self._snapshots.take([*self._bodies], self._moving(), idle, self._note)
@@ -255,22 +255,22 @@ class Engine(BodyStates):
         return snapshot
 
     def restore(self, snapshot: BulletSnapshot) -> None:
-        """Go back to a snapshot.
+        """Restore a snapshot.
 
         Raises:
-            SimError: models were added, removed or respecified since.
+            SimError: models were added, removed or changed since it was taken.
         """
         self._recall(self._snapshots.put_back(snapshot, [*self._bodies], self._moving()))
 
     def _moving(self) -> list[int]:
-        """Return PyBullet's numbers of what it moves."""
+        """Return PyBullet's numbers of all moving bodies."""
         return [number for body in self._bodies for number in body.masses]
 
     def _note(self) -> tuple[Any, ...]:
-        """Return all state that is not PyBullet's, or that PyBullet does not restore."""
+        """Return all state that PyBullet does not hold or does not restore."""
         for body in self._bodies:
             for joint in body.joints:
-                self._joint_reading(body, joint)  # its effort is of the last step
+                self._joint_reading(body, joint)  # PyBullet does not restore efforts
         return (
             self._physics, self._until_look, self._effort.note(), self._fast.note(),
             self._slipping.note(), list(self._pushes), dict(self._joint_readings),
@@ -278,7 +278,7 @@ class Engine(BodyStates):
         )
 
     def _recall(self, notes: tuple[Any, ...]) -> None:
-        """Go on as at the time of a note, PyBullet's part being restored."""
+        """Restore noted state after PyBullet's own has been restored."""
         physics, until_look, effort, fast, slipping, pushes, readings, motors = notes
         if physics != self._physics:
             self.apply(physics)
@@ -301,7 +301,7 @@ class Engine(BodyStates):
         )
 
     def _lift_weightless(self) -> None:
-        """Hold up the links that feel no gravity; PyBullet knows only one gravity for all."""
+        """Cancel the weight of links without gravity; PyBullet has one gravity for all links."""
         gx, gy, gz = self._gravity
         for body in self._weightless:
             for number, index, mass in body.weightless:
@@ -317,10 +317,10 @@ class Engine(BodyStates):
 
 
 def _divisible(step_size: float, most: int) -> list[int]:
-    """Return for each number of steps, up to `most`, as many of them as PyBullet makes in one call.
+    """Return, for each number of steps up to `most`, how many PyBullet can make in one call.
 
-    It divides the duration of all by their number, and makes as many of that size as fit. So both
-    quotients must be exact, as they are of powers of two.
+    PyBullet computes size = duration / steps, then makes duration / size steps. Both quotients must
+    be exact in floating point, as they are for powers of two.
     """
     found = [0, 1]
     for steps in range(2, most + 1):
@@ -332,4 +332,4 @@ def _divisible(step_size: float, most: int) -> list[int]:
 
 def make_engine(physics: PhysicsSettings) -> PhysicsEngine:
     """Return an empty world."""
-    return cast(PhysicsEngine, Engine(physics))  # it takes only what it has made itself
+    return cast(PhysicsEngine, Engine(physics))  # it accepts only its own Body and BulletModel

@@ -1,8 +1,8 @@
-"""Keeps the energy of what turns fast, where PyBullet's time steps do not.
+"""Conserves the energy of fast rotating bodies, which PyBullet's integration does not.
 
-PyBullet turns bodies by explicit Euler, which gains energy without bound: by some dt w^2 of it per
-second at an angular speed w. So all bodies are looked at now and then, and those that turn fast
-are put right in each step.
+PyBullet integrates rotation by explicit Euler, whose energy E grows without bound: at angular speed
+w by dE/dt of about dt w^2 E. So the speed of all bodies is checked every few steps, and the energy
+of fast ones is corrected in each step.
 """
 
 from collections.abc import Iterable
@@ -16,40 +16,40 @@ from .body import Masses
 from .client import pybullet
 from .springs import followed_damping, followed_stiffness
 
-LOOK = 20  # steps between two looks at all bodies
-# dt w^2 [1/s], from which on bodies of several links are put right while they touch nothing; and
-# the share of its energy that a single link gains per second, from which on it is.
+LOOK = 20  # steps between two checks of all bodies
+# Thresholds of the correction: dt w^2 [1/s] for bodies of several links without contact, and the
+# relative energy gain per second for single links.
 _FAST, _GAINS = 0.01, 2e-4
-_HELD = 10.0  # times as much where something holds it, as a floor does a robot on the spot
-_CALM = 100  # looks without speed, after which a multibody is left alone again
-# Share of the most kinetic energy a multibody had, by which its energy may grow. As velocities and
-# places are not of the same moment, it seems to change by less.
+_HELD = 10.0  # factor on both for bodies in contact, such as a robot turning on the spot
+_CALM = 100  # slow checks in a row that end the correction of a body
+# Allowed growth of energy, as a share of the peak kinetic energy. Velocities and positions are half
+# a step apart, which makes the computed energy of a body vary by less than this.
 _GROWS = 0.01
 
 
 class FastBodies:
-    """Those bodies of a PyBullet world that turn fast."""
+    """The fast rotating bodies of one PyBullet world."""
 
     def __init__(self, client: int) -> None:
         """Work in the world of that PyBullet client, which is empty."""
         self._client = client
         self._bodies: dict[int, Masses] = {}
         self._swinging: dict[int, _Swinging] = {}
-        self.rest = 0  # steps until the next look
+        self.rest = 0  # steps until the next check
         self.set(0.001, (0.0, 0.0, 0.0))
 
     def set(self, step_size: float, gravity: Vector) -> None:
-        """Simulate with that step size [s] and gravity [m/s^2] from now on."""
+        """Set step size [s] and gravity [m/s^2]."""
         self._step_size, self._gravity = step_size, gravity
         self._swinging.clear()
         self.rest = 0
 
     def add(self, bodies: dict[int, Masses]) -> None:
-        """Look at these bodies from now on, by PyBullet's numbers."""
+        """Watch these bodies, given by PyBullet's numbers."""
         self._bodies.update(bodies)
 
     def forget(self, numbers: Iterable[int]) -> None:
-        """Look at these bodies no more."""
+        """Stop watching these bodies."""
         for number in numbers:
             self._bodies.pop(number, None)
             self._swinging.pop(number, None)
@@ -60,23 +60,23 @@ class FastBodies:
         self.rest = 0
 
     def disturb(self, number: int) -> None:
-        """Tell that something from outside does work on a body in the next step."""
+        """Note that an external force may do work on a body in the next step."""
         swinging = self._swinging.get(number)
         if swinging:
             swinging.ceiling = None
 
     def set_in_motion(self, number: int) -> None:
-        """Tell that a body has another velocity now."""
+        """Note that the velocity of a body has been set."""
         self.disturb(number)
         self.rest = 0
 
     def note(self) -> tuple[Any, ...]:
-        """Return what `recall` takes to go back to the present state."""
+        """Return the state for `recall`."""
         return self.rest, {number: (one.calm, one.ceiling, one.flies, one.peak, one.total)
                            for number, one in self._swinging.items()}
 
     def recall(self, note: tuple[Any, ...]) -> None:
-        """Go on as at the time of a note; the bodies are the same."""
+        """Restore the state of a note; the bodies must be the same."""
         self.rest, swinging = note
         self._swinging.clear()
         for number, state in swinging.items():
@@ -85,11 +85,11 @@ class FastBodies:
             self._swinging[number] = one
 
     def __bool__(self) -> bool:
-        """Tell whether there is anything to put right in the next step."""
+        """Tell whether any body is corrected in the next step."""
         return bool(self._swinging)
 
     def look(self) -> None:
-        """Find what turns fast."""
+        """Find the fast rotating bodies."""
         self.rest = LOOK
         velocity_of, client, step_size = pybullet.getBaseVelocity, self._client, self._step_size
         for number, masses in self._bodies.items():
@@ -108,10 +108,10 @@ class FastBodies:
             self._note(number, masses, fast)
 
     def _note(self, number: int, masses: Masses, fast: float) -> None:
-        """Note that a body turns so many times as fast as is left alone."""
+        """Record the speed of a body as a multiple of the threshold."""
         swinging = self._swinging.get(number)
         if swinging is not None:
-            # One that flies may turn fast again: about a middle axis it does so now and then.
+            # A free body may speed up again: rotation about the intermediate axis is unstable.
             swinging.calm = 0 if fast > 1.0 or swinging.flies else swinging.calm + 1
             if swinging.calm > _CALM:
                 del self._swinging[number]
@@ -121,19 +121,19 @@ class FastBodies:
                 self._swinging[number] = swinging
 
     def after_step(self) -> None:
-        """Take from bodies what PyBullet has given to them."""
+        """Remove the energy that PyBullet's integration has added."""
         with np.errstate(all='ignore'):  # a model may have diverged
             for swinging in self._swinging.values():
                 swinging.hold(self._step_size, self._gravity, self._bodies)
 
 
 class _Swinging:
-    """A body that turns fast. Its energy grows by the work that is done on it, or not at all.
+    """A fast rotating body, whose energy grows by no more than the work done on it.
 
-    Work is that of its motors and dampers; static bodies do none. What pushes do, and other bodies
-    that move, is not known: the energy after that is taken as it is. While a body flies, only the
-    energy about its centre of mass is looked at, which gravity does not change. Springs keep what
-    they take.
+    Motors and dampers do work; static bodies do none. The work of external forces and of moving
+    bodies in contact is unknown: after either, the new energy is accepted. In free flight only the
+    energy about the centre of mass is limited, which gravity does not change. The energy stored in
+    springs counts.
     """
 
     def __init__(self, client: int, number: int, masses: Masses) -> None:
@@ -146,13 +146,13 @@ class _Swinging:
         self._mass = np.array([part.mass for part in parts])
         self._weight = np.array([part.mass * part.has_weight for part in parts])
         self._moments = np.array([part.moments for part in parts])
-        self.peak = 0.0  # the most kinetic energy seen [J]
-        self.ceiling: float | None = None  # of the energy [J]; None: as it is after the next step
+        self.peak = 0.0  # greatest kinetic energy so far [J]
+        self.ceiling: float | None = None  # limit of the energy [J]; None: set after the next step
         self.flies, self.total = False, 0.0  # after the last step
         self.calm = 0
 
     def hold(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
-        """See that the last step did not add to the energy."""
+        """Remove energy that the last step added without work."""
         touched = self.touched()
         total, own, kinetic, drift = self._energy(step_size, gravity)
         self.peak = max(self.peak, kinetic)
@@ -178,11 +178,11 @@ class _Swinging:
     def _energy(
         self, step_size: float, gravity: Vector
     ) -> tuple[float, float, float, FloatArray]:
-        """Return energies [J], and how the centre of mass drifts [m/s].
+        """Return three energies [J], and the velocity of the centre of mass [m/s].
 
-        All energy, that without place and drift of the centre of mass, and the kinetic part of
-        this. Heights and springs are taken in the middle of the last step, where its velocities
-        belong.
+        The energies are: total; without height and velocity of the centre of mass; and the kinetic
+        part of the latter. Positions are taken at the middle of the last step, to match the
+        velocities.
         """
         states = pybullet.getLinkStates(self._number, self._indices, 1, 1, self._client)
         rows = [(state[0], state[1], state[6], state[7]) for state in states]
@@ -205,7 +205,7 @@ class _Swinging:
         return energy + own, own, kinetic, drift
 
     def _strain(self, step_size: float) -> float:
-        """Return the energy in the springs of joints [J]."""
+        """Return the energy stored in joint springs [J]."""
         if not any(self._all.stiffness):
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
@@ -216,7 +216,7 @@ class _Swinging:
         ))
 
     def _work(self, step_size: float) -> float:
-        """Return what motors and dampers gave in the last step [J], less than 0 if they took it."""
+        """Return the work of motors and dampers in the last step [J]."""
         if not self._all.joints:
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
@@ -225,12 +225,12 @@ class _Swinging:
                                      for (_, speed, _, effort), damping in pairs))
 
     def touched(self) -> set[int]:
-        """Return what else the body touches."""
+        """Return the numbers of the bodies that touch this one."""
         points = pybullet.getContactPoints(self._number, physicsClientId=self._client)
         return {number for point in points for number in point[1:3]} - {self._number}
 
     def _slow_down(self, share: float, drift: FloatArray) -> None:
-        """Let all parts move with a share of their velocity about the centre of mass."""
+        """Scale all velocities relative to the centre of mass by `share`."""
         if self._base:
             linear, angular = pybullet.getBaseVelocity(self._number, self._client)
             linear = drift + share * (np.array(linear) - drift)
@@ -250,7 +250,7 @@ class _Swinging:
 
 
 def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
-    """Return the share of its energy that a free body gains by explicit Euler, per second.
+    """Return the relative energy gain of a free body by explicit Euler [1/s].
 
     With Euler's equations w' = -I^-1 (w x I w) it is dt (w' I w') / (w I w).
 
@@ -267,7 +267,7 @@ def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
 
 
 def _turned_back(turns: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Return vectors (n, 3) turned by the inverse of quaternions (n, 4)."""
+    """Return vectors (n, 3) rotated by the inverse of quaternions (n, 4)."""
     own, w = -turns[:, :3], turns[:, 3:]
     twice = 2.0 * np.cross(own, vectors)
     return vectors + w * twice + np.cross(own, twice)

@@ -1,4 +1,4 @@
-"""In which directions a surface holds how much, in PyBullet's terms."""
+"""Anisotropic friction of surfaces, as PyBullet takes it."""
 
 import math
 from typing import Any
@@ -8,11 +8,11 @@ from ...description import Collision, LinkSpec, Surface
 from .body import Body, FrictionAxes
 from .friction_pairs import MAX_FRICTION
 
-EVENLY = (1.0, 1.0, 1.0)  # shares of friction held along the axes of a part
+EVENLY = (1.0, 1.0, 1.0)  # friction scales along the axes of a part
 
 
 def directions(collision: Collision) -> tuple[Any, ...]:
-    """Return what tells apart the directions of friction; nothing if it has none."""
+    """Return a key for the anisotropic friction of a collision; () if it is isotropic."""
     surface = collision.surface
     if _is_even(surface, MAX_FRICTION):
         return ()
@@ -21,10 +21,10 @@ def directions(collision: Collision) -> tuple[Any, ...]:
 
 
 def first_direction(collision: Collision, link: LinkSpec) -> Vector:
-    """Return the first direction of a collision's friction in the frame of its link, a unit vector.
+    """Return the first friction direction of a collision as a unit vector in its link's frame.
 
-    Without `fdir1` ODE takes the world's y axis on level ground; here it is that of the model, so
-    that friction turns with what it belongs to.
+    Without `fdir1` ODE uses the world's y axis on level ground; here it is the model's y axis, so
+    that the direction rotates with the model.
     """
     given = collision.surface.fdir1
     length = math.hypot(*given)
@@ -37,14 +37,14 @@ def first_direction(collision: Collision, link: LinkSpec) -> Vector:
 def friction_scales(
     collision: Collision, link: LinkSpec, turn: Quaternion, friction: float
 ) -> tuple[float, float, float]:
-    """Return which shares of its greatest friction a part holds along each of its own axes.
+    """Return the friction scales of a part along its own axes, 0 to 1.
 
-    PyBullet can weaken it along these alone; where the first direction of friction is none of them
-    the part holds alike in all.
+    PyBullet scales friction along these axes only. If the first friction direction is not one of
+    them, friction is isotropic.
 
     Args:
-        turn: turns the part's axes into those of the link.
-        friction: what PyBullet is given for the part.
+        turn: rotation of the part's axes into the link's axes.
+        friction: coefficient that PyBullet is given for the part.
     """
     surface = collision.surface
     if _is_even(surface, friction):
@@ -60,15 +60,15 @@ def friction_scales(
 
 
 def _is_even(surface: Surface, most: float) -> bool:
-    """Tell whether a surface holds alike in all directions up to a friction coefficient."""
+    """Tell whether friction is isotropic, with coefficients clamped to `most`."""
     return min(surface.mu, surface.mu2) >= min(most, surface.greatest_mu)
 
 
 def can_slip(body: Body, link: str, axle: Vector) -> bool:
-    """Tell whether a link can slip along an axis of its frame: its parts must have it, too."""
+    """Tell whether a link can slip along an axis: it must be an axis of each of its parts."""
     return all(any(axes_along(body.friction_axes[place], axle)) for place in body.surfaces[link])
 
 
 def axes_along(axes: FrictionAxes, direction: Vector) -> list[bool]:
-    """Tell which axis of a part a direction of the link's frame is."""
+    """Tell for each axis of a part whether a direction in the link's frame is along it."""
     return [abs(component) > ALONG for component in rotate(conjugate(axes.turn), direction)]

@@ -1,21 +1,21 @@
 """How a pair of surfaces gets the lesser of their friction coefficients, as in Gazebo.
 
-PyBullet gives a pair the product of one number per body. So a surface is there twice: once with its
-own mu, which meets what is as rough or rougher, and once with 1, which meets what is as smooth or
-smoother. Of each pair a mu and a 1 are left, and their product is the lesser mu. A surface with
-mu 1 is both at once. PyBullet's collision filter sees to who meets whom.
+PyBullet uses the product mu1 * mu2. So each surface exists twice: once with its own mu, in contact
+with surfaces of equal or greater mu, and once with 1, in contact with surfaces of equal or lesser
+mu. Each pair then is a mu and a 1, and the product is min(mu1, mu2). A surface with mu = 1 has both
+roles. The roles are assigned by PyBullet's collision filter.
 """
 
 import math
 from enum import Enum, IntEnum
 from typing import NamedTuple
 
-# PyBullet limits the friction of a pair to this; it holds on slopes of up to 84 degrees.
+# PyBullet's limit for a pair; the angle of friction is 84 degrees.
 MAX_FRICTION = 10.0
-# PyBullet's rays are of this group. They are to see each surface once.
+# Collision group of PyBullet's rays, which must hit each surface once.
 _RAYS = 1
-_FIRST = 1  # bit that is free for the kinds
-# Distinct mu that a world can tell apart, besides 1; the bits of a filter are no more.
+_FIRST = 1  # first bit for the kinds
+# Distinct values of mu in a world besides 1, limited by the bits of a collision filter.
 _CLASSES = 18
 
 
@@ -23,11 +23,11 @@ class Kind(IntEnum):
     """What a surface belongs to."""
 
     MOVING = 0
-    OCCLUDED = 1  # it lies between others, no plane can touch it
+    OCCLUDED = 1  # occluded by other shapes, out of reach of any plane
     BOXES = 2  # a moving body that consists of boxes
     STATIC = 3
     PLANE = 4
-    SLAB = 5  # what boxes meet instead of a plane
+    SLAB = 5  # replaces a plane in contacts with boxes
 
 
 _MEETS = {
@@ -41,7 +41,7 @@ _MEETS = {
 
 
 class Role(Enum):
-    """Which friction a surface has: its own mu, 1, or both at once."""
+    """Friction coefficient of a part: the surface's own mu, 1, or 1 for both roles."""
 
     OWN = 'own'
     ONE = 'one'
@@ -49,7 +49,7 @@ class Role(Enum):
 
 
 class Side(NamedTuple):
-    """One of the two ways in which a surface of friction coefficient `mu` can be met."""
+    """One of the two parts for a surface of friction coefficient `mu`."""
 
     kind: Kind
     role: Role
@@ -62,7 +62,7 @@ def coefficient(mu: float) -> float:
 
 
 def roles(mu: float, is_static: bool) -> tuple[Role, ...]:
-    """Return the roles in which a surface is needed; nothing is rougher than the roughest."""
+    """Return the roles that a surface needs; a static one with the greatest mu needs just 1."""
     if mu == 1.0:
         return (Role.BOTH,)
     if is_static and mu == MAX_FRICTION:
@@ -71,21 +71,21 @@ def roles(mu: float, is_static: bool) -> tuple[Role, ...]:
 
 
 class FrictionPairs:
-    """The collision groups and masks by which each pair of surfaces gets its lesser mu.
+    """The collision groups and masks by which each pair of surfaces gets the lesser mu.
 
-    Two surfaces meet if the group of each is in the mask of the other (PyBullet's mode 0).
+    Two surfaces collide if the group of each is in the mask of the other (PyBullet's mode 0).
     """
 
     def __init__(self) -> None:
-        self._bits: dict[float, int] = {}  # of each mu that has come
+        self._bits: dict[float, int] = {}  # of each mu that was added
 
     def add(self, mu: float) -> bool:
-        """Tell a mu apart from now on; return whether that changes the masks of others."""
+        """Register a mu; return whether that changes the masks of other surfaces."""
         if mu == 1.0 or mu in self._bits:
             return False
         if len(self._bits) < _CLASSES:
             bit = 1 << _FIRST + 2 * len(Kind) + len(self._bits)
-        else:  # it is taken for the nearest one, and holds between both
+        else:  # no bits left: share that of the nearest mu
             bit = self._bits[min(self._bits, key=lambda known: math.fabs(known - mu))]
         self._bits[mu] = bit
         return True
@@ -101,7 +101,7 @@ class FrictionPairs:
         met_as_both = met_as_one << len(Kind)
         if role is Role.OWN:
             return self._bits[mu], met_as_one | (met_as_both if mu < 1.0 else 0)
-        seen = 0 if kind is Kind.SLAB else _RAYS  # the plane is seen instead
+        seen = 0 if kind is Kind.SLAB else _RAYS  # rays hit the plane instead
         smoother = 0
         for other, bit in self._bits.items():
             if other <= mu:

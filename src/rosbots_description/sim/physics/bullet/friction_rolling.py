@@ -1,21 +1,21 @@
-"""How hard it is to roll, in PyBullet's terms."""
+"""Rolling friction of parts, as PyBullet takes it."""
 
 from collections.abc import Sequence
 
 from ...description import Collision, Cylinder, JointSpec
 from .shape_groups import wheel_shape
 
-# Share of the weight that holds back what rolls, as with hard wheels on a hard floor; half of it is
-# enough to keep a can, a barrel and a robot on free wheels in their place.
+# Coefficient of rolling resistance of hard wheels on a hard floor. Half of it is enough to keep a
+# can, a barrel and a robot on free wheels at rest.
 _ROLLING_RESISTANCE = 0.005
 
 
 def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> float:
-    """Return PyBullet's rolling friction of a body [m]: how far before the axle the ground pushes.
+    """Return PyBullet's rolling friction of a part [m]: the lever arm of the normal force.
 
-    Only cylinders need it. One that lies has an edge at each end, and PyBullet finds but one of
-    them in a step; the other pushes from where it was, from behind, and a can at rest would roll
-    away faster and faster. Wheels do not: they touch in one place (`crowned`, `touching_end`).
+    Only cylinders need it. PyBullet updates one end of a lying cylinder's contact line per step;
+    the contact at the other end lags behind the axis and would accelerate a can from rest. Wheels
+    touch at one place along the axle and need none (`crowned`, `touching_end`).
     """
     radii = [one.geometry.radius for one in collisions if isinstance(one.geometry, Cylinder)]
     if len(radii) < len(collisions) or any(wheel_shape(one, joint) for one in collisions):

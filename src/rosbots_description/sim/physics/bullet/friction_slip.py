@@ -1,4 +1,4 @@
-"""Weakens the friction of what slips, before each step, by as much as belongs to its slip."""
+"""Scales the friction of links with slip compliance before each step."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -15,7 +15,7 @@ Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances 
 
 
 class Slipping:
-    """What slips in one PyBullet world: `links` do by their surfaces, others by `set`."""
+    """Links with slip compliance in one PyBullet world, from their surfaces or by `set`."""
 
     def __init__(
         self,
@@ -26,25 +26,25 @@ class Slipping:
         """Work in the world of that PyBullet client.
 
         Args:
-            scale_friction: lets a part hold shares of its friction along its axes.
-            reach: how many times its limit friction can hold in a direction.
+            scale_friction: sets the friction scales of a part along its axes.
+            reach: ratio of friction to mu N possible in a direction.
         """
         self._client, self._scale_friction, self._reach = client, scale_friction, reach
         self.links: list[tuple[Body, str, Slip]] = []
-        self._held: dict[Place, tuple[float, ...]] = {}  # shares of friction given last
+        self._held: dict[Place, tuple[float, ...]] = {}  # friction scales set last
 
     def add(self, body: Body, spec: ModelSpec) -> None:
-        """Let links slip by slip1 and slip2 of what they touch with."""
+        """Add the links of a body whose surfaces have slip1 or slip2."""
         for link in spec.links:
             for one in link.collisions:
                 slips = one.surface.slip1, one.surface.slip2
                 axis = first_direction(one, link)
                 if any(slips) and can_slip(body, link.name, axis):
                     self.links.append((body, link.name, (axis, slips)))
-                    break  # its other surfaces slip alike
+                    break  # applies to all surfaces of the link
 
     def set(self, body: Body, link: str, slip: Slip) -> None:
-        """Let a link slip so from now on, whatever its surfaces say."""
+        """Set the slip of a link, in place of that of its surfaces."""
         entry = body, link, slip
         for i, (whose, name, _) in enumerate(self.links):
             if (whose, name) == (body, link):
@@ -65,11 +65,11 @@ class Slipping:
         self._held.clear()
 
     def note(self) -> tuple[Any, ...]:
-        """Return what `recall` takes to go back to the present state."""
+        """Return the state for `recall`."""
         return tuple(self.links), dict(self._held)
 
     def recall(self, note: tuple[Any, ...]) -> None:
-        """Go back to a state of the same bodies."""
+        """Restore the state of a note; the bodies must be the same."""
         links, held = note
         whole = {place: axes.scales for body, _, _ in (*self.links, *links)
                  for place, axes in body.friction_axes.items()}
@@ -81,7 +81,7 @@ class Slipping:
         self, body: Body, link: str, state: tuple[Pose, Twist], axle: Vector,
         slips: tuple[float, float], step_size: float,
     ) -> None:
-        """Leave a link so much friction for the next step; as `links` has it."""
+        """Scale the friction of a link for the next step; arguments as in `links`."""
         pose, twist = state
         for place in body.surfaces[link]:
             held = NONE_SLIPS if not any(slips) else shares(
@@ -106,7 +106,7 @@ class Slipping:
         number, index = place
         client = self._client
         points = pybullet.getContactPoints(number, linkIndexA=index, physicsClientId=client)
-        # PyBullet reports friction on the first body of a pair, normals on the one it is asked for.
+        # PyBullet reports friction on the first body of a pair, normals on the queried one.
         as_second = {point[6] for point in pybullet.getContactPoints(
             bodyB=number, linkIndexB=index, physicsClientId=client)} if points else ()
         for point in points:
@@ -122,7 +122,7 @@ class Slipping:
             )
 
     def _velocity(self, number: int, index: int, place: Vector) -> Vector:
-        """Return the velocity of what PyBullet calls so, at a place."""
+        """Return the velocity of a PyBullet body's link at a point, in the world [m/s]."""
         if index < 0:
             com, _ = pybullet.getBasePositionAndOrientation(number, self._client)
             return velocity_at(place, com, *pybullet.getBaseVelocity(number, self._client))

@@ -1,9 +1,9 @@
-"""Say in PyBullet's terms what a model is: its trees as plain URDF.
+"""Generates plain URDF for PyBullet from the kinematic trees of a model.
 
-PyBullet never sees a user's text. What it gets has one tag per line (it cuts lines at 8191
-bytes), short names of ours, explicit masses and clean mesh files. Inertia and visuals are only
-placeholders here: PyBullet zeroes tensors it finds impossible, so the engine sets the true one
-afterwards, and would draw what it is given no visual of.
+PyBullet never reads a user's text. The generated URDF has one tag per line (PyBullet cuts lines at
+8191 bytes), short generated names, explicit masses and clean mesh files. Inertia and visuals are
+placeholders: PyBullet zeroes tensors that it finds implausible, so the engine sets the true one
+after loading; and it makes visuals of the collisions of a link that has none.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -28,25 +28,25 @@ from ...description import (
     Sphere,
 )
 
-# Each further surface of a link is an auxiliary link, fixed to it. Its mass must not be zero for
-# PyBullet, and must not matter beside that of any real link [kg].
+# Each further surface of a link is on an auxiliary link, fixed to it. PyBullet needs its mass to be
+# above zero; it must be negligible beside that of a real link [kg].
 AUXILIARY_MASS = 1e-9
 
-# Of a link without visual PyBullet makes pictures of the collisions, which nobody sees: of a plane
-# a chequered one of 9 MB, of a mesh one that takes as long and twice as much memory as the mesh.
+# Placeholder visual. Without one PyBullet makes visuals of the collisions, which nobody sees: 9 MB
+# for a plane, and for a mesh twice its memory and as much time as the mesh itself.
 _UNSEEN = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</visual>')
 
-# Group of what moves until it has its collision filter. In PyBullet's own, 1, that of rays,
-# it would meet all that can be seen, and the solver would take contacts in another order for good.
+# Collision group of moving bodies until their filter is set. In PyBullet's default, 1, the group of
+# rays, they would collide with everything, which changes the solver's order of contacts for good.
 _LOADED = 2
 
-WORLD_LINK = LinkSpec('world')  # what models are fixed to
+WORLD_LINK = LinkSpec('world')  # parent of models that are fixed to the world
 
 MeshFile = Callable[[Mesh], str]  # a mesh -> the path of a clean file at the mesh's scale
 
 
 class Tree(NamedTuple):
-    """Links that joints connect, parents first; joints[i] is above links[i], None at the root."""
+    """A kinematic tree, parents first; joints[i] is links[i]'s parent joint, None at the root."""
 
     links: list[LinkSpec]
     joints: list[JointSpec | None]
@@ -54,7 +54,7 @@ class Tree(NamedTuple):
 
     @property
     def is_static(self) -> bool:
-        """Whether nothing in it moves; its meshes are then exact surfaces, else convex hulls."""
+        """Whether no link can move; meshes are then exact surfaces, else convex hulls."""
         return self.fixed_base and len(self.links) == 1
 
 
@@ -69,11 +69,11 @@ def describe_tree(
     Args:
         tree: what to describe.
         inertial_poses: centre of mass and principal axes of each link, in the link's frame.
-        groups: what each link touches with itself, then what each of its auxiliary links does.
-        mesh_file: gives the file of a mesh.
+        groups: shapes on each link itself, then on each of its auxiliary links.
+        mesh_file: returns the file of a mesh.
     """
     number = {link.name: i for i, link in enumerate(tree.links)}
-    # PyBullet's link frame is the joint's frame, ours may stand elsewhere.
+    # PyBullet's link frame is the joint's frame; ours may differ.
     frames = [
         compose(link.pose, joint.pose) if joint else link.pose
         for link, joint in zip(tree.links, tree.joints, strict=True)
@@ -114,7 +114,7 @@ def _link(
         *(_UNSEEN if collisions else ()),
     ]
     for collision in collisions:
-        # Exact surfaces only where nothing moves: a concave mesh in motion is slow and leaky.
+        # Exact surfaces only if static: moving concave meshes are slow and can be penetrated.
         concave = ' concave="yes"' if mass == 0.0 and isinstance(collision.geometry, Mesh) else ''
         group = f' group="{_LOADED}"' if mass else ''
         lines += [f'<collision{group}{concave}>', _origin(compose(back, collision.pose)),
@@ -135,7 +135,7 @@ def _geometry(geometry: Geometry, mesh_file: MeshFile) -> str:
         case Plane(normal):
             return f'<plane normal="{_numbers(normal)}"/>'
         case Mesh():
-            # the folder for temporary files may be called anything
+            # the name of the temporary folder may need escapes
             return f'<mesh filename={quoteattr(mesh_file(geometry))}/>'
 
 
@@ -161,7 +161,7 @@ def _type(joint: JointSpec) -> str:
 def _motion(joint: JointSpec) -> list[str]:
     if joint.type == FIXED:
         return []
-    # An empty range means no limit to PyBullet, so a joint limited to one point keeps a hair.
+    # PyBullet takes an empty range for no limit, so upper must exceed lower slightly.
     lower = -1e9 if joint.lower is None else joint.lower
     upper = 1e9 if joint.upper is None else max(joint.upper, lower + 1e-6)
     return [
@@ -179,10 +179,10 @@ def _numbers(values: Sequence[float]) -> str:
 
 
 def kinematic_trees(spec: ModelSpec) -> list[Tree]:
-    """Return the trees that a model consists of.
+    """Return the kinematic trees of a model.
 
-    In a static model nothing moves, so there every link is a tree of its own. A root that a
-    movable joint connects to the world hangs on an empty link that does not move.
+    Each link of a static model is a tree of its own. A root that a movable joint connects to the
+    world gets an empty fixed link as parent.
     """
     if spec.static:
         return [Tree([link], [None], True) for link in spec.links]
@@ -198,12 +198,12 @@ def kinematic_trees(spec: ModelSpec) -> list[Tree]:
         elif joint.type == FIXED:
             trees.append(Tree([link], [None], True))
         else:
-            # Its name must differ from that of other doors of the same house.
+            # A name of its own, as a model may have several of them.
             anchor = replace(WORLD_LINK, name=f'world of {link.name}')
             joint = replace(joint, parent=anchor.name)
             trees.append(Tree([anchor, link], [None, joint], True))
     for tree in trees:
-        for link in tree.links:  # it grows while we walk it
+        for link in tree.links:  # the list grows during the loop
             children = below.get(link.name, ())
             tree.links.extend(children)
             tree.joints.extend(above[child.name] for child in children)
@@ -211,9 +211,9 @@ def kinematic_trees(spec: ModelSpec) -> list[Tree]:
 
 
 def filtered_links(spec: ModelSpec) -> Iterator[tuple[str, str]]:
-    """Yield each pair of links that pass through each other.
+    """Yield each pair of links of a model that do not collide.
 
-    Two links of a model touch only if both ask for it and no joint connects them.
+    Two links collide only if both have <self_collide> and no joint connects them.
     """
     joined = {frozenset((joint.parent, joint.child)) for joint in spec.joints}
     for a, b in combinations(spec.links, 2):

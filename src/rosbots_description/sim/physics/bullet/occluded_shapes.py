@@ -1,7 +1,7 @@
-"""Shapes of a body that no plane can touch, because they lie between others.
+"""Finds occluded shapes of a body: those that no plane can touch.
 
-A plane touches a body where it touches the body's hull. PyBullet looks at each shape of a body that
-is above a plane, in each step, and of a robot of plates and posts most need not be looked at.
+A plane touches a body only on the body's convex hull. PyBullet tests each shape of a body against
+a plane in each step; for a robot of plates and posts most of these tests are needless.
 """
 
 import math
@@ -18,9 +18,9 @@ from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphe
 from ...meshes import read_stl, support_points
 from .generated_urdf import MeshFile
 
-_ONTO = 1e-6  # share of its size by which a body is taken for larger than it is
-_MAX_CORNERS = 40  # points of a hull, whose sides take time with the cube of it
-_AT_ONCE = 1000  # planes, for which memory need not be fetched anew each time
+_ONTO = 1e-6  # margin for rounding, as a share of the body's size
+_MAX_CORNERS = 40  # vertices of a hull; finding its sides takes time with the cube of their number
+_AT_ONCE = 1000  # planes in a batch that stays within memory already allocated
 _CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 _POLES = np.concatenate([np.eye(3), -np.eye(3)])
 _RIM = [(math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)) for k in range(8)]
@@ -29,11 +29,11 @@ _WAYS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)
 
 
 def occluded_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tuple[bool, ...]:
-    """Tell of each shape of a rigid body whether it surely lies within the hull of the others.
+    """Tell for each shape of a rigid body whether it surely lies within the hull of the others.
 
     Args:
-        collisions: what the body touches with.
-        mesh_file: gives the .stl file of a mesh's hull, named by what it holds.
+        collisions: shapes of the body.
+        mesh_file: returns the .stl file of a mesh's hull, named by its contents.
     """
     shapes = [one.geometry for one in collisions]
     if any(isinstance(shape, Plane) for shape in shapes):
@@ -42,15 +42,15 @@ def occluded_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tup
     return _inner(tuple(zip(files, (one.pose for one in collisions), strict=True)))
 
 
-@lru_cache(maxsize=64)  # most models come more than once
-@np.errstate(all='ignore')  # of absurd sizes nothing is known to be within
+@lru_cache(maxsize=64)  # the same model is often spawned again
+@np.errstate(all='ignore')  # shapes of absurd size never count as occluded
 def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     outlines = [_points(shape) for shape, _ in shapes]
     poses = [pose for _, pose in shapes]
     placed = [_placed(outline, pose) for outline, pose in zip(outlines, poses, strict=True)]
     points = np.concatenate(placed)
     owners = np.repeat(np.arange(len(placed)), [len(some) for some in placed])
-    # A hull of few points, and one that reaches farther out over each side of that.
+    # A hull of few support points, then one refined by support points beyond its sides.
     corners = support_points(points, _WAYS)
     sides, _ = _hull(points[corners])
     corners += sorted({*support_points(points, sides)} - {*corners})
@@ -66,7 +66,7 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
 
 
 def _points(shape: Geometry | str) -> FloatArray:
-    """Return points (n, 3) of a shape's surface, among them all that its box touches [m]."""
+    """Return points (n, 3) of a shape's surface that span its bounding box [m]."""
     points: FloatArray
     match shape:
         case Box(size):
@@ -83,7 +83,7 @@ def _points(shape: Geometry | str) -> FloatArray:
 
 
 def _box(points: FloatArray) -> FloatArray:
-    """Return the corners of the box, along the axes, around points."""
+    """Return the corners (8, 3) of the axis-aligned bounding box of points."""
     low, high = points.min(axis=0), points.max(axis=0)
     corners: FloatArray = (low + high) / 2.0 + _CUBE * (high - low) / 2.0
     return corners
@@ -97,10 +97,9 @@ def _placed(points: FloatArray, pose: Pose) -> FloatArray:
 
 
 def _hull(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the sides of the hull of a few points: normals (n, 3) and how far out each is [m].
+    """Return the sides of the hull of a few points: normals (n, 3) and offsets (n,) [m].
 
-    Each plane through three points is one that has all of the others behind it. What is flat has no
-    sides.
+    A side is a plane through three points with all others behind it. Coplanar points give no sides.
     """
     size = np.ptp(points, axis=0).max()
     margin = _ONTO * size
@@ -125,6 +124,6 @@ def _hull(points: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @lru_cache(maxsize=16)
 def _triples(count: int) -> IntArray:
-    """Return all triples of so many, (3, n)."""
+    """Return all index triples i < j < k below `count`, shape (3, n)."""
     i = np.arange(count)
     return np.stack(np.nonzero((i[:, None, None] < i[:, None]) & (i[:, None] < i)))

@@ -1,6 +1,6 @@
-"""What the links of a tree touch with: their shapes, grouped by surface; crests for wheels.
+"""Groups the collision shapes of a tree's links by surface; gives wheels a crowned profile.
 
-PyBullet knows one friction, and one pair of axes for it, for each body of its own.
+A link of PyBullet has a single friction coefficient and a single set of friction axes.
 """
 
 import math
@@ -18,32 +18,32 @@ from .generated_urdf import MeshFile, Tree
 from .occluded_shapes import occluded_shapes
 from .split_edge_contacts import split_edges
 
-Groups = list[tuple[Collision, ...]]  # of a link: its own, then those of its auxiliary links
+Groups = list[tuple[Collision, ...]]  # of a link: on itself, then on its auxiliary links
 
-# Width of a wheel's crest [m]. PyBullet takes a margin of 1 mm off each end of a cylinder, so what
-# is left of this one touches exactly in its middle.
+# Width of a wheel's crest [m]. PyBullet shrinks a cylinder by a margin of 1 mm at each end, so that
+# this one touches exactly at its middle.
 _CREST = 0.002
 
-# How much lower the shoulders of a wheel are, as a share of its half diagonal. What is nearer to
-# the floor than 0.02 of that is a contact, which costs.
+# Height of the crests above the shoulders, as a share of a wheel's half diagonal. Within 0.02 of
+# that from the floor, PyBullet would generate needless contacts.
 _CROWN = 0.022
 
 # A shape above a plane costs 1.7 % of a step of the article's robot, an auxiliary link 5 %.
 _WORTH_A_LINK = 6
-_LEVEL = 5e-6  # [m] one side of a wheel may be so much lower, and both still touch a floor
+_LEVEL = 5e-6  # [m] height difference of a wheel's ends below which both touch a floor
 
 
 def surface_groups(tree: Tree, i: int) -> Groups:
-    """Return the collisions of link `i` by equal surface: first those of the link itself."""
+    """Return the collisions of link `i` by surface; the first group is on the link itself."""
     link, joint = tree.links[i], tree.joints[i]
     shapes = [shape for one in link.collisions for shape in crowned(one, link, joint)]
     return _by_surface(shapes) or [()]
 
 
 def with_occluded_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups | None:
-    """Return the groups of a robot's root anew, first what no plane can touch: it is not checked.
+    """Return a robot root's groups with its occluded shapes first, which skip tests with planes.
 
-    The rest is on auxiliary links. None if it is not worth it.
+    The other shapes are on auxiliary links. None if that would not save time.
     """
     if not _drives(tree):
         return None
@@ -56,7 +56,7 @@ def with_occluded_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Grou
 
 
 def with_split_edges(tree: Tree, groups: Groups) -> Groups:
-    """Return the groups of a root anew: if it carries wheels, both ends of its edges can touch."""
+    """Return the groups of a root; if it carries wheels, with split edge contacts."""
     axle = _axle(tree) if _drives(tree) else None
     if axle is None:
         return groups
@@ -65,7 +65,7 @@ def with_split_edges(tree: Tree, groups: Groups) -> Groups:
 
 
 def is_floor(tree: Tree) -> bool:
-    """Tell whether a tree is static and is planes and nothing else."""
+    """Tell whether a tree is static and consists of planes only."""
     shapes = [collision.geometry for collision in tree.links[0].collisions]
     return tree.is_static and bool(shapes) and all(isinstance(shape, Plane) for shape in shapes)
 
@@ -73,10 +73,11 @@ def is_floor(tree: Tree) -> bool:
 def crowned(
     collision: Collision, link: LinkSpec, joint: JointSpec | None
 ) -> tuple[Collision, ...]:
-    """Return what represents a collision: of a level wheel three narrow crests and lower shoulders.
+    """Return the shapes of a collision: a level wheel gets a crowned profile, others stay.
 
-    A cylinder touches a floor along a line, and PyBullet finds one end of it. The crests, at both
-    ends and in the middle, share the load.
+    A cylinder touches a floor along a line, of which PyBullet finds one end. The crowned profile
+    has three narrow crests, at both ends and in the middle, which share the load, and lower
+    shoulders.
     """
     wheel = wheel_shape(collision, joint)
     if wheel is None:
@@ -96,7 +97,7 @@ def crowned(
 
 
 def wheel_shape(collision: Collision, joint: JointSpec | None) -> Cylinder | None:
-    """Return the cylinder that a collision is if a joint turns it about its own axis, else None."""
+    """Return the cylinder of a collision that a joint rotates about its axis, else None."""
     shape = collision.geometry
     if joint is None or joint.type != REVOLUTE or not isinstance(shape, Cylinder):
         return None
@@ -105,9 +106,9 @@ def wheel_shape(collision: Collision, joint: JointSpec | None) -> Cylinder | Non
 
 
 def touching_end(wheel: Cylinder, axis: Vector) -> float:
-    """Return how far from its middle, along `axis`, a lying cylinder touches a floor [m].
+    """Return where a lying cylinder touches a floor: the offset from its middle along `axis` [m].
 
-    One that leans does so with its lower end; one that is level with its crest, in the middle.
+    A tilted wheel touches at its lower end, a level one at its middle.
     """
     tilt = axis[2]
     if abs(tilt) * wheel.length <= _LEVEL:
@@ -116,7 +117,7 @@ def touching_end(wheel: Cylinder, axis: Vector) -> float:
 
 
 def _drives(tree: Tree) -> bool:
-    """Tell whether a tree can be a robot: its root moves, and so do links on it."""
+    """Tell whether a tree can be a mobile robot: its root is free and has movable joints."""
     if tree.fixed_base or any(link.self_collide for link in tree.links):
         return False
     return any(joint is not None and joint.type != FIXED for joint in tree.joints)
@@ -134,7 +135,7 @@ def _axle(tree: Tree) -> Vector | None:
 
 
 def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
-    """Group by equal surface, since PyBullet knows one friction per body; first seen first."""
+    """Group collisions by equal surface, in the order of their first member."""
     groups: dict[tuple[Any, ...], list[Collision]] = {}
     for collision in collisions:
         surface = collision.surface

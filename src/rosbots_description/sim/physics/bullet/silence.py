@@ -1,4 +1,4 @@
-"""No engine chatter on the user's terminal."""
+"""Suppresses output of the engine on the terminal."""
 
 import contextlib
 import os
@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def silent() -> Iterator[None]:
-    """Send what C code prints to nowhere; Python's own streams are flushed first."""
+    """Redirect the output of C code to /dev/null; Python's streams are flushed first."""
     sys.stdout.flush()
     sys.stderr.flush()
     saved = [os.dup(1), os.dup(2)]

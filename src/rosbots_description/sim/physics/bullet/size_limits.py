@@ -1,4 +1,4 @@
-"""How much of everything a model may consist of, so that adding it ends in good time."""
+"""Limits on the size of a model, so that adding it takes bounded time."""
 
 from collections.abc import Sequence
 
@@ -6,20 +6,20 @@ from ...description import ModelSpec
 from .generated_urdf import Tree
 from .shape_groups import Groups
 
-# PyBullet handles a tree of more joints only up to the first question about it.
+# A tree with more joints loads, but PyBullet fails at the first query of it.
 MAX_JOINTS = 127
 
-# Links after the reduction of fixed joints, in all trees. PyBullet takes which of them may touch
-# pair by pair.
+# Links of all trees after the reduction of fixed joints. The collision filter is set for each pair
+# of links.
 MAX_LINKS = 500
 
-# Collisions and visuals. Each collision that touches costs time in every step, and each visual is
-# a marker of its own for RViz.
+# Collisions and visuals. Each collision in contact costs time in every step, and each visual is a
+# separate marker in RViz.
 MAX_SHAPES = 5000
 
 
 def excess_of_parts(spec: ModelSpec) -> str | None:
-    """Return in a sentence what a model has too much of to be simulated; None if nothing."""
+    """Return a sentence on the limit that a model exceeds; None if there is none."""
     if len(spec.links) > MAX_LINKS:
         return (
             f'the model has {len(spec.links)} links that fixed joints do not merge; '
@@ -35,7 +35,7 @@ def excess_of_parts(spec: ModelSpec) -> str | None:
 
 
 def excess_of_joints(tree: Tree, groups: Sequence[Groups]) -> str | None:
-    """Return in a sentence that a tree needs more joints than there can be; None if it does not.
+    """Return a sentence if a tree needs more joints than the engine holds, else None.
 
     Args:
         groups: of each link, from shape_groups.py.
@@ -46,7 +46,7 @@ def excess_of_joints(tree: Tree, groups: Sequence[Groups]) -> str | None:
             f'the links that hang together need more than {MAX_JOINTS} joints in the '
             'physics engine, which holds no more: split the model'
         )
-    # Every further surface of a link is an auxiliary link on a fixed joint.
+    # Each further surface of a link needs an auxiliary link on a fixed joint.
     auxiliary = sum(len(of_link) - 1 for of_link in groups)
     if joints + auxiliary > MAX_JOINTS:
         return (

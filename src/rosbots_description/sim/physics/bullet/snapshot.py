@@ -1,14 +1,14 @@
-"""Snapshots of one PyBullet world that it goes on from bit for bit.
+"""Snapshots of one PyBullet world, with bit-identical continuation.
 
-PyBullet's own save keeps poses, velocities and contact points. The rest would let the same state
-move on in other bits: last bits of turns, the order of pairs that may touch, pairs that are apart
-by now and not dropped yet, pushes. So taking a snapshot and going back to it both bring that into
-one order: PyBullet sorts pairs from the first snapshot on, and all bodies are apart for a moment.
-What PyBullet never gives back, such as motors, is noted beside.
+PyBullet's saved state has poses, velocities and contact points. Other state affects the last bits
+of the motion: rounding of orientations, the order of overlapping pairs, stale pairs that are not
+yet dropped, applied forces. So taking a snapshot and restoring it bring all of this into the same
+state: PyBullet sorts the pairs from the first snapshot on, and all bodies are moved apart for a
+moment. What PyBullet does not save, such as motors, is recorded separately.
 
-Of bodies of several shapes PyBullet mixes up whose contact points are whose, so that the robot of
-the article moves on by up to 0.1 um/step otherwise than without a snapshot. Single shapes do not,
-unless the solver makes other iterations for that robot's motors: their number is common to all.
+For bodies of several shapes PyBullet mixes up the owners of contact points, so that a snapshot
+changes the motion of the article's robot by up to 0.1 um/step. Bodies of one shape are unaffected,
+unless the robot's motors change the number of solver iterations, which is common to all bodies.
 """
 
 import weakref
@@ -18,9 +18,9 @@ from typing import Any
 from ...core import SimError
 from .client import pybullet
 
-# PyBullet drops a tenth of the pairs that are apart at a look, one at least: 80 looks drop 4000.
+# A collision detection drops a tenth of the stale pairs, at least one: 80 of them drop 4000.
 _LOOKS = 80
-_APART = 1e4  # [m] from each other, while pairs are dropped
+_APART = 1e4  # [m] distance between bodies while stale pairs are dropped
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _NEXT_TO_NONE = 1e-300  # [N m or N]
 
@@ -28,7 +28,7 @@ Joints = Sequence[tuple[int, int]]  # by PyBullet's body and index
 
 
 class BulletSnapshot:
-    """The state of a PyBullet world, and notes of what belongs to it; bodies go by identity."""
+    """State of a PyBullet world, and notes of further state; bodies are compared by identity."""
 
     def __init__(
         self, state: int, bodies: Sequence[Any], idle: Joints, notes: tuple[Any, ...]
@@ -40,15 +40,15 @@ class Snapshots:
     """The snapshots of one PyBullet world."""
 
     def __init__(self, client: int) -> None:
-        """Save the world of that PyBullet client."""
+        """Work in the world of that PyBullet client."""
         self._client = client
         self._kept: set[int] = set()
 
     def clear(self) -> None:
-        """Forget all snapshots; PyBullet has done so, too, or is about to."""
+        """Drop all snapshots, before PyBullet is reset or disconnected."""
         for state in self._kept:
             pybullet.removeState(state, physicsClientId=self._client)
-        self._kept.clear()  # what is still held of it has nothing to free any more
+        self._kept.clear()  # finalizers of live snapshots have nothing left to free
         self._kept = set()
 
     def take(
@@ -58,10 +58,10 @@ class Snapshots:
         """Return a snapshot.
 
         Args:
-            bodies: what has to be there again when it is restored.
-            moving: PyBullet's numbers of what moves.
-            idle: joints whose motors have no effort.
-            note: gives what to return of the state beside PyBullet's.
+            bodies: those that must exist when it is restored.
+            moving: PyBullet's numbers of the moving bodies.
+            idle: joints whose motors are off.
+            note: returns the state that PyBullet does not save.
         """
         client = self._client
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
@@ -90,7 +90,7 @@ class Snapshots:
     def _put_back(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> None:
         client, put = self._client, pybullet.resetBasePositionAndOrientation
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
-        # A motor without effort goes on reporting what it gave before it had none.
+        # A motor that was switched off still reports its last effort.
         self._give_effort(snapshot.idle, _NEXT_TO_NONE)
         for look in range(_LOOKS):
             for i, number in enumerate(moving if look < 2 else moving[:1]):
@@ -99,7 +99,7 @@ class Snapshots:
             if look:
                 pybullet.performCollisionDetection(client)
             else:
-                pybullet.stepSimulation(client)  # which ends pushes
+                pybullet.stepSimulation(client)  # clears applied forces
         self._give_effort(snapshot.idle, 0.0)
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
 
@@ -110,7 +110,7 @@ class Snapshots:
 
 
 def _drop(kept: set[int], state: int, client: int) -> None:
-    """Let PyBullet forget a state that nobody can ask for any more."""
+    """Free a state in PyBullet after its last reference is gone."""
     if state in kept:
         kept.discard(state)
         pybullet.removeState(state, physicsClientId=client)

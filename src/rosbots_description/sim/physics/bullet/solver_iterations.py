@@ -1,50 +1,49 @@
-"""How many iterations the solver makes: more while a motor with effort to spare misses its target.
+"""Adapts the number of solver iterations: more while an unsaturated motor misses its target.
 
-A wheel that is light beside its robot passes the motor's force on slowly, iteration by iteration.
-What is left over in a step is a velocity, so slow robots feel it most: on ramps, at creeping speed,
-parked.
+If a wheel is light relative to its robot, the solver converges slowly on the motor's force. The
+residual is a velocity error, which matters most at low speed: on ramps, when creeping or parked.
 """
 
 from collections.abc import Callable, Iterable
 from typing import Any
 
-CHECK = 40  # steps between two looks at the motors
-# Share of its target by which a motor may miss it on each level but the last. The least number of
-# iterations costs least and may miss by more; who needs more of them anyway gets enough.
+CHECK = 40  # steps between two checks of the motors
+# Allowed relative velocity error of a motor on each level but the last. It is greater on the first
+# level, whose iterations cost least.
 MISSED = (0.04, 0.015)
-REACHED = 0.009  # fewer will do
-SLOWEST = 0.05  # [rad/s or m/s] targets below count as this
-STILL = 0.0025  # [rad/s or m/s] what a target of 0 counts as: who is parked is not to creep
-SATURATED = 0.99  # share of its effort from which on a motor does what it can
-SMOOTHING = 0.2  # weight of a look in the mean
-FACTOR = 4  # between two levels
-PATIENCE, MAX_PATIENCE = 4, 256  # looks before fewer iterations are tried, at first and at most
+REACHED = 0.009  # relative error below which fewer iterations are tried
+SLOWEST = 0.05  # [rad/s or m/s] lower bound of the target in the relative error
+STILL = 0.0025  # [rad/s or m/s] in its place for a target of 0: a parked robot must not creep
+SATURATED = 0.99  # share of its effort limit from which on a motor counts as saturated
+SMOOTHING = 0.2  # weight of a new sample in the exponential mean
+FACTOR = 4  # of iterations between two levels
+PATIENCE, MAX_PATIENCE = 4, 256  # checks before fewer iterations are tried: at first, at most
 
 Motor = tuple[float, float, float, float]  # velocity, its target, effort, its limit
 
 
 class SolverEffort:
-    """Watches motors and sets the number of the solver's iterations.
+    """Sets the number of solver iterations by the velocity errors of motors.
 
-    Whether fewer would do shows only when they are tried. After each try that fails it waits twice
-    as long, until a target changes.
+    Whether fewer suffice is found by trial. The wait doubles after each failed trial, until a
+    target changes.
     """
 
     def __init__(self, set_iterations: Callable[[int], None]) -> None:
-        """Describe it; `start` sets the least number."""
+        """Prepare; `start` sets the number for the first time."""
         self._set_iterations = set_iterations
         self._least, self._level, self._missed = 1, 0, 0.0
         self._targets: list[float] = []
-        self._patience = self._wait = 0  # looks
+        self._patience = self._wait = 0  # checks
 
     def start(self, least: int) -> None:
-        """Begin anew with the least number of iterations."""
+        """Start with the least number of iterations."""
         self._least, self._level, self._missed = least, 0, 0.0
         self._targets, self._patience, self._wait = [], PATIENCE, 0
         self._set_iterations(least)
 
     def look(self, motors: Iterable[Motor]) -> None:
-        """Take the motors into account as they are now."""
+        """Update the number of iterations from the current state of the motors."""
         motors = list(motors)
         targets = [motor[1] for motor in motors]
         if targets != self._targets:
@@ -61,22 +60,22 @@ class SolverEffort:
             self._shift(-1)
 
     def note(self) -> tuple[Any, ...]:
-        """Return what `recall` takes to go back to the present state."""
+        """Return the state for `recall`."""
         return (self._least, self._level, self._missed, self._targets, self._patience, self._wait)
 
     def recall(self, note: tuple[Any, ...]) -> None:
-        """Go on as at the time of a note."""
+        """Restore the state of a note."""
         (self._least, self._level, self._missed, self._targets, self._patience, self._wait) = note
         self._set_iterations(self._least * FACTOR**self._level)
 
     def _shift(self, levels: int) -> None:
         self._level += levels
-        self._missed = (REACHED + MISSED[-1]) / 2.0  # until it is known
+        self._missed = (REACHED + MISSED[-1]) / 2.0  # initial guess
         self._set_iterations(self._least * FACTOR**self._level)
 
 
 def _missed(velocity: float, target: float, effort: float, limit: float) -> float:
-    """Return the share of its target by which a motor misses it; 0 if it does what it can."""
+    """Return the relative velocity error of a motor; 0 if it is saturated."""
     if abs(effort) >= SATURATED * limit:
         return 0.0
     return abs(velocity - target) / (max(abs(target), SLOWEST) if target else STILL)

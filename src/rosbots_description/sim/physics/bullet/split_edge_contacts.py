@@ -1,9 +1,9 @@
-"""Edges of a robot's body that touch a floor with both ends.
+"""Split edge contacts: both ends of a body's edge touch a floor.
 
-Of a box or a hull above a plane PyBullet finds one corner in a step, and of two that are equally
-deep always the same. So a robot that falls on the front edge of its body, as one does that backs
-at once, would take the blow with that corner, and turn. Two of the same shape in one place, each
-tilted to one side by a hair, touch with a corner each.
+Between a box or hull and a plane PyBullet finds one corner per step, always the same of two that
+are equally deep. A robot that pitches onto the front edge of its body, as in a sudden reversal,
+would hit the floor with one corner and yaw. Two copies of the shape, tilted slightly to opposite
+sides, touch with one corner each.
 """
 
 import math
@@ -13,14 +13,14 @@ from dataclasses import replace
 from ...core import Pose, Vector, compose, cross
 from ...description import Box, Collision, Mesh
 
-_TILT = 2e-4  # [rad]; half and five times as much do as well
+_TILT = 2e-4  # [rad]; half and five times as much work, too
 
 
 def split_edges(shapes: Sequence[Collision], axle: Vector, up: Vector) -> tuple[Collision, ...]:
-    """Return what represents the shapes of a robot's body: of each with edges two, tilted apart.
+    """Return the shapes of a robot's body, each box and mesh as two tilted copies.
 
     Args:
-        shapes: in the frame of the body, whose origin is not far from the middle of the axle.
+        shapes: in the frame of the body, whose origin is near the middle of the axle.
         axle, up: unit vectors in that frame.
     """
     x, y, z = cross(axle, up)

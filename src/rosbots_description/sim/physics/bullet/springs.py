@@ -1,8 +1,8 @@
-"""Springs and dampers of joints, as strong as the steps can follow.
+"""Springs and dampers of joints, limited to what is stable at the step size.
 
-In steps of dt springs of stiffness k keep the energy that they are given, and dampers d turn no
-motion round, as long as the sums over a body of dt^2 k c and of dt d c are at most 1; c is how much
-a joint is accelerated by a unit of effort. Of stronger ones the strongest act as if they were less.
+With step size dt, springs of stiffness k conserve energy and dampers d do not overshoot as long as
+sum(dt^2 k c) <= 1 and sum(dt d c) <= 1 over the joints of a body, where c is the acceleration of a
+joint per unit of effort. Beyond that, the greatest values are reduced.
 """
 
 import math
@@ -29,21 +29,21 @@ class Springs:
         self._springs: dict[int, tuple[list[int], list[float], list[float]]] = {}
 
     def __bool__(self) -> bool:
-        """Tell whether there are any."""
+        """Tell whether there are any springs."""
         return bool(self._springs)
 
     @property
     def has_dampers(self) -> bool:
-        """Whether joints are damped: PyBullet takes their velocities at the begin of each call."""
+        """Whether joints are damped: PyBullet samples their velocities once per call."""
         return any(any(masses.damping) for masses in self._bodies.values())
 
     def set_step_size(self, step_size: float) -> None:
-        """Simulate in steps of that size [s] from now on."""
+        """Set the step size [s], which limits stiffness and damping."""
         self._step_size = step_size
         self.add(self._bodies)
 
     def add(self, bodies: dict[int, Masses]) -> None:
-        """Look after these bodies from now on, by PyBullet's numbers."""
+        """Add bodies, given by PyBullet's numbers."""
         for number, masses in bodies.items():
             if not any(masses.stiffness) and not any(masses.damping):
                 continue
@@ -63,17 +63,17 @@ class Springs:
                 )
 
     def forget(self, numbers: Iterable[int]) -> None:
-        """Look after these bodies no more."""
+        """Remove bodies."""
         for number in numbers:
             self._bodies.pop(number, None)
             self._springs.pop(number, None)
 
     def clear(self) -> None:
-        """Forget all bodies."""
+        """Remove all bodies."""
         self.forget(list(self._bodies))
 
     def push(self) -> None:
-        """Push the joints in the next step as their springs do."""
+        """Apply the springs' efforts to the joints for the next step."""
         for number, (joints, stiffness, reference) in self._springs.items():
             states = pybullet.getJointStates(number, joints, self._client)
             pybullet.setJointMotorControlArray(
@@ -85,13 +85,13 @@ class Springs:
 
 
 def compliance(joint: JointSpec, child: LinkSpec, parent: LinkSpec | None) -> float:
-    """Return how much a joint is accelerated by a unit of effort [1/(kg m^2) or 1/kg].
+    """Return the acceleration of a joint per unit of effort [1/(kg m^2) or 1/kg].
 
-    So it is, at most, if there were only its two links: all that they are tied to makes them more
-    inert.
+    Only the two links of the joint are considered, which gives an upper bound: other links add
+    inertia.
 
     Args:
-        parent: the link on the other side, None where that never moves.
+        parent: the parent link, None if it never moves.
     """
     frame = compose(child.pose, joint.pose)
     along = np.array(rotate(frame.orientation, joint.axis))
@@ -108,19 +108,19 @@ def compliance(joint: JointSpec, child: LinkSpec, parent: LinkSpec | None) -> fl
 
 
 def followed_stiffness(masses: Masses, step_size: float) -> tuple[float, ...]:
-    """Return how stiff the springs of a body are in steps of that size [s]."""
+    """Return the stiffness of a body's springs, limited for the step size [s]."""
     return _followed(masses.stiffness, masses.compliance, step_size**2)
 
 
 def followed_damping(masses: Masses, step_size: float) -> tuple[float, ...]:
-    """Return how strong the dampers of a body are in steps of that size [s]."""
+    """Return the damping of a body's joints, limited for the step size [s]."""
     return _followed(masses.damping, masses.compliance, step_size)
 
 
 def _followed(
     values: Sequence[float], compliance: Sequence[float], scale: float
 ) -> tuple[float, ...]:
-    """Return the values, the greatest less where their products with the others would exceed 1."""
+    """Return the values, the greatest reduced until the sum of value * c * scale is at most 1."""
     units = [1.0 / (c * scale) for c in compliance]
     rest, left, most = 1.0, len(values), math.inf
     for share in sorted(value / unit for value, unit in zip(values, units, strict=True)):
