@@ -12,12 +12,12 @@ from ..meshes import visual_parts
 from ..runtime import Link, Model, World
 from .canvas import Canvas, Triangles
 
-EYE: Vector = (1.9, -1.9, 1.3)  # [m] a good look at a robot that stands at the origin
+EYE: Vector = (1.9, -1.9, 1.3)  # [m] for a view of a robot at the origin
 TARGET: Vector = (0.0, 0.1, 0.25)  # [m]
 SIZE = (640, 480)  # pixels
 FIELD_OF_VIEW = math.radians(45.0)
-GROUND_SHOWN = 20.0  # [m] edge of the square of an infinite plane that is drawn
-_TILE = 0.5  # [m] edge of the squares it is drawn in
+GROUND_SHOWN = 20.0  # [m] edge of the drawn part of an infinite plane
+_TILE = 0.5  # [m] edge of its tiles
 
 
 class View:
@@ -32,7 +32,7 @@ class View:
         self._shown: dict[str, tuple[Model, list[tuple[Link, Visual, list[int]]]]] = {}
 
     def close(self) -> None:
-        """Free what the pictures needed."""
+        """Free all resources."""
         if self._canvas is not None:
             self._canvas.close()
         self._canvas = None
@@ -49,7 +49,7 @@ class View:
 
         Args:
             size: width and height in pixels.
-            field_of_view: from the lower to the upper edge [rad].
+            field_of_view: vertical [rad].
         """
         if self._canvas is None:
             self._canvas = Canvas()
@@ -82,7 +82,7 @@ class View:
 
 
 def _parts(visual: Visual) -> list[tuple[Triangles | Box | Sphere | Cylinder, Colour]]:
-    """Return the shapes of a visual; a mesh without a material has one per colour of its own."""
+    """Return the shapes of a visual; a mesh without a material has one for each of its colours."""
     geometry, rgba = visual.geometry, (visual.material or Material()).rgba
     if isinstance(geometry, Mesh):
         return [
@@ -94,7 +94,7 @@ def _parts(visual: Visual) -> list[tuple[Triangles | Box | Sphere | Cylinder, Co
 
 
 def _tiles(rgba: Colour) -> Iterator[tuple[Triangles, Colour]]:
-    """Yield a square of ground in two shades, so that a picture shows distances."""
+    """Yield a chequered square of ground, so that pictures show distances."""
     count = round(GROUND_SHOWN / _TILE)
     corners = (np.arange(count) - count / 2) * _TILE
     x, y = (axis.ravel() for axis in np.meshgrid(corners, corners))

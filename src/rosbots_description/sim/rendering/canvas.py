@@ -67,7 +67,7 @@ class Canvas:
 
         Args:
             size: width and height in pixels.
-            field_of_view: from the lower to the upper edge [rad].
+            field_of_view: vertical [rad].
         """
         width, height = size
         near, far = 0.05, 100.0  # [m]
@@ -81,7 +81,7 @@ class Canvas:
             view,
             projection,
             lightDirection=_SUN,
-            shadow=0,  # they cost six times the rest
+            shadow=0,  # shadows take six times as long as the rest
             renderer=pybullet.ER_TINY_RENDERER,
             flags=pybullet.ER_NO_SEGMENTATION_MASK,
             physicsClientId=self._client,

@@ -1,6 +1,6 @@
-"""The rendering process, seen from the simulator: started when it is needed, and again if it dies.
+"""Client side of the rendering process, which is started on demand and restarted if it dies.
 
-Pixels come back through memory that both processes share.
+Pixels are returned in shared memory.
 """
 
 import logging
@@ -23,8 +23,8 @@ from .gl import Lens, Scene
 
 logger = logging.getLogger(__name__)
 
-UNDER_WAY = 3  # pictures of one camera at a time
-MOST_DEATHS = 3  # in a row without a picture between them; then no more is tried
+UNDER_WAY = 3  # pending pictures of one camera
+MOST_DEATHS = 3  # in a row without a picture; then it is not restarted
 _FOLDER = str(Path(__file__).parent)
 # It imports one package by its bare name, so that nothing of the simulator is loaded.
 _PROGRAM = """
@@ -34,37 +34,37 @@ sys.path.insert(0, sys.argv[1])
 from gl.process import main
 main(int(sys.argv[2]))
 """
-# A picture may take long where processors are shared; what never comes must end some day.
+# A picture may take long on shared processors; a hung process is killed after this time.
 PATIENCE = 60.0  # [s, wall]
 
 
 class RenderError(Exception):
-    """There is no picture, and why."""
+    """A picture cannot be drawn; the message says why."""
 
 
 class NoRendererError(RenderError):
-    """There will be no picture of any camera; the log says why."""
+    """No camera can draw pictures any more; the log says why."""
 
 
 class RenderProcess:
-    """Draws one scene for any number of cameras. One thread uses it."""
+    """Draws one scene for any number of cameras. Not thread-safe."""
 
     def __init__(self, meshes: Callable[[str], NDArray[Any]]) -> None:
-        """Start nothing yet.
+        """Prepare; the process starts with the first request.
 
         Args:
-            meshes: gives the triangles of a key that stands in a scene.
+            meshes: returns the triangles for a mesh key of a scene.
         """
         self._meshes = meshes
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection[Any, Any] | None = None
-        self._ready = False  # it has told who draws, and knows scene and cameras
+        self._ready = False  # the process has reported its renderer, and has scene and cameras
         self._scene = Scene(())
         self._sent: set[str] = set()
         self._cameras: dict[int, RenderedCamera] = {}
-        self._numbers = count()  # of cameras; answers to one that has gone may still come
+        self._numbers = count()  # of cameras, never reused: answers to closed ones may still arrive
         self._deaths = 0
-        self.fault = ''  # why nothing is drawn any more
+        self.fault = ''  # why drawing was given up
 
     def close(self) -> None:
         """End the process."""
@@ -80,36 +80,36 @@ class RenderProcess:
         return None if self._process is None else self._process.pid
 
     def set_scene(self, scene: Scene) -> None:
-        """Draw this from now on."""
+        """Set the scene to draw."""
         self._scene = scene
         if self._ready:
             self._send_scene()
 
     def camera(self, lens: Lens) -> 'RenderedCamera':
-        """Return a camera, to be closed when it is not needed any more."""
+        """Return a camera, which the caller closes."""
         number = next(self._numbers)
         camera = self._cameras[number] = RenderedCamera(self, number, lens)
         if self._ready:
             self._send_camera(camera)
         return camera
 
-    # What cameras ask of it.
+    # For cameras.
 
     def forget(self, camera: 'RenderedCamera') -> None:
-        """Know a camera no more."""
+        """Remove a camera."""
         del self._cameras[camera.number]
         if self._ready:
             self._send(('forget', camera.number))
 
     def request(self, message: tuple[Any, ...]) -> None:
-        """Ask for a picture; while the process starts, that is put off."""
+        """Request a picture; until the process is ready, the request waits."""
         if self._connection is None:
             self._start()
         elif self._ready:
             self._send(message)
 
     def receive(self, wait: bool) -> bool:
-        """Take one answer, if there is one or one is waited for; return whether there was one."""
+        """Handle one answer, waiting for it if `wait`; return whether there was one."""
         if self._connection is None or self._process is None:
             return False
         try:
@@ -133,7 +133,7 @@ class RenderProcess:
     def _start(self) -> None:
         ours, theirs = socket.socketpair()
         for end in (ours, theirs):
-            end.setblocking(True)  # whatever default timeout the process has for its sockets
+            end.setblocking(True)  # overrides socket.setdefaulttimeout
         with theirs:
             threads = max(0, min(4, len(os.sched_getaffinity(0)) - 2))
             self._process = subprocess.Popen(
@@ -144,7 +144,7 @@ class RenderProcess:
         self._connection = Connection(ours.detach())
 
     def _begin(self, state: str, text: str, is_software: bool = False) -> None:
-        """Go on once the process has started: `text` is who draws, or why nobody does."""
+        """Handle the first answer; `text` is the renderer's name, or why there is none."""
         if state == 'failed':
             self.close()
             self._give_up(f'cameras see nothing: {text}')
@@ -175,7 +175,7 @@ class RenderProcess:
         self._send(('camera', camera.number, tuple(camera.lens), len(camera.memory)))
         if self._connection is not None:
             stream = socket.socket(fileno=os.dup(self._connection.fileno()))
-            stream.setblocking(True)  # as above: the handle is another one, the socket the same
+            stream.setblocking(True)  # as above: the handle is new, the socket is the same
             with stream:
                 socket.send_fds(stream, [b'm'], [camera.file])
 
@@ -188,7 +188,7 @@ class RenderProcess:
             self._mourn()
 
     def _mourn(self) -> None:
-        """Take note that the process has died."""
+        """Handle the death of the process: restart it, or give up."""
         process = self._process
         self.close()
         self._deaths += 1
@@ -209,7 +209,7 @@ class RenderProcess:
 
 
 class RenderedCamera:
-    """One camera: ask for pictures, and take them in that order."""
+    """One camera: request pictures, and take them in the same order."""
 
     def __init__(self, process: RenderProcess, number: int, lens: Lens) -> None:
         self.number = number
@@ -219,27 +219,27 @@ class RenderedCamera:
         self.file = os.memfd_create('picture')
         os.truncate(self.file, UNDER_WAY * self._size)
         self.memory = mmap.mmap(self.file, UNDER_WAY * self._size)
-        self._asked: deque[tuple[Any, ...]] = deque()  # messages that were sent
-        # Those that were answered, and a fault.
+        self._asked: deque[tuple[Any, ...]] = deque()  # requests without an answer
+        # Answered requests, each with a fault or ''.
         self._done: deque[tuple[tuple[Any, ...], str]] = deque()
         self._next = 0
 
     def close(self) -> None:
-        """Need no more pictures."""
+        """Close the camera."""
         self._process.forget(self)
         self.memory.close()
         os.close(self.file)
 
     @property
     def under_way(self) -> int:
-        """Return how many pictures were asked for and not taken yet; at most UNDER_WAY."""
+        """Return the number of pictures requested and not yet taken; at most UNDER_WAY."""
         return len(self._asked) + len(self._done)
 
     def request(
         self, eye: NDArray[Any], poses: NDArray[Any], seed: int = 0,
         wants: tuple[bool, bool] = (True, False),
     ) -> None:
-        """Ask for a picture of the scene as it is now.
+        """Request a picture of the current scene.
 
         Args:
             eye: the camera's pose (7,), position [m] and quaternion x, y, z, w.
@@ -247,7 +247,7 @@ class RenderedCamera:
             seed: of the noise.
             wants: colours, depths.
         Raises:
-            RenderError: nothing is drawn here.
+            RenderError: drawing was given up.
         """
         message = ('picture', self.number, self._next * self._size, *wants, seed, eye.tobytes(),
                    poses.tobytes())
@@ -258,15 +258,15 @@ class RenderedCamera:
         self._process.request(message)
 
     def take(self, wait: bool) -> tuple[NDArray[Any] | None, NDArray[Any] | None] | None:
-        """Return colours and depths of the oldest picture asked for, or None if it is not there.
+        """Return colours and depths of the oldest requested picture, or None if it is pending.
 
-        Colours are (height, width, channels), depths (height, width) float32 [m], inf where
-        nothing is. They are copies.
+        Colours are (height, width, channels), depths (height, width) float32 [m], inf for the
+        background. They are copies.
 
         Args:
-            wait: do so until it is there; then there is None only if none was asked for.
+            wait: until the picture is finished; None then means that none was requested.
         Raises:
-            RenderError: it could not be drawn, or the process died of it.
+            RenderError: the picture could not be drawn, or the process died.
         """
         if not self.has_picture(wait):
             return None
@@ -276,23 +276,23 @@ class RenderedCamera:
         return self._content(*message[2:5])
 
     def has_picture(self, wait: bool) -> bool:
-        """Tell whether there is something to take; wait for it if there will be."""
+        """Tell whether a picture is finished; with `wait`, wait for a pending one."""
         while not self._done and self._asked:
             if not self._process.receive(wait) and not wait:
                 return False
         return bool(self._done)
 
     def answered(self, fault: str) -> None:
-        """Take note that the oldest picture is there, or why not."""
+        """Record that the oldest picture is finished, or its fault."""
         self._done.append((self._asked.popleft(), fault))
 
     def ask_again(self) -> None:
-        """Ask a process that has just begun for what is still to come."""
+        """Repeat pending requests to a new process."""
         for message in tuple(self._asked):
             self._process.request(message)
 
     def give_up(self, fault: str) -> None:
-        """Take note that there will be no pictures."""
+        """Fail all pending requests."""
         while self._asked:
             self.answered(fault)
 

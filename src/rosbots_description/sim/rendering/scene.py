@@ -1,4 +1,4 @@
-"""What is to be drawn of a world, in the words of the rendering process."""
+"""Converts a world to the scene of the rendering process."""
 
 import math
 import os
@@ -34,9 +34,9 @@ Triangles = Callable[[], NDArray[Any]]
 
 
 class SceneMirror:
-    """Follows what enters and leaves a world.
+    """Mirrors the visuals and lights of a world.
 
-    `scene` and `meshes` are those of the last `update`; `poses` tells where the scene's bodies are.
+    `scene` and `meshes` are those of the last `update`; `poses` returns the poses of its bodies.
     """
 
     def __init__(self, world: World) -> None:
@@ -47,9 +47,9 @@ class SceneMirror:
         self.meshes: dict[str, Triangles] = {}
 
     def update(self) -> bool:
-        """Look at the world; return whether `scene` has changed."""
+        """Update `scene` from the world; return whether it has changed."""
         world = self._world
-        # Specifications are frozen values, and a model is made anew when it changes.
+        # Specifications are immutable, and a changed model is a new object.
         seen = (
             [(model, model.spec) for model in world.models.values()],
             list(world.lights.values()), world.scene,
@@ -71,9 +71,9 @@ class SceneMirror:
         return True
 
     def poses(self) -> NDArray[Any]:
-        """Return where the bodies of the scene are now (n, 7): position [m], quaternion x, y, z, w.
+        """Return the poses of the scene's bodies (n, 7): position [m], quaternion x, y, z, w.
 
-        The engine is asked once for each.
+        The engine is queried once for each.
         """
         if not self._links:
             return np.zeros((0, 7))
@@ -131,7 +131,7 @@ def _light(light: LightSpec) -> Light:
 
 
 def _matrix(visual: Visual, size: Vector) -> NDArray[Any]:
-    """Return the matrix (4, 4) from the shape of unit size to the link."""
+    """Return the transform (4, 4) from the unit shape to the link."""
     axes = [rotate(visual.pose.orientation, axis) for axis in np.eye(3)]
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(axes).T * size

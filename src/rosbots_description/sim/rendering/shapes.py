@@ -1,7 +1,7 @@
 """Shapes as triangles with normals: counter-clockwise seen from outside, three corners each.
 
-Arrays are (3 n, 8): position [m], normal, texture coordinates. Round shapes have as many sides as
-Gazebo's, so that pictures have the same outlines.
+Arrays are (3 n, 8): position [m], normal, texture coordinates. Round shapes have as many segments
+as Gazebo's, so that pictures have the same outlines.
 """
 
 import math
@@ -18,10 +18,7 @@ SEGMENTS = 32  # around cylinders and spheres, and from pole to pole
 
 @cache
 def unit_box() -> NDArray[Any]:
-    """Return a cube of edge 1, its faces in the order in which Gazebo draws them.
-
-    That matters where one is seen through another.
-    """
+    """Return a cube of edge 1, with faces in Gazebo's drawing order, as transparency needs."""
     faces = []
     for axis, sign in ((1, -1), (1, 1), (2, 1), (0, -1), (2, -1), (0, 1)):
         normal = np.zeros(3)
@@ -67,7 +64,7 @@ def unit_cylinder() -> NDArray[Any]:
 
 @cache
 def unit_square(normal: Vector) -> NDArray[Any]:
-    """Return a square of edge 1 about the origin, seen from where `normal` points."""
+    """Return a square of edge 1 at the origin, facing along `normal`."""
     upward = np.array(normal)
     right = np.cross((0.0, 1.0, 0.0) if abs(upward[1]) < 0.9 else (0.0, 0.0, 1.0), upward)
     right /= np.linalg.norm(right)
@@ -80,11 +77,11 @@ def mesh_corners(
     vertices: NDArray[Any], faces: NDArray[Any], normals: NDArray[Any] | None,
     texcoords: NDArray[Any] | None = None,
 ) -> NDArray[Any]:
-    """Return triangles of a mesh; without normals its faces are flat.
+    """Return the triangles of a mesh, flat-shaded if it has no normals.
 
     Args:
         vertices: (n, 3) [m].
-        faces: (m, 3), numbers of vertices.
+        faces: (m, 3), indices of vertices.
         normals: (n, 3), at the vertices.
         texcoords: (n, 2), at the vertices.
     """

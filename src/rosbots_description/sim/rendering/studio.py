@@ -1,4 +1,4 @@
-"""The pictures of one world: its scene, the process that draws it, and cameras in it."""
+"""Pictures of a world: its scene, its rendering process and its cameras."""
 
 import weakref
 from collections import deque
@@ -16,10 +16,10 @@ from .scene import SceneMirror
 
 
 class Picture(NamedTuple):
-    """What one camera saw at `stamp_ns` [ns]; what was not asked for is None.
+    """A picture of one camera at `stamp_ns` [ns]; None for what was not requested.
 
     Pixels are (height, width, channels) in the encoding of the lens, depths (height, width) float32
-    along the optical axis [m], inf where nothing is.
+    along the optical axis [m], inf for the background.
     """
 
     stamp_ns: int
@@ -28,14 +28,14 @@ class Picture(NamedTuple):
 
 
 class Studio:
-    """Draws a world for its cameras; its process begins with the first picture."""
+    """Draws a world for its cameras; the process starts with the first picture."""
 
     def __init__(self, world: World) -> None:
         self._mirror = SceneMirror(world)
         self.process = RenderProcess(lambda key: self._mirror.meshes[key]())
 
     def look(self) -> NDArray[Any]:
-        """Bring the scene up to date; return where its bodies are."""
+        """Update the scene; return the poses of its bodies (n, 7)."""
         if self._mirror.update():
             self.process.set_scene(self._mirror.scene)
         return self._mirror.poses()
@@ -45,53 +45,53 @@ _STUDIOS: 'weakref.WeakKeyDictionary[World, Studio]' = weakref.WeakKeyDictionary
 
 
 def studio_of(world: World) -> Studio:
-    """Return the studio of a world, which ends with it."""
+    """Return the studio of a world, which is closed with the world."""
     studio = _STUDIOS.get(world)
     if studio is None:
         studio = _STUDIOS[world] = Studio(world)
         world.resources.callback(studio.process.close)
-        weakref.finalize(world, studio.process.close)  # of a world that nobody closes
+        weakref.finalize(world, studio.process.close)  # if the world is never closed
     return studio
 
 
 class Shutter:
-    """Takes pictures with several lenses at once.
+    """Takes pictures with several lenses at the same time.
 
-    A picture comes some time after it was asked for; meanwhile the world may go on.
+    Pictures are drawn asynchronously: the world may continue after a request.
     """
 
     def __init__(self, world: World) -> None:
         self._world = world
         self._cameras: list[RenderedCamera] = []
-        self._stamps: deque[int] = deque()  # [ns] of pictures under way
+        self._stamps: deque[int] = deque()  # [ns] of pending pictures
 
     def close(self) -> None:
-        """Take no more pictures."""
+        """Close the cameras."""
         for camera in self._cameras:
             camera.close()
         self._cameras.clear()
 
     @property
     def under_way(self) -> int:
-        """Return how many pictures have not come yet."""
+        """Return the number of pending pictures."""
         return len(self._stamps)
 
     @property
     def is_free(self) -> bool:
-        """Tell whether one more may be asked for."""
+        """Tell whether another picture may be requested."""
         return len(self._stamps) < UNDER_WAY
 
     def press(
         self, lenses: Sequence[tuple[Lens, Pose]], seed: int, wants: tuple[bool, bool]
     ) -> None:
-        """Ask for a picture of the world as it is now.
+        """Request a picture of the world in its current state.
 
         Args:
-            lenses: the same each time, and where they are in the world.
+            lenses: always the same lenses, with their poses in the world.
             seed: of the noise.
             wants: pixels, depths.
         Raises:
-            RenderError: nothing is drawn here.
+            RenderError: drawing was given up.
         """
         studio = studio_of(self._world)
         bodies = studio.look()
@@ -102,10 +102,10 @@ class Shutter:
         self._stamps.append(self._world.clock.now_ns)
 
     def take(self, wait: bool) -> tuple[Picture, ...] | None:
-        """Return the oldest picture of each lens; None if they are not there, or none will come.
+        """Return the oldest picture of each lens; None if they are pending or none was requested.
 
         Raises:
-            RenderError: it could not be drawn.
+            RenderError: a picture could not be drawn.
         """
         if not self._stamps or not all(camera.has_picture(wait) for camera in self._cameras):
             return None

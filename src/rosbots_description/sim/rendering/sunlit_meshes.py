@@ -1,9 +1,9 @@
 """Visuals as Ogre mesh files, which RViz shows lit by a sun.
 
-RViz has one light, at the eye, and markers cannot bring another. But the materials of an Ogre mesh
-file RViz takes by name, and `ogre_media` of the package rosbots_simulator defines ours: its vertex
-program lights each normal from the same side of the world, however the body turns and wherever the
-camera stands.
+RViz has a single light, at the camera, and markers cannot add another. But RViz finds the materials
+of an Ogre mesh file by name, and `ogre_media` of the package rosbots_simulator defines ours. Their
+vertex program applies a directional light that is fixed in the world, independent of the pose of
+body and camera.
 """
 
 import hashlib
@@ -23,27 +23,27 @@ from ..resources import HeldFile, HeldFiles
 
 logger = logging.getLogger(__name__)
 
-RECENT = 32  # files that stay a while: RViz may not have read one yet when its model has gone
+RECENT = 32  # files kept a while: RViz may read one after its model was deleted
 
 OPAQUE, TRANSPARENT = b'rosbots/sunlit', b'rosbots/sunlit_transparent'  # as in ogre_media
-SEGMENTS = 48  # of a round side
+SEGMENTS = 48  # around round shapes
 
 # Vertices (n, 3), faces (m, 3) counter-clockwise, normals (n, 3).
 Surface = tuple[FloatArray, IntArray, FloatArray]
 
 
 class SunlitMeshes:
-    """Writes the files, each kept while it is held. Thread-safe."""
+    """Writes the mesh files; each exists as long as it is referenced. Thread-safe."""
 
     def __init__(self) -> None:
         self._files = HeldFiles('rosbots_sunlit_')
         self._recent: deque[HeldFile] = deque(maxlen=RECENT)
 
     def file(self, visual: Visual) -> HeldFile | None:
-        """Return the file of a visual, of unit size but for a mesh; None if there can be none.
+        """Return the file of a visual, of unit size except for meshes, or None.
 
-        So it is with planes, which need no light, and with textures, which only RViz's own
-        materials show.
+        There are no files for planes, which need no light, and for textures, which need RViz's own
+        materials.
         """
         try:
             described = _description(visual)
@@ -69,7 +69,7 @@ def ogre_mesh(parts: list[tuple[Surface, Colour]]) -> bytes:
             + _chunk(0x3000, struct.pack('<?', False), *submeshes, _chunk(0x9000, bounds)))
 
 
-# A vertex as the file has it: name, numpy's type, Ogre's type and meaning.
+# Vertex format of the file: name, numpy type, Ogre's type and semantic.
 _ELEMENTS = (('position', '3<f4', 2, 1), ('normal', '3<f4', 2, 4), ('rgba', '4u1', 11, 5))
 _VERTEX = np.dtype([(name, kind) for name, kind, _, _ in _ELEMENTS])
 _OFFSETS = {name: offset for name, (_, offset, *_) in (_VERTEX.fields or {}).items()}
@@ -98,7 +98,7 @@ def _chunk(number: int, *contents: bytes) -> bytes:
 
 
 def _description(visual: Visual) -> object:
-    """Return what the file depends on; None if there can be none."""
+    """Return a key for the contents of the file; None if there is no file."""
     match visual.geometry:
         case Mesh(path):
             mesh = read_mesh(path)
@@ -119,7 +119,7 @@ def _parts(visual: Visual) -> Iterator[tuple[Surface, Colour]]:
 
 
 def _flat(corners: FloatArray) -> Surface:
-    """Return triangles (n, 3, 3) as a surface with an edge between any two of them."""
+    """Return triangles (n, 3, 3) as a flat-shaded surface."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     return (corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3),
@@ -129,7 +129,7 @@ def _flat(corners: FloatArray) -> Surface:
 @cache
 def _box() -> Surface:
     square = np.array([(1, -1, -1), (1, 1, -1), (1, 1, 1), (1, -1, -1), (1, 1, 1), (1, -1, 1)]) / 2
-    # The side at +x; a turn by 180 degrees about z makes the one at -x of it.
+    # The side at +x, and its copy at -x, rotated by 180 degrees about z.
     sides = np.stack([square, square * (-1, -1, 1)])
     return _flat(np.concatenate([np.roll(sides, k, axis=2) for k in range(3)]).reshape(-1, 3, 3))
 
@@ -152,10 +152,10 @@ _SHAPES = {Box: _box, Cylinder: _cylinder, Sphere: _sphere}
 
 
 def _revolved(profile: Sequence[FloatArray | list[tuple[float, ...]]]) -> Surface:
-    """Return what strips sweep that turn about z.
+    """Return the surface of revolution of a profile about z.
 
     Args:
-        profile: for each strip its points from below: (radius, z), and their normal likewise.
+        profile: strips of points (radius, z, normal's radius, normal's z), from the lowest.
     """
     angles = np.linspace(0.0, 2.0 * np.pi, SEGMENTS + 1)
     about = np.stack([np.cos(angles), np.sin(angles)], axis=1)

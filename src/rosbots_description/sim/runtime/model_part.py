@@ -1,4 +1,4 @@
-"""What a world asks of the plugins and sensors of its models."""
+"""The interface of a world to the plugins and sensors of its models."""
 
 from collections.abc import Iterable
 
@@ -27,13 +27,12 @@ class ModelPart(Hook):
         """Determine which outputs have readers; they may have changed."""
 
     def shared(self) -> Iterable[object]:
-        """Return what it holds that is no part of its state, beside the world's parts.
+        """Return referenced objects that are not part of its state, besides those of the world.
 
-        Such are its description, outputs, since their readers come from outside, and what never
-        changes. All else that its attributes lead to is copied when the state of the world is
-        saved.
+        Examples are its description, its outputs (their readers are external) and constants. All
+        other objects reachable from its attributes are copied when the world's state is saved.
         """
         return ()
 
     def unload(self) -> None:
-        """Let go of what it holds; the model is about to be deleted."""
+        """Release resources; the model is about to be deleted."""

@@ -1,4 +1,4 @@
-"""What a world asks of a plugin of a model."""
+"""The interface of a world to a plugin of a model."""
 
 from collections.abc import Iterable
 
@@ -7,7 +7,7 @@ from .model_part import ModelPart
 
 
 class Plugin(ModelPart):
-    """What a <plugin> loads."""
+    """A plugin loaded by a <plugin> element."""
 
     spec: PluginSpec
 

@@ -1,15 +1,15 @@
-"""What a world asks of a sensor of a link."""
+"""The interface of a world to a sensor of a link."""
 
 from ..description import SensorSpec
 from .model_part import ModelPart
 
 
 class SensorLife(ModelPart):
-    """What a <sensor> is: it measures, where it is fixed to a link."""
+    """A sensor of a <sensor> element, fixed to a link."""
 
     spec: SensorSpec
     name: str
-    scoped_name: str  # with those of its model and link
-    measures: bool  # False: it is of a type that is not simulated
-    count = 0  # of the readings that it has given
-    last_ns = 0  # when it gave the last one [ns]
+    scoped_name: str  # model::link::sensor
+    measures: bool  # False: its type is not simulated
+    count = 0  # of readings sent
+    last_ns = 0  # time of the last reading [ns]

@@ -1,4 +1,4 @@
-"""What `<sensor>` tags load: sensors, and the plugins in them; importing registers them."""
+"""Sensors of `<sensor>` elements and the plugins in them; importing registers them."""
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points

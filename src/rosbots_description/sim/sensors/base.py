@@ -1,4 +1,4 @@
-"""What every sensor is: a place on a link, a rate, readings; and the plugins that pass them on."""
+"""Base classes of sensors, and of the plugins that publish their readings."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -17,15 +17,15 @@ Reading = TypeVar('Reading')
 
 
 class DueTimes:
-    """The times k / rate after a beginning: k counts, so that they never drift."""
+    """The times t0 + k / rate, computed from the integer k, so that they never drift."""
 
     _begin_ns = 0
 
     def __init__(self, rate: float, what: str) -> None:
-        """Take a rate [Hz]; 0 or less: at all times.
+        """Take a rate [Hz]; 0 or less means at every time.
 
         Raises:
-            PluginError: that would be hardly ever; `what` has the rate, e.g. '<updateRate>'.
+            PluginError: the rate is too low; the message names `what`, e.g. '<updateRate>'.
         """
         if 0.0 < rate < SLOWEST_RATE:
             raise PluginError(f'{what} is {rate:g} Hz; it must be at least {SLOWEST_RATE:g}, or 0 '
@@ -33,11 +33,11 @@ class DueTimes:
         self._period_ns = NANOSECONDS / rate if rate > 0.0 else 0.0
 
     def begin(self, now_ns: int) -> None:
-        """Count from now on; the first of the times is one period later."""
+        """Set t0 to `now_ns`; the first time is one period later."""
         self._begin_ns = now_ns
 
     def after(self, now_ns: int) -> int:
-        """Return the first of the times that is later than `now_ns` [ns]."""
+        """Return the first time later than `now_ns` [ns]."""
         if not self._period_ns:
             return now_ns + 1
         passed = (now_ns - self._begin_ns) / self._period_ns
@@ -45,11 +45,11 @@ class DueTimes:
 
 
 class Sensor(SensorLife):
-    """Measures at its own rate while somebody reads; else it costs nothing.
+    """Measures at its own rate while its output has readers; otherwise it costs nothing.
 
     A subclass is registered by `register_sensor(type)`, reads its elements in `load`, and returns a
-    reading in `measure`: a frozen value that nobody changes any more. One that is of no such class
-    is kept, and measures nothing.
+    reading from `measure`, an immutable value. A sensor of an unregistered type is kept, but does
+    not measure.
     """
 
     measures = True
@@ -67,7 +67,7 @@ class Sensor(SensorLife):
 
     @property
     def pose(self) -> Pose:
-        """Return where it is in the world."""
+        """Return the sensor's pose in the world."""
         return compose(self.link.pose, self.spec.pose)
 
     def start(self) -> None:
@@ -77,43 +77,43 @@ class Sensor(SensorLife):
         self.restart()
 
     def load(self) -> None:
-        """Read what stands in `spec.element`.
+        """Read the settings in `spec.element`.
 
         Raises:
-            PluginError: a number makes no sense.
+            PluginError: a number is out of range.
         """
 
     def measure(self) -> object:
-        """Return a reading of the world as it is now, at the end of a step."""
+        """Return a reading of the current state, at the end of a step."""
         raise NotImplementedError
 
     def read(self) -> Any:  # noqa: ANN401  each type of sensor has its own readings
-        """Return a reading of the world as it is now, whatever the rate.
+        """Return a reading of the current state, independent of the rate.
 
         Raises:
-            PluginError: nothing measures as a sensor of this type does.
+            PluginError: sensors of this type are not simulated.
         """
         if not self.measures:
             raise PluginError(f'{self.called}: sensors of this type are not simulated')
         return self.measure()
 
     def shared(self) -> Iterable[object]:
-        """Return description, output and what makes random numbers."""
+        """Return description, output and random numbers."""
         return (self.spec, self.readings, self.random)
 
     def restart(self) -> None:
-        """Count the times of readings from now on."""
+        """Restart the schedule of readings at the current time."""
         self._times.begin(self.world.clock.now_ns)
         self.count_readers()
         self.reset()
 
     def before_step(self) -> None:
-        """Have the reading taken after physics, so that it belongs to the stamp of the step."""
+        """Request a reading after physics, so that it matches the stamp of the step."""
         self.watches = self.readings.wanted
         self.count_readers()
 
     def after_step(self) -> None:
-        """Give a reading to those who want it."""
+        """Send a reading to the readers."""
         self.give(self.measure())
 
     def give(self, reading: object) -> None:
@@ -123,7 +123,7 @@ class Sensor(SensorLife):
         self.readings.send(reading)
 
     def count_readers(self) -> None:
-        """Be due when the next reading is, or never while nobody reads."""
+        """Set the next due step, or NEVER without readers."""
         clock = self.world.clock
         if self.readings.wanted:
             step = clock.first_step_after(self._times.after(clock.now_ns) - 1)
@@ -140,11 +140,11 @@ class KeptSensor(Sensor):
 
 
 class SensorPlugin(ModelPlugin, Generic[Reading]):
-    """A plugin in a <sensor>: it takes the sensor's readings while somebody reads its outputs.
+    """A plugin in a <sensor>: it takes the sensor's readings while its outputs have readers.
 
-    A subclass is registered by `register_in_sensor(library)`, names in `sensor_class` what it can
-    stand in, reads its tags and makes its outputs in `load`, and sends to these in `take`. With
-    `rate` it takes readings at that rate [Hz] at most.
+    A subclass is registered by `register_in_sensor(library)`, sets `sensor_class` to the sensors
+    that it supports, reads its tags and makes its outputs in `load`, and sends to them in `take`.
+    `rate` limits the rate of its readings [Hz]; 0 means no limit.
     """
 
     sensor_class: type[Sensor] = Sensor
@@ -161,7 +161,7 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         """Load and begin.
 
         Raises:
-            PluginError: it stands in a sensor of another type.
+            PluginError: the sensor is of an unsupported type.
         """
         if not isinstance(self.sensor, self.sensor_class):
             raise PluginError(f"{self.spec.filename} does not work in a <sensor> of type "
@@ -169,22 +169,22 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         super().start()
 
     def restart(self) -> None:
-        """Count the times of readings from now on."""
+        """Restart the schedule of readings at the current time."""
         self._times = DueTimes(self.rate, f'<{self.rate_tag}>')
         self._times.begin(self.world.clock.now_ns)
         self._wake()
         self.reset()
 
     def shared(self) -> Iterable[object]:
-        """Return what makes random numbers, too."""
+        """Return the random numbers, too."""
         return (*super().shared(), self.random)
 
     def take(self, reading: Reading) -> None:
-        """Send what is made of a reading of the sensor."""
+        """Send the outputs for a reading of the sensor."""
         raise NotImplementedError
 
     def readers_changed(self) -> None:
-        """Have readings taken as long as somebody reads."""
+        """Take readings while any output has readers."""
         self.sensor.readings.disconnect(self._take)
         if self.is_read:
             self.sensor.readings.connect(self._take)
@@ -193,7 +193,7 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         self._taking = self.is_read
 
     def _wake(self) -> None:
-        """Go on in the rhythm that there would be without having slept."""
+        """Resume on the original schedule, as if readings had never stopped."""
         self._next_ns = self._times.after(self.world.clock.now_ns)
 
     def _take(self, reading: Reading) -> None:

@@ -1,7 +1,7 @@
-"""Points that a laser meets: the plugin libgazebo_ros_block_laser.so of gazebo_ros_pkgs 2.9.2.
+"""Laser points: the plugin libgazebo_ros_block_laser.so of gazebo_ros_pkgs 2.9.2.
 
-A point lies in the middle between its neighbouring rays, half a ray beside where it was measured;
-where nothing was met it is at the greatest range. Both as in Gazebo.
+As in Gazebo, a point lies midway between its neighbouring rays, half a ray beside the measured
+direction, and a ray without a hit gives a point at the maximum range.
 """
 
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from .ray_fan import Sweep
 
 
 class Points(NamedTuple):
-    """What rays met, in the sensor's frame: rows from the lowest upward."""
+    """Points in the sensor's frame, row by row from the lowest."""
 
     positions: Floats  # (n, 3) [m]
     intensities: Floats  # (n,)
@@ -24,14 +24,14 @@ class Points(NamedTuple):
 
 @register_in_sensor('libgazebo_ros_block_laser.so')
 class BlockLaserPlugin(SensorPlugin[Scan]):
-    """Makes points of rays. Output: `points`."""
+    """Converts rays to points. Output: `points`."""
 
     sensor_class = RaySensor
     sensor: RaySensor
     prefix = 'Block laser plugin (ns = {}) '
 
     def load(self) -> None:
-        """Read the tags; two of them mean nothing, as upstream."""
+        """Read the tags; two of them are ignored, as upstream."""
         read = self.params.read
         self.params.ignore('hokuyoMinIntensity', 'updateRate')
         read('frameName', '/world')

@@ -1,4 +1,4 @@
-"""Cameras: what `<sensor>` elements of type camera, multicamera and depth see."""
+"""Camera sensors: `<sensor>` elements of type camera, multicamera and depth."""
 
 import logging
 import math
@@ -16,7 +16,7 @@ from .numbers import child_at, count, number
 logger = logging.getLogger(__name__)
 
 LARGEST = 8192  # [pixels] along an edge
-POLL = 4  # steps between two looks for a picture that is under way
+POLL = 4  # steps between two polls for a pending picture
 _ENCODINGS = {
     'L8': 'mono8', 'L_INT8': 'mono8', 'L16': 'mono16', 'L_INT16': 'mono16',
     'R8G8B8': 'rgb8', 'RGB_INT8': 'rgb8', 'B8G8R8': 'bgr8', 'BGR_INT8': 'bgr8',
@@ -27,10 +27,10 @@ _DISTORTION = ('k1', 'k2', 'k3', 'p1', 'p2')
 
 
 class SensedCamera(NamedTuple):
-    """One <camera>: its name, where it is in the sensor, its lens, and how its pixels are called.
+    """One <camera>: name, pose in the sensor's frame, lens, and published encoding.
 
-    That differs from what they are where the format is unknown: as in Gazebo they are then red,
-    green, blue, and called bgr8.
+    If the format is unknown, the encoding is wrong, as in Gazebo: pixels are red, green, blue, but
+    published as bgr8.
     """
 
     name: str
@@ -41,10 +41,11 @@ class SensedCamera(NamedTuple):
 
 @register_sensor('camera')
 class CameraSensor(Sensor):
-    """Gives `Picture`s.
+    """Measures `Picture`s.
 
-    While the world keeps pace with the wall clock it does not wait for them: each comes when it is
-    drawn, with the stamp of when it was taken. Otherwise the step waits, and none is left out.
+    While the world keeps pace with the wall clock, steps do not wait for pictures: each is sent
+    when it has been drawn, stamped with the time of its scene. Otherwise steps wait, and no picture
+    is skipped.
     """
 
     has_depth = False
@@ -52,7 +53,7 @@ class CameraSensor(Sensor):
     def load(self) -> None:
         """Read the cameras."""
         elements = [one for one in self.spec.element.children if one.tag == 'camera']
-        elements = elements or [Element('camera')]  # which has defaults for all
+        elements = elements or [Element('camera')]  # with all defaults
         self.cameras = tuple(self._camera(one) for one in self._chosen(elements))
         self._wanted: dict[object, tuple[bool, bool]] = {}  # by plugin: pixels, depths
         self._shutter = Shutter(self.world)
@@ -63,22 +64,22 @@ class CameraSensor(Sensor):
         return elements[:1]
 
     def reading(self, pictures: tuple[Picture, ...]) -> object:
-        """Return what is given out for the pictures of all cameras."""
+        """Return the reading for the pictures of all cameras."""
         return pictures[0]
 
     def shared(self) -> tuple[object, ...]:
-        """Return what is no part of the state."""
+        """Return what is not part of the state."""
         return (*super().shared(), self.cameras, self._shutter)
 
     def want(self, plugin: object, what: tuple[bool, bool] | None) -> None:
-        """Draw pixels and depths as plugins that read want them; for other readers draw all."""
+        """Set whether a plugin wants (pixels, depths), None: neither; other readers get both."""
         if what is None:
             self._wanted.pop(plugin, None)
         else:
             self._wanted[plugin] = what
 
     def crop(self, crops: bool) -> None:
-        """Leave out the borders of a distorted picture if it may be and there would be any."""
+        """Set whether empty borders of distorted pictures are cropped."""
         self.cameras = tuple(
             one._replace(lens=one.lens._replace(crop=crops and one.lens.crop))
             for one in self.cameras)
@@ -90,31 +91,31 @@ class CameraSensor(Sensor):
         self.count_readers()
 
     def unload(self) -> None:
-        """Let the shutter go."""
+        """Close the shutter."""
         self._shutter.close()
 
     def measure(self) -> object:
-        """Return what is seen now.
+        """Return a reading of the current scene.
 
         Raises:
-            PluginError: nothing can be drawn.
+            PluginError: the picture cannot be drawn.
         """
         try:
             self._press((True, self.has_depth))
             taken: tuple[Picture, ...] = ()
-            while self._shutter.under_way:  # those that were asked for before come first
+            while self._shutter.under_way:  # earlier requests are answered first
                 taken = self._shutter.take(wait=True) or taken
         except RenderError as error:
             raise PluginError(f'{self.called}: {error}') from None
         return self.reading(taken)
 
     def before_step(self) -> None:
-        """Take a picture after physics if one is due, or look for one that is under way."""
+        """Note whether a picture is due after physics; otherwise pending ones are polled."""
         self._takes = self.world.clock.steps >= self._picture_step
         super().before_step()
 
     def after_step(self) -> None:
-        """Take a picture, and give out those that are there."""
+        """Request a picture if due, and send the finished ones."""
         waits = not self.world.keeps_pace
         try:
             self._give(waits)
@@ -130,7 +131,7 @@ class CameraSensor(Sensor):
         self.count_readers()
 
     def count_readers(self) -> None:
-        """Be due when the next picture is, and before that if one is under way."""
+        """Set the next due step: the next picture, or an earlier poll for a pending one."""
         super().count_readers()
         self._picture_step = self.due
         if self.due != NEVER and self._shutter.under_way:
@@ -151,7 +152,7 @@ class CameraSensor(Sensor):
             [(one.lens, compose(here, one.pose)) for one in self.cameras], seed, wants)
 
     def _give(self, waits: bool) -> None:
-        """Send the pictures that are there; those of a time that has not come yet are void."""
+        """Send finished pictures, except stale ones with future stamps from before a reset."""
         while (taken := self._shutter.take(waits)) is not None:
             if taken[0].stamp_ns <= self.world.clock.now_ns:
                 self.give(self.reading(taken))
@@ -188,7 +189,7 @@ class CameraSensor(Sensor):
 
 @register_sensor('multicamera')
 class MultiCameraSensor(CameraSensor):
-    """Gives tuples of `Picture`s, one of each camera, all of one moment."""
+    """Measures tuples of `Picture`s, one of each camera, all at the same time."""
 
     def _chosen(self, elements: list[Element]) -> list[Element]:
         return elements
@@ -200,7 +201,7 @@ class MultiCameraSensor(CameraSensor):
 
 @register_sensor('depth')
 class DepthSensor(CameraSensor):
-    """Gives `Picture`s with depths."""
+    """Measures `Picture`s with depths."""
 
     has_depth = True
 

@@ -26,7 +26,7 @@ _MILLIMETRES = 1000.0  # per metre
 
 @dataclass(frozen=True)
 class CameraInfo:
-    """How a picture came to be, in the words of sensor_msgs/CameraInfo; matrices row by row."""
+    """Camera calibration, as in sensor_msgs/CameraInfo; matrices are row-major."""
 
     width: int
     height: int
@@ -74,11 +74,11 @@ class Cloud:
 
 
 class Channel:
-    """The outputs and the info of one camera of a plugin: `image` and `camera_info`."""
+    """Outputs and calibration of one camera of a plugin: `image` and `camera_info`."""
 
     def __init__(self, plugin: 'CameraPlugin', camera: SensedCamera, side: str, baseline: float
                  ) -> None:
-        """Make them; `side` begins the names of the outputs, `baseline` is in metres."""
+        """Make the outputs; `side` prefixes their names, `baseline` is in metres."""
         self.camera = camera
         self.frame = plugin.frame
         self.image: Output[Image] = plugin.output(f'{side}image')
@@ -86,7 +86,7 @@ class Channel:
         self.info = plugin.info(camera.lens, baseline)
 
     def send(self, picture: Picture) -> None:
-        """Give out a picture."""
+        """Send a picture."""
         if self.image.wanted and picture.pixels is not None:
             lens = self.camera.lens
             self.image.send(Image(picture.stamp_ns, self.frame, lens.width, lens.height,
@@ -97,7 +97,7 @@ class Channel:
 
 @register_in_sensor('libgazebo_ros_camera.so')
 class CameraPlugin(SensorPlugin[Pictures]):
-    """Passes pictures on. Outputs: `image`, `camera_info`."""
+    """Publishes pictures. Outputs: `image`, `camera_info`."""
 
     sensor_class: type[CameraSensor] = CameraSensor
     prefix = 'Camera Plugin (ns = {}) '
@@ -128,12 +128,12 @@ class CameraPlugin(SensorPlugin[Pictures]):
             Channel(self, self.sensor.cameras[0], '', self._values['hackBaseline']),)
 
     def restart(self) -> None:
-        """Count the times of pictures from now on."""
+        """Restart the schedule of pictures at the current time."""
         super().restart()
         self.readers_changed()
 
     def info(self, lens: Lens, baseline: float) -> CameraInfo:
-        """Return how pictures of a lens come to be, as the tags say."""
+        """Return the calibration of a lens according to the tags."""
         values = self._values
         seen = lens.focal_length
         focal = values['focalLength'] or seen
@@ -154,15 +154,15 @@ class CameraPlugin(SensorPlugin[Pictures]):
             frame=self.frame)
 
     def set_info(self, info: CameraInfo, channel: int = 0) -> None:
-        """Send this with pictures from now on, as set_camera_info asks for."""
+        """Set the calibration sent with pictures, as by set_camera_info."""
         self.channels[channel].info = info
 
     def set_rate(self, rate: float) -> None:
-        """Take pictures at this rate [Hz] from now on, as dynamic_reconfigure asks for."""
+        """Set the rate of pictures [Hz], as by dynamic_reconfigure."""
         self.sensor.set_rate(rate)
 
     def readers_changed(self) -> None:
-        """Have drawn what is read."""
+        """Request pixels and depths according to the readers."""
         self.sensor.want(self, self.wants() if self.is_read else None)
         super().readers_changed()
 
@@ -171,7 +171,7 @@ class CameraPlugin(SensorPlugin[Pictures]):
         return any(channel.image.wanted for channel in self.channels), False
 
     def stamp_of(self, reading: Pictures) -> int:
-        """Return when a picture was taken [ns]."""
+        """Return the stamp of a picture [ns]."""
         return _first(reading).stamp_ns
 
     def take(self, reading: Pictures) -> None:
@@ -179,18 +179,18 @@ class CameraPlugin(SensorPlugin[Pictures]):
         self.channels[0].send(_first(reading))
 
     def unload(self) -> None:
-        """Want nothing any more."""
+        """Withdraw the request for pictures."""
         self.sensor.want(self, None)
 
     def _topic(self, tag: str, default: str) -> None:
-        """Read the name of a topic, which stands below the camera's name; keep it as the tag's."""
+        """Read a topic name, relative to the camera's name, and store it as the tag's value."""
         name = self._value(tag, default)
         if not name.startswith('/') and self.camera_name:
             name = f'{self.camera_name}/{name}'
         self.params.values[tag] = name
 
     def _value(self, tag: str, default: Value) -> Value:
-        """Return a tag's value; upstream says nothing of one that is missing."""
+        """Return a tag's value, or the default without a log message, as upstream."""
         if self.params.text(tag) is None:
             self.params.values[tag] = default
             return default
@@ -199,7 +199,7 @@ class CameraPlugin(SensorPlugin[Pictures]):
 
 @register_in_sensor('libgazebo_ros_multicamera.so')
 class MultiCameraPlugin(CameraPlugin):
-    """Passes the pictures of the cameras named left and right on, of equal stamps.
+    """Publishes the pictures of the cameras named left and right, with equal stamps.
 
     Outputs: `left_image`, `left_camera_info`, `right_image`, `right_camera_info`.
     """
@@ -218,7 +218,7 @@ class MultiCameraPlugin(CameraPlugin):
                 found[side] = number
         self._numbers = tuple(found.values())
         self.sides = tuple(found)
-        # Only the right camera stands the baseline aside.
+        # Only the right camera is offset by the baseline.
         self.channels = tuple(
             Channel(self, self.sensor.cameras[number], f'{side}_',
                     self._values['hackBaseline'] if side == 'right' else 0.0)
@@ -239,7 +239,7 @@ class MultiCameraPlugin(CameraPlugin):
 
 @register_in_sensor('libgazebo_ros_depth_camera.so')
 class DepthCameraPlugin(CameraPlugin):
-    """Passes pictures and depths on.
+    """Publishes pictures and depths.
 
     Outputs: `image`, `camera_info`, `depth`, `depth_camera_info`, `points`.
     """
@@ -268,7 +268,7 @@ class DepthCameraPlugin(CameraPlugin):
         self._rays = across.astype('f4')[None, :], down.astype('f4')[:, None]
 
     def farthest(self) -> float:
-        """Return the distance from which on there is no depth [m]."""
+        """Return the distance beyond which depths are NaN [m]."""
         return math.inf
 
     def wants(self) -> tuple[bool, bool]:
@@ -278,7 +278,7 @@ class DepthCameraPlugin(CameraPlugin):
                 self.depth.wanted or self.points.wanted)
 
     def take(self, reading: Pictures) -> None:
-        """Send a picture and what is made of its depths."""
+        """Send a picture, its depth image and its point cloud."""
         channel, picture = self.channels[0], _first(reading)
         channel.send(picture)
         if self.depth_camera_info.wanted:
@@ -316,12 +316,12 @@ class DepthCameraPlugin(CameraPlugin):
 
 @register_in_sensor('libgazebo_ros_openni_kinect.so')
 class OpenniKinectPlugin(DepthCameraPlugin):
-    """As the depth camera; clouds have rows, and what is far has no depth."""
+    """A depth camera with organised clouds and a maximum depth."""
 
     is_organised = True
 
     def farthest(self) -> float:
-        """Return the distance from which on there is no depth [m]."""
+        """Return the distance beyond which depths are NaN [m]."""
         return self._value('pointCloudCutoffMax', 5.0)
 
 

@@ -1,8 +1,8 @@
-"""Contact sensors: what the collisions of a link touch; and the plugin libgazebo_ros_bumper.so.
+"""Contact sensors, which report the contacts of a link's collisions, and libgazebo_ros_bumper.so.
 
-As in Gazebo there is a state for each pair of collisions and each physics step since the reading
-before; forces and torques are in the axes of the first collision's link, positions and normals in
-those of the world.
+As in Gazebo, a reading has a state for each pair of collisions and each physics step since the
+previous reading. Forces and torques are in the axes of the first collision's link, positions and
+normals in world axes.
 """
 
 import logging
@@ -17,17 +17,17 @@ logger = logging.getLogger(__name__)
 
 
 class ContactPoint(NamedTuple):
-    """Where two collisions touch."""
+    """A contact point of two collisions."""
 
-    force: Vector  # on the body of the first one, in the axes of its link [N]
+    force: Vector  # on the first collision's link, in its axes [N]
     torque: Vector  # about its centre of mass, in the same axes [N m]
     position: Vector  # in the world [m]
     normal: Vector  # from the second to the first, in the world
-    depth: float  # of the overlap [m]
+    depth: float  # of the penetration [m]
 
 
 class ContactPair(NamedTuple):
-    """What two collisions, by their scoped names, do to each other in one step."""
+    """The contact points of two collisions, given by scoped names, in one step."""
 
     first: str
     second: str
@@ -37,10 +37,10 @@ class ContactPair(NamedTuple):
 
 @register_sensor('contact')
 class ContactSensor(Sensor):
-    """Its readings are all touches since the reading before, in the order in which they were."""
+    """Measures all contacts since the previous reading, in chronological order."""
 
     def load(self) -> None:
-        """Read the names; one that the link does not have is told of, and nothing is touched."""
+        """Read the collision names; warn of those that the link does not have."""
         contact = self.spec.element.child('contact')
         children = contact.children if contact is not None else ()
         names = [child.text for child in children if child.tag == 'collision']
@@ -56,12 +56,12 @@ class ContactSensor(Sensor):
         self._next_ns = 0
 
     def reset(self) -> None:
-        """Forget what was touched."""
+        """Discard recorded contacts."""
         self._touches.clear()
         self._next_ns = self._times.after(self.world.clock.now_ns)
 
     def count_readers(self) -> None:
-        """Look in each step while somebody reads."""
+        """Be due at each step while there are readers."""
         slept = self.due == NEVER
         super().count_readers()
         if self.readings.wanted:
@@ -70,7 +70,7 @@ class ContactSensor(Sensor):
                 self.reset()
 
     def after_step(self) -> None:
-        """Take note of what is touched, and give a reading when one is due."""
+        """Record contacts, and send a reading when one is due."""
         self._touches += self.measure()
         now_ns = self.world.clock.now_ns
         if now_ns >= self._next_ns:
@@ -79,7 +79,7 @@ class ContactSensor(Sensor):
             self.give(reading)
 
     def measure(self) -> tuple[ContactPair, ...]:
-        """Return what was touched in the last step."""
+        """Return the contacts of the last step."""
         pairs: dict[tuple[CollisionFrame, CollisionFrame], list[ContactPoint]] = {}
         for contact in self.world.engine.contacts(self.model.body, self.link.name):
             if contact.one.collision not in self._names:
@@ -87,7 +87,7 @@ class ContactSensor(Sensor):
             own, other = (self._collision(*name) for name in (contact.one, contact.other))
             normal, force = contact.normal, contact.force
             first, second = own, other
-            if self._came_later(other):  # Gazebo's engine has the younger body first
+            if self._came_later(other):  # in Gazebo the newer body comes first
                 first, second = other, own
                 normal, force = (subtract((0.0, 0.0, 0.0), v) for v in (normal, force))
             pairs.setdefault((first, second), []).append(
@@ -108,7 +108,7 @@ class ContactSensor(Sensor):
 def _point(
     body: CollisionFrame, position: Vector, normal: Vector, force: Vector, depth: float
 ) -> ContactPoint:
-    """Return a point with what acts there on the link that carries `body`."""
+    """Return a contact point, with force and torque on the link of `body`."""
     pose, inertial = body.link.pose, body.link.spec.inertial
     centre = pose.position
     if inertial is not None:
@@ -120,18 +120,18 @@ def _point(
 
 @register_in_sensor('libgazebo_ros_bumper.so')
 class BumperPlugin(SensorPlugin[tuple[ContactPair, ...]]):
-    """Passes touches on, also where there are none. Output: `contacts`."""
+    """Publishes contacts, empty readings included. Output: `contacts`."""
 
     sensor_class = ContactSensor
     prefix = 'Bumper plugin (ns = {}) '
 
     def load(self) -> None:
-        """Read the tags; <updateRate> means nothing, as upstream."""
+        """Read the tags; <updateRate> is ignored, as upstream."""
         self.params.ignore('updateRate')
         self.params.read('bumperTopicName', 'bumper_states')
         self.params.read('frameName', 'world')
         self.contacts = self.output('contacts')
 
     def take(self, reading: tuple[ContactPair, ...]) -> None:
-        """Send what was touched."""
+        """Send the contacts."""
         self.contacts.send(reading)

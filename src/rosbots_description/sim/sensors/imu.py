@@ -1,7 +1,7 @@
 """Inertial measurement units: the sensor, and the plugin libgazebo_ros_imu_sensor.so.
 
-Tags, defaults and namespaces of the plugin are those of gazebo_ros_pkgs 2.9.2, as are its oddities:
-1 Hz without <updateRateHZ>, and noise on the quaternion, too, which then is no unit quaternion.
+Tags, defaults and namespaces of the plugin are those of gazebo_ros_pkgs 2.9.2, and so are its
+quirks: 1 Hz without <updateRateHZ>, and noise on the quaternion, which is not normalised again.
 """
 
 import logging
@@ -30,9 +30,9 @@ _AXES = 'x', 'y', 'z'
 
 
 class Inertia(NamedTuple):
-    """What an IMU measures, in its own axes, with the standard deviation that it claims."""
+    """An IMU reading in the sensor's axes, with its nominal standard deviation."""
 
-    orientation: Quaternion  # in the world, or in the attitude it began with
+    orientation: Quaternion  # relative to the world, or to the initial orientation
     angular_velocity: Vector  # [rad/s]
     linear_acceleration: Vector  # [m/s^2]
     deviation: float = 0.0  # of each of these numbers, in their units
@@ -40,10 +40,10 @@ class Inertia(NamedTuple):
 
 @register_sensor('imu')
 class ImuSensor(Sensor):
-    """Measures orientation, angular velocity and proper acceleration where it is on its link.
+    """Measures orientation, angular velocity and proper acceleration at its pose on the link.
 
-    The acceleration is the mean since the reading before, so that its sum is the velocity. `read`
-    takes the velocity as constant while nobody else reads.
+    The acceleration is the mean since the previous reading, so that it integrates to the velocity.
+    Without other readers, `read` assumes zero acceleration of the sensor's origin.
     """
 
     def load(self) -> None:
@@ -53,27 +53,27 @@ class ImuSensor(Sensor):
             *(read_noise(child_at(imu, f'angular_velocity/{axis}/noise')) for axis in _AXES),
             *(read_noise(child_at(imu, f'linear_acceleration/{axis}/noise')) for axis in _AXES),
         ]
-        self._before: tuple[int, Vector] | None = None  # time [ns] and velocity, to compare with
+        self._before: tuple[int, Vector] | None = None  # time [ns], velocity
 
     def reset(self) -> None:
-        """Compare with the velocity before the next step."""
+        """Start the mean acceleration at the next step."""
         self._before = None
 
     def count_readers(self) -> None:
-        """Forget the velocity while nobody reads."""
+        """Discard the previous velocity while there are no readers."""
         super().count_readers()
         if not self.readings.wanted:
             self._before = None
 
     def before_step(self) -> None:
-        """Take the velocity before physics if there is none to compare with."""
+        """Sample the velocity before physics if there is no previous one."""
         super().before_step()
         if self._before is None:
             clock = self.world.clock
             self._before = clock.now_ns - clock.step_ns, self._state()[1].linear
 
     def after_step(self) -> None:
-        """Give a reading, and remember the velocity that it was made of."""
+        """Send a reading, and keep its velocity for the next one."""
         super().after_step()
         self._before = self.world.clock.now_ns, self._state()[1].linear
 
@@ -90,7 +90,7 @@ class ImuSensor(Sensor):
         return Inertia(orientation, (wx, wy, wz), (ax, ay, az))
 
     def _state(self) -> tuple[Quaternion, Twist]:
-        """Return orientation in the world, and the twist of where the sensor is."""
+        """Return orientation and twist of the sensor's frame in the world."""
         pose, twist = self.link.state_at(self.spec.pose)
         return pose.orientation, twist
 
@@ -98,7 +98,7 @@ class ImuSensor(Sensor):
 def mean_acceleration(
     before: tuple[int, Vector] | None, now_ns: int, velocity: Vector
 ) -> Vector:
-    """Return the mean acceleration [m/s^2] from a time [ns] with a velocity [m/s] on until now."""
+    """Return the mean acceleration [m/s^2] since `before`, a time [ns] and a velocity [m/s]."""
     if before is None or now_ns <= before[0]:
         return (0.0, 0.0, 0.0)
     seconds = (now_ns - before[0]) / NANOSECONDS
@@ -108,7 +108,7 @@ def mean_acceleration(
 
 @register_in_sensor('libgazebo_ros_imu_sensor.so')
 class ImuSensorPlugin(SensorPlugin[Inertia]):
-    """Passes readings on, at a rate of its own. Output: `imu`."""
+    """Publishes readings at its own rate. Output: `imu`."""
 
     sensor_class = ImuSensor
     absent_namespace = '/{}'
@@ -116,7 +116,7 @@ class ImuSensorPlugin(SensorPlugin[Inertia]):
     missing = staticmethod('missing <{}>, set to default: {}'.format)
 
     def load(self) -> None:
-        """Read the tags; <bodyName> and <xyzOffset> mean nothing, as upstream."""
+        """Read the tags; <bodyName> and <xyzOffset> are ignored, as upstream."""
         read = self.params.read
         self.params.ignore('bodyName', 'xyzOffset')
         read('topicName', 'imu_data')

@@ -1,7 +1,7 @@
 """Force and torque in a joint: the plugin libgazebo_ros_ft_sensor.so of gazebo_ros_pkgs 2.9.2.
 
-It tells what the child does to the parent, in the axes of the child and about the joint. Gazebo
-wants <provideFeedback> for that; here a joint is measured while somebody reads.
+It publishes the wrench of the child on the parent, in the axes of the child and about the joint's
+origin. Gazebo needs <provideFeedback>; here a joint is measured while the output has readers.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from .noise import RandomSteps, gaussian, noisy
 
 
 class JointWrench(NamedTuple):
-    """What the child of a joint does to its parent, in the axes of the child."""
+    """The wrench of a joint's child on its parent, in the axes of the child."""
 
     force: Vector  # [N]
     torque: Vector  # about the origin of the joint [N m]
@@ -22,12 +22,12 @@ class JointWrench(NamedTuple):
 
 @register('libgazebo_ros_ft_sensor.so')
 class JointWrenchPlugin(PeriodicPlugin):
-    """Tells the wrench in <jointName>. Output: `wrench`. `frame` is the child's name."""
+    """Publishes the wrench in <jointName>. Output: `wrench`. `frame` is the child's name."""
 
     prefix = 'ft_sensor plugin '
     later = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)
-    _measured: object = None  # the body in which the engine measures it
+    _measured: object = None  # the body whose joint the engine measures
 
     def load(self) -> None:
         """Read the tags; find the joint."""
@@ -40,21 +40,21 @@ class JointWrenchPlugin(PeriodicPlugin):
         self.wrench = self.output('wrench')
 
     def before_step(self) -> None:
-        """Have the joint measured in the step; its body may be new."""
+        """Enable the measurement; the model's body may have been replaced."""
         if self._measured is not self.model.body:
             self._measured = self.model.body
             self.world.engine.measure_reaction(self.model.body, self._joint.name)
         super().before_step()
 
     def readers_changed(self) -> None:
-        """End measuring when nobody reads."""
+        """Disable the measurement when there are no readers."""
         super().readers_changed()
         if self._measured is not None and not self.is_read:
             self.world.engine.measure_reaction(self.model.body, self._joint.name, wanted=False)
             self._measured = None
 
     def report(self) -> None:
-        """Tell the wrench."""
+        """Send the wrench."""
         force, torque = self.world.engine.joint_reaction(self.model.body, self._joint.name)
         numbers: Sequence[float] = [-number for number in (*force, *torque)]
         if self._noise:

@@ -11,7 +11,7 @@ from .ray import RaySensor, Scan
 @register_in_sensor('libgazebo_ros_gpu_laser.so')
 @register_in_sensor('libgazebo_ros_laser.so')
 class LaserPlugin(SensorPlugin[Scan]):
-    """Passes scans on. Output: `scan`, unless <topicName> is empty."""
+    """Publishes scans. Output: `scan`, unless <topicName> is empty."""
 
     sensor_class = RaySensor
     prefix = 'Laser Plugin (ns = {}) '

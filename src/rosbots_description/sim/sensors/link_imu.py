@@ -1,7 +1,7 @@
-"""The IMU that is a plugin of a model: libgazebo_ros_imu.so of gazebo_ros_pkgs 2.9.2.
+"""The IMU as a model plugin: libgazebo_ros_imu.so of gazebo_ros_pkgs 2.9.2.
 
-Its acceleration is that of the link, without gravity. Upstream turns velocity and acceleration from
-the world's axes by the attitude itself, not by its inverse; so does this in a strict world.
+Its acceleration is that of the link, without gravity. Upstream rotates velocity and acceleration by
+the orientation instead of its inverse; this plugin does so in a strict world only.
 """
 
 import logging
@@ -16,13 +16,13 @@ from .noise import RandomSteps, gaussian, noisy
 
 @register('libgazebo_ros_imu.so')
 class LinkImu(PeriodicPlugin):
-    """Tells attitude, angular velocity and acceleration of <bodyName>. Output: `imu`."""
+    """Publishes orientation, angular velocity and acceleration of <bodyName>. Output: `imu`."""
 
     prefix = 'imu plugin '
     later = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)
     missing_level = logging.INFO
-    _before: tuple[int, Vector] | None = None  # time [ns] and velocity, to compare with
+    _before: tuple[int, Vector] | None = None  # time [ns] and velocity at the previous report
 
     def load(self) -> None:
         """Read the tags; find the link."""
@@ -40,20 +40,20 @@ class LinkImu(PeriodicPlugin):
         self.imu = self.output('imu')
 
     def reset(self) -> None:
-        """Compare with the velocity before the next step."""
+        """Start the mean acceleration at the next step."""
         self._before = None
 
     wake = reset
 
     def before_step(self) -> None:
-        """Take the velocity before physics if there is none to compare with."""
+        """Sample the velocity before physics if there is no previous one."""
         if self._before is None and self.is_read:
             clock = self.world.clock
             self._before = clock.now_ns - clock.step_ns, self._state()[1].linear
         super().before_step()
 
     def report(self) -> None:
-        """Tell attitude, and the mean acceleration since the last time."""
+        """Send orientation, angular velocity and the mean acceleration since the last report."""
         now_ns, (pose, (linear, angular)) = self.world.clock.now_ns, self._state()
         acceleration = mean_acceleration(self._before, now_ns, linear)
         self._before = now_ns, linear
@@ -66,6 +66,6 @@ class LinkImu(PeriodicPlugin):
             pose.orientation, (wx, wy, wz), (ax, ay, az), self._noise.deviation))
 
     def _state(self) -> tuple[Pose, Twist]:
-        """Return pose and twist of what is measured, in the world."""
+        """Return pose and twist of the IMU's frame in the world."""
         (position, orientation), twist = self._link.state_at(self._mount)
         return Pose(position, multiply(self._turn, orientation)), twist

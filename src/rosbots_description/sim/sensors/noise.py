@@ -1,4 +1,4 @@
-"""Random numbers that repeat: they depend on seed, name and step alone, not on who reads when."""
+"""Reproducible random numbers: they depend on seed, name and step, not on the readers."""
 
 import math
 import zlib
@@ -14,7 +14,7 @@ from .numbers import number
 
 
 class RandomSteps:
-    """The random numbers of one sensor or plugin, for each step anew."""
+    """The random numbers of one sensor or plugin, a new sequence for each step."""
 
     def __init__(self, seed: int, name: str) -> None:
         self._bits = np.random.Philox(key=[seed % (1 << 64), zlib.crc32(name.encode())])
@@ -22,15 +22,15 @@ class RandomSteps:
         self._generator = np.random.Generator(self._bits)
 
     def at(self, step: int) -> np.random.Generator:
-        """Return the generator, at the beginning of the numbers of a step."""
-        self._state['state']['counter'][2] = step  # far more numbers lie between than any step uses
+        """Return the generator at the start of a step's sequence."""
+        self._state['state']['counter'][2] = step  # leaves 2^128 blocks for each step
         self._bits.state = self._state
         return self._generator
 
 
 @dataclass(frozen=True)
 class GaussianNoise:
-    """What a <noise> of type gaussian adds to a number."""
+    """Gaussian noise, as in <noise>."""
 
     mean: float = 0.0
     deviation: float = 0.0
@@ -41,12 +41,12 @@ class GaussianNoise:
     def added_to(
         self, values: NDArray[np.float64], generator: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Return the values, each with noise of its own."""
+        """Return the values with independent noise added to each."""
         return values + generator.normal(self.mean, self.deviation, np.shape(values))
 
 
 def read_noise(element: Element | None) -> GaussianNoise:
-    """Return what a <noise> element says; none without one, or with a type that is none.
+    """Return the noise of a <noise> element; no noise if it is missing or of another type.
 
     Raises:
         PluginError: a number is not finite, or the deviation is negative.
@@ -64,10 +64,10 @@ def read_noise(element: Element | None) -> GaussianNoise:
 
 
 def gaussian(deviation: float, what: str) -> GaussianNoise:
-    """Return the noise that a plugin's tag asks for.
+    """Return the noise for the standard deviation in a plugin's tag.
 
     Raises:
-        PluginError: it is negative or not finite.
+        PluginError: the deviation is negative or not finite.
     """
     if not (math.isfinite(deviation) and deviation >= 0.0):
         raise PluginError(f'{what} is {deviation:g}; it must be at least 0')
@@ -77,7 +77,7 @@ def gaussian(deviation: float, what: str) -> GaussianNoise:
 def noisy(
     values: Sequence[float], noises: Sequence[GaussianNoise], random: RandomSteps, step: int
 ) -> tuple[float, ...]:
-    """Return the values, each with its own noise, of the step."""
+    """Return the values, each with its own noise for that step."""
     standard = random.at(step).standard_normal(len(values)).tolist()
     return tuple(value + noise.mean + noise.deviation * one
                  for value, noise, one in zip(values, noises, standard, strict=True))

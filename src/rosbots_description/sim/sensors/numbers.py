@@ -1,4 +1,4 @@
-"""Numbers in the elements of a <sensor>."""
+"""Reads numbers from the elements of a <sensor>."""
 
 import math
 
@@ -7,7 +7,7 @@ from ..description import Element
 
 
 def child_at(element: Element | None, path: str) -> Element | None:
-    """Return the first element below at a path such as 'scan/horizontal'; None if there is none."""
+    """Return the first descendant at a path such as 'scan/horizontal'; None if there is none."""
     for tag in path.split('/'):
         element = None if element is None else element.child(tag)
     return element
@@ -17,7 +17,7 @@ def number(element: Element | None, path: str, default: float) -> float:
     """Return the number at a path below an element.
 
     Raises:
-        PluginError: it is none, or not finite.
+        PluginError: the text is not a finite number.
     """
     child = child_at(element, path)
     if child is None:
@@ -36,7 +36,7 @@ def count(element: Element | None, path: str, default: int, most: int) -> int:
     """Return the whole number at a path below an element.
 
     Raises:
-        PluginError: it is none, below 1, or above `most`.
+        PluginError: the text is not a number, or it is below 1 or above `most`.
     """
     value, child = number(element, path, default), child_at(element, path)
     if child is not None and not 1.0 <= value <= most:

@@ -9,7 +9,7 @@ from .ray import RaySensor, Scan
 
 
 class Distance(NamedTuple):
-    """How near the nearest thing is in a cone; range_max where there is nothing."""
+    """Distance to the nearest object in a cone; range_max if there is none."""
 
     range: float  # [m]
     range_min: float  # [m]
@@ -20,7 +20,7 @@ class Distance(NamedTuple):
 
 @register_in_sensor('libgazebo_ros_range.so')
 class RangePlugin(SensorPlugin[Scan]):
-    """Takes the least of all rays. Output: `range`."""
+    """Publishes the minimum of all rays. Output: `range`."""
 
     sensor_class = RaySensor
     sensor: RaySensor
@@ -38,7 +38,7 @@ class RangePlugin(SensorPlugin[Scan]):
         self.range = self.output('range', bool(self.params.values['topicName']))
 
     def take(self, _reading: Scan) -> None:
-        """Send the least range, with noise if something was met."""
+        """Send the minimum range, with noise if there is a hit."""
         least, most = float(self.sensor.rays[0].min()), self.sensor.range_max
         if least < most and self.noise:
             (least,) = noisy((least,), (self.noise,), self.random, self.world.clock.steps)

@@ -1,7 +1,7 @@
-"""Ray sensors: how far it is in many directions, by the <ray> element of a `<sensor>`.
+"""Ray sensors: ranges in many directions, by the <ray> element of a `<sensor>`.
 
-Angles, order, limits and interpolation are those of Gazebo: rays begin at the least range, so that
-nothing nearer is seen; what they see are collisions, those of their own robot, too.
+Angles, order, limits and interpolation are those of Gazebo. Rays start at the minimum range, so
+that nearer objects are not seen. They hit collisions, including those of their own robot.
 """
 
 import math
@@ -20,17 +20,17 @@ from .numbers import child_at, count, number
 from .ray_fan import RayFan, Sweep
 from .ray_scene import RayScene
 
-MOST_SAMPLES = 1_000_000  # in all rows; a scan of them takes a second
+MOST_SAMPLES = 1_000_000  # in all rows; such a scan takes a second
 
 Floats = NDArray[np.float64]
 
 
 class Scan(NamedTuple):
-    """What a sweep met: rows from the lowest upward, each from angle_min to angle_max.
+    """A laser scan: rows from the lowest, each from angle_min to angle_max.
 
     Attributes:
-        ranges: (n,) [m] from the sensor; inf where there is nothing up to range_max.
-        intensities: (n,) laser_retro of what was hit, else 0.
+        ranges: (n,) [m] from the sensor's origin; inf without a hit up to range_max.
+        intensities: (n,) laser_retro of the surface hit, 0 without a hit.
     """
 
     ranges: Floats
@@ -43,10 +43,10 @@ class Scan(NamedTuple):
 
 
 def read_sweep(element: Element | None, samples: int) -> Sweep:
-    """Return what <horizontal> or <vertical> says; without <samples> there are `samples`.
+    """Return the sweep of <horizontal> or <vertical>; `samples` is the default of <samples>.
 
     Raises:
-        PluginError: a number makes no sense.
+        PluginError: a number is out of range.
     """
     samples = count(element, 'samples', samples, MOST_SAMPLES)
     resolution = number(element, 'resolution', 1.0)
@@ -61,10 +61,10 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
 @register_sensor('gpu_ray')
 @register_sensor('ray')
 class RaySensor(Sensor):
-    """Casts rays; its readings are of type `Scan`. A gpu_ray is the same here.
+    """Casts rays; its readings are of type `Scan`. A gpu_ray works alike.
 
-    `rays` are ranges [m] and intensities of the newest reading as they were cast: without noise and
-    interpolation, and at range_max where nothing was met.
+    `rays` are ranges [m] and intensities of the rays of the last reading, without noise and
+    interpolation, and range_max without a hit.
     """
 
     rays: tuple[Floats, Floats]
@@ -96,15 +96,15 @@ class RaySensor(Sensor):
                        self.range_min, self.range_max)
 
     def shared(self) -> Iterable[object]:
-        """Return what never changes, too."""
+        """Return scene and rays, too, which are not part of the state."""
         return (*super().shared(), self._scene, self.fan, self.blend)
 
     def cast(self) -> tuple[Floats, Floats]:
-        """Return range [m] and intensity of each ray; what meets nothing has the greatest range."""
+        """Return range [m] and intensity of each ray; range_max without a hit."""
         return self._scene.cast(self.pose, self.fan, self.range_min, self.range_max)
 
     def measure(self) -> Scan:
-        """Return a sweep."""
+        """Return a scan."""
         ranges, retro = self.rays = self.cast()
         if not self._is_whole:
             ranges, retro = self.blend.ranges(ranges), self.blend.intensities(retro)

@@ -1,4 +1,4 @@
-"""The rays of one sensor: a grid of rows and columns, and which of them come near a ball."""
+"""The rays of one sensor, a grid of rows and columns, and their bounding-sphere test."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ _SLACK = 1e-6  # [rad] for rounding
 
 @dataclass(frozen=True)
 class Sweep:
-    """Angles of one direction: `samples` rays are cast, from which `count` are interpolated."""
+    """Angles about one axis: `samples` rays are cast, `count` readings interpolated from them."""
 
     samples: int
     count: int
@@ -24,21 +24,21 @@ class Sweep:
 
     @property
     def first(self) -> float:
-        """Return the angle of the first ray [rad]; a single one has 0, as in Gazebo."""
+        """Return the angle of the first ray [rad]; a single ray is at 0, as in Gazebo."""
         return self.least if self.samples > 1 else 0.0
 
     @property
     def step(self) -> float:
-        """Return the angle from ray to ray [rad]."""
+        """Return the angle between neighbouring rays [rad]."""
         return (self.greatest - self.least) / max(1, self.samples - 1)
 
     @property
     def angles(self) -> Floats:
-        """Return the angles [rad] of the rays that are cast."""
+        """Return the angles of the rays [rad]."""
         return self.first + np.arange(self.samples) * self.step
 
     def within(self, low: Floats, high: Floats) -> tuple[Indices, Indices]:
-        """Return the first ray and the end of those at angles from `low` to `high` [rad]."""
+        """Return begin and end indices of the rays from `low` to `high` [rad]."""
         if self.samples == 1 or self.step == 0.0:
             met = (low <= self.first) & (high >= self.first)
             return np.zeros(met.shape, np.int64), met * self.samples
@@ -49,19 +49,19 @@ class Sweep:
         return begin.astype(np.int64), end.astype(np.int64)
 
     def neighbours(self) -> tuple[Indices, Indices, Floats]:
-        """Return for each reading the rays below and above it, and its way between them, 0 to 1."""
+        """Return for each reading the rays below and above, and its position between, 0 to 1."""
         place = np.arange(self.count) * ((self.samples - 1) / max(1, self.count - 1))
         below = np.floor(place).astype(np.int64)
         return below, np.minimum(below + 1, self.samples - 1), place - below
 
 
 class Patches(NamedTuple):
-    """Parts of a fan: each is the rows and columns that come near one ball.
+    """Patches of a fan: the rows and columns that may hit one bounding sphere each.
 
     Attributes:
-        balls: (m,) numbers of the balls, rising.
-        rows: (m,) the first row; `rows_end` is the one behind the last.
-        columns: the same of the columns.
+        balls: (m,) indices of the spheres, ascending.
+        rows: (m,) the first row; `rows_end` is one past the last.
+        columns: (m,) likewise for columns.
     """
 
     balls: Indices
@@ -72,7 +72,7 @@ class Patches(NamedTuple):
 
 
 class RayFan:
-    """Rays from one point, row by row from the first elevation, each from the first azimuth."""
+    """Rays from one point, row by row by elevation, each row by azimuth."""
 
     def __init__(self, rows: Sweep, columns: Sweep) -> None:
         self.rows, self.columns = rows, columns
@@ -81,12 +81,12 @@ class RayFan:
         parts = np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
         self.ways = np.stack(parts).reshape(3, -1)  # (3, n) unit vectors in the sensor's frame
         ends = sorted((columns.angles[0], columns.angles[-1]))
-        # Azimuths are known up to whole turns; these are the ones that may lie in the fan.
+        # Azimuths are modulo 2 pi; these are the full turns within the fan.
         turns = range(math.floor(ends[0] / math.tau - 0.5), math.ceil(ends[1] / math.tau + 0.5) + 1)
         self._turns = np.array(turns) * math.tau
 
     def near(self, centres: Floats, radii: Floats, most: float) -> Patches:
-        """Return which rays of a length up to `most` [m] come near balls.
+        """Return which rays of length up to `most` [m] may hit bounding spheres.
 
         Args:
             centres: (m, 3) in the frame of the fan [m].
@@ -106,9 +106,9 @@ class RayFan:
                        columns[balls, turns], columns_end[balls, turns])
 
     def rays(self, patches: Patches) -> tuple[Indices, Indices, Indices]:
-        """Return the rays in patches: number of the patch, number of the ray, and counts of rays.
+        """Return indices of patches and rays, and the counts of rays by patch.
 
-        The first two have a place for each ray in each patch, the third one for each patch.
+        The first two have an entry for each ray in each patch, the third for each patch.
         """
         widths = patches.columns_end - patches.columns
         counts = widths * (patches.rows_end - patches.rows)
@@ -122,7 +122,7 @@ class RayFan:
 
 
     def blend(self) -> 'Blend':
-        """Return how readings, of which there may be more or fewer, are made of rays."""
+        """Return the interpolation of readings from rays, whose numbers may differ."""
         low, high, up = self.rows.neighbours()
         left, right, along = self.columns.neighbours()
         corners = tuple(
@@ -133,12 +133,12 @@ class RayFan:
 
 
 class Blend(NamedTuple):
-    """Which four rays make up each reading.
+    """Bilinear interpolation of each reading from four rays.
 
     Attributes:
-        corners: four pairs of the numbers of rays (n,) and their shares (n,).
-        rows: (r,) where the readings lie in the middle of their rays, counted in rows.
-        columns: (c,) the same in columns.
+        corners: four pairs of ray indices (n,) and weights (n,).
+        rows: (r,) midpoint of a reading's rays, in rows.
+        columns: (c,) likewise in columns.
     """
 
     corners: tuple[tuple[Indices, Floats], ...]
@@ -146,17 +146,17 @@ class Blend(NamedTuple):
     columns: Floats
 
     def ranges(self, cast: Floats) -> Floats:
-        """Return readings, interpolated."""
+        """Return the interpolated readings."""
         found: Floats = np.sum([share * cast[rays] for rays, share in self.corners], axis=0)
         return found
 
     def intensities(self, cast: Floats) -> Floats:
-        """Return readings, each the mean of its rays."""
+        """Return the readings, each the mean of its four rays."""
         found: Floats = np.mean([cast[rays] for rays, _ in self.corners], axis=0)
         return found
 
 
 def _span(middle: Floats, radii: Floats, far: Floats) -> tuple[Floats, Floats]:
-    """Return the least and greatest angle at which balls are seen around their middle [rad]."""
+    """Return the angles that spheres subtend: least and greatest [rad]."""
     half = np.where(far > radii, np.arcsin(radii / np.maximum(far, radii)), math.pi)
     return middle - half - _SLACK, middle + half + _SLACK

@@ -1,7 +1,7 @@
-"""Rays among the triangles of a mesh, in Embree: 0.1 ms for 720 rays among 20 000 triangles.
+"""Ray casts on meshes with Embree: 0.1 ms for 720 rays and 20 000 triangles.
 
-Embree computes in single precision, so each ray begins where it comes into the ball around the mesh
-and the ball's middle is the origin.
+Embree computes in single precision. So each ray starts at the bounding sphere of the mesh, whose
+centre is the origin.
 """
 
 import numpy as np
@@ -15,18 +15,18 @@ Floats = NDArray[np.float64]
 
 
 class RayMesh:
-    """A mesh as rays see it, from both sides of its triangles.
+    """A mesh for ray casts, whose triangles are hit from both sides.
 
     Attributes:
-        centre: the middle of its bounding box, in the mesh's own frame [m].
-        radius: of the ball around it [m].
+        centre: of its bounding box, in the mesh's frame [m].
+        radius: of its bounding sphere [m].
     """
 
     def __init__(self, mesh: Mesh) -> None:
-        """Read a mesh; its file was good when the model came.
+        """Read a mesh; its file was checked when the model was spawned.
 
         Raises:
-            ModelError: it is not there any more, or broken.
+            ModelError: the file is missing or broken by now.
         """
         # Loading Embree takes 20 ms, and few worlds need it.
         from embreex.mesh_construction import TriangleMesh
@@ -43,10 +43,10 @@ class RayMesh:
         TriangleMesh(self._scene, corners.reshape(-1, 3, 3).astype(np.float32))
 
     def meet(self, start: Floats, way: Floats, least: float) -> Floats:
-        """Return where rays first meet a triangle, as `ray_shapes.first_from`.
+        """Return the distances of the first hits [m], as `ray_shapes.first_from`.
 
         Args:
-            start: (3, p) from the middle of the mesh, in its axes [m].
+            start: (3, p) relative to the centre of the mesh, in its axes [m].
             way: (3, p) unit vectors.
         """
         skipped = np.maximum(least, -(start * way).sum(axis=0) - self.radius)

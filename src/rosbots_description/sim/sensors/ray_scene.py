@@ -1,7 +1,7 @@
-"""All collisions of a world as rays see them, and rays cast among them.
+"""Ray casts against all collisions of a world.
 
-Each scan compares the poses of all links with those of the scan before: what has not moved stays as
-it was laid out. A ball around each shape leaves few pairs of ray and shape for the formulas.
+Each scan compares the poses of all links with those of the previous scan and updates those that
+moved. Bounding spheres limit the number of ray-shape pairs to compute.
 """
 
 import logging
@@ -29,47 +29,47 @@ Floats = NDArray[np.float64]
 Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
 _FORMULAS: dict[type, Formula] = {
     Box: ray_shapes.box, Cylinder: ray_shapes.cylinder, Sphere: ray_shapes.sphere}
-_MOST = 1 << 18  # pairs of ray and shape that are looked at together: some 30 MB at most
+_MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
 
 _AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
 
 def rotation_matrix(orientation: Quaternion) -> Floats:
-    """Return the matrix whose columns are the axes of a frame turned by a unit quaternion."""
+    """Return the rotation matrix (3, 3) of a unit quaternion."""
     x, y, z = (rotate(orientation, axis) for axis in _AXES)
     return np.array((x, y, z)).T
 
 
 class RayScene:
-    """The collisions of all models of a world, laid out in arrays."""
+    """The collisions of all models of a world, in arrays."""
 
     def __init__(self, world: 'World') -> None:
         self._models: list[Model] = []
         self._known_meshes: dict[Mesh, RayMesh | None] = {}
-        self._world_models = world.models  # not the world: the scene lives no longer than that
+        self._world_models = world.models  # a reference to the world would keep it alive
         self._lay_out()
 
     @classmethod
     def of(cls, world: 'World') -> 'RayScene':
-        """Return the scene of a world, which all its sensors share."""
+        """Return the scene of a world, shared by its sensors."""
         return _SCENES.setdefault(world, cls(world))
 
     def cast(
         self, pose: Pose, fan: RayFan, least: float, most: float
     ) -> tuple[Floats, Floats]:
-        """Return how far rays come (n,) [m], and the laser_retro (n,) of what stops them.
+        """Return the distances (n,) [m] of the first hits, and the laser_retro (n,) of what is hit.
 
         Args:
             pose: of the fan, in the world.
-            least: where rays begin on their ways [m].
-            most: where they end [m]; those that meet nothing before come so far, with 0.
+            least: minimum range [m], where rays start.
+            most: maximum range [m], returned with laser_retro 0 for rays without a hit.
         """
         self._update()
         turn = rotation_matrix(pose.orientation)
         rays = fan.ways.shape[1]
         distances, retro = np.full(rays, most), np.zeros(rays)
-        with np.errstate(all='ignore'):  # what has diverged is not met
+        with np.errstate(all='ignore'):  # diverged shapes are not hit
             self._meet_planes(np.array(pose.position), turn @ fan.ways, least, distances, retro)
             self._meet_solids(np.array(pose.position), turn, fan, least, distances, retro)
         return distances, retro
@@ -96,7 +96,7 @@ class RayScene:
         for begin in range(0, len(patches.balls), at_once):
             batch = Patches(*(part[begin:begin + at_once] for part in patches))
             which, ray, counts = fan.rays(batch)
-            # take leaves the pairs of a row side by side, which an index does not.
+            # take keeps the pairs of a row contiguous in memory, unlike indexing.
             pairs = laid_out.take(batch.balls[which], axis=1)
             along = fan.ways.take(ray, axis=1)[:, None]
             way = (along * pairs[6:].reshape(3, 3, -1)).sum(axis=0)
@@ -109,7 +109,7 @@ class RayScene:
         self, shapes: Indices, counts: Indices, least: float, start: Floats, way: Floats,
         half: Floats,
     ) -> Floats:
-        """Return where the rays of pairs meet their shapes, of which each has `counts` rays."""
+        """Return the hit distances of ray-shape pairs; each shape has `counts` rays."""
         met, begin = [], 0
         for kind, formula in _FORMULAS.items():
             end = counts[:np.searchsorted(shapes, self._ends[kind])].sum()
@@ -128,11 +128,11 @@ class RayScene:
     def _keep_nearest(
         self, distances: Floats, retro: Floats, met: Floats, shine: Floats
     ) -> None:
-        """Let rays (n,) end where they meet the nearest of shapes, in place.
+        """Update distances and laser_retro of rays (n,) to the nearest hit, in place.
 
         Args:
-            met: (shapes, n) where they meet which.
-            shine: (shapes,) their laser_retro.
+            met: (shapes, n) hit distances.
+            shine: (shapes,) laser_retro.
         """
         nearest = met.min(axis=0)
         if self._shines:
@@ -141,7 +141,7 @@ class RayScene:
         np.minimum(distances, nearest, out=distances)
 
     def _update(self) -> None:
-        """Follow what has come, gone or moved."""
+        """Update to models spawned and deleted, and to links moved."""
         models = list(self._world_models.values())
         if models != self._models:
             self._models = models
@@ -153,7 +153,7 @@ class RayScene:
                 self._place(link, pose)
 
     def _lay_out(self) -> None:
-        """Make room for the shapes of all models; those of one kind lie together."""
+        """Allocate the arrays for the shapes of all models, sorted by kind."""
         found = list(_collisions(self._models))
         self._links = list(dict.fromkeys(link for link, _ in found))
         self._poses: list[Pose | None] = [None] * len(self._links)
@@ -185,7 +185,7 @@ class RayScene:
                 self._carried[link].append((row, collision))
 
     def _place(self, link: 'Link', pose: Pose) -> None:
-        """Lay out anew what a link carries."""
+        """Update the shapes of a link."""
         for row, collision in self._carried[link]:
             position, orientation = compose(pose, collision.pose)
             if isinstance(collision.geometry, Plane):
@@ -198,7 +198,7 @@ class RayScene:
                     self._centres[row] += self._axes[row] @ self._meshes[row].centre
 
     def _read_mesh(self, shape: object) -> RayMesh | None:
-        """Return what rays see of a shape that is a mesh; one read before is not read again."""
+        """Return the RayMesh of a mesh, from the cache if possible; None for other shapes."""
         if isinstance(shape, Mesh) and shape not in self._known_meshes:
             try:
                 self._known_meshes[shape] = RayMesh(shape)
@@ -223,11 +223,11 @@ def _half_extents(shape: Geometry) -> Vector:
             return radius, radius, length / 2.0
         case Sphere(radius):
             return radius, radius, radius
-    return ZERO  # a mesh has a ball of its own, and a plane none
+    return ZERO  # not used for meshes and planes
 
 
 def _radius(shape: Geometry) -> float:
-    """Return the radius of the ball around a shape [m], with a little more for rounding."""
+    """Return the radius of a shape's bounding sphere [m], with a margin for rounding."""
     x, y, z = _half_extents(shape)
     radius = x if isinstance(shape, Sphere) else \
         math.hypot(x, z) if isinstance(shape, Cylinder) else math.hypot(x, y, z)

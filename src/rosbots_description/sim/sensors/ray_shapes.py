@@ -1,26 +1,26 @@
-"""Where rays meet shapes: closed formulas for many pairs of ray and shape at once.
+"""Intersections of rays and shapes in closed form, for many ray-shape pairs at once.
 
-A ray begins at `start` (3, p) and goes along `way` (3, p), unit vectors, both in the frame of its
-shape, whose half extents are `half` (3, p) [m]. What comes back is how far [m] along its way a ray
-enters and leaves; one that misses leaves before it enters. What is negative is behind the start.
+Rays start at `start` (3, p) [m] along the unit vectors `way` (3, p), both in the frame of the
+shape, whose half extents are `half` (3, p) [m]. The functions return the distances [m] at which a
+ray enters and leaves its shape: enter > leave is a miss; negative distances are behind the start.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-_TINY = 1e-150  # in place of zero, below a fraction; its square is a number still
+_TINY = 1e-150  # replaces a zero denominator; its square does not underflow
 
 
 def sphere(start: Floats, way: Floats, half: Floats) -> tuple[Floats, Floats]:
-    """Meet balls about the origin."""
+    """Intersect spheres at the origin."""
     middle = -(start * way).sum(axis=0)
     reach = middle * middle - (start * start).sum(axis=0) + half[0] * half[0]
     return _around(middle, reach)
 
 
 def box(start: Floats, way: Floats, half: Floats) -> tuple[Floats, Floats]:
-    """Meet cuboids about the origin."""
+    """Intersect boxes at the origin."""
     inverse = 1.0 / _not_zero(way)
     middle = -start * inverse
     reach = np.abs(inverse) * half
@@ -28,7 +28,7 @@ def box(start: Floats, way: Floats, half: Floats) -> tuple[Floats, Floats]:
 
 
 def cylinder(start: Floats, way: Floats, half: Floats) -> tuple[Floats, Floats]:
-    """Meet cylinders about z, which end at half their length to both sides."""
+    """Intersect cylinders about z, centred at the origin."""
     (x, y, z), (dx, dy, dz), radius = start, way, half[0]
     across = np.maximum(dx * dx + dy * dy, _TINY)
     along = x * dx + y * dy
@@ -40,7 +40,7 @@ def cylinder(start: Floats, way: Floats, half: Floats) -> tuple[Floats, Floats]:
 
 
 def _around(middle: Floats, square: Floats, per: Floats | float = 1.0) -> tuple[Floats, Floats]:
-    """Return middle -+ sqrt(square) / per; where there is no root, what says that a ray misses."""
+    """Return middle -+ sqrt(square) / per; for negative squares a miss."""
     root = np.sqrt(np.maximum(square, 0.0)) / per
     root[square < 0.0] = -np.inf
     return middle - root, middle + root
@@ -51,9 +51,9 @@ def _not_zero(way: Floats) -> Floats:
 
 
 def first_from(least: float, enter: Floats, leave: Floats) -> Floats:
-    """Return where a ray that begins `least` [m] on its way first meets a surface; inf: nowhere.
+    """Return the distance of the first hit at `least` [m] or beyond; inf without a hit.
 
-    One that begins inside meets the surface from within.
+    A ray that starts inside a shape hits its surface from within.
     """
     met = np.where(enter >= least, enter, leave)
     met[(enter > leave) | (met < least)] = np.inf

@@ -1,7 +1,7 @@
-"""Draw a scene with OpenGL. It runs in a process of its own and imports nothing of the simulator.
+"""Draws a scene with OpenGL, in a separate process that imports nothing of the simulator.
 
-That process is small and starts fast: it puts the folder above this one on its path and imports
-this package by its bare name. What crosses its border are plain tuples and arrays.
+To start fast, that process puts the parent folder on its path and imports this package by its bare
+name. It exchanges plain tuples and arrays with the simulator.
 """
 
 from .values import BYTES, Lens, Light, Look, Scene, ScenePart

@@ -1,4 +1,4 @@
-"""The matrices of a camera, and of the light that casts shadows. Vectors are columns."""
+"""View and projection matrices of cameras and shadow maps. Vectors are columns."""
 
 from typing import Any
 
@@ -7,17 +7,17 @@ from numpy.typing import NDArray
 
 from .values import Lens
 
-# From the frame of a sensor (x forward, y left, z up) to OpenGL's (x right, y up, z backward),
-# with y turned down: row 0 of what OpenGL stores is then the top of the picture.
+# From the sensor's frame (x forward, y left, z up) to OpenGL's (x right, y up, z backward), with y
+# flipped: row 0 of OpenGL's buffer is then the top of the picture.
 _TO_CAMERA = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 0.0],
                        [0.0, 0.0, 0.0, 1.0]])
-SHADOWED = 10.0  # [m] from the camera; what is further away is lit as if nothing stood before it
-WIDEST = 2.4  # [rad] across; what a wider camera sees further out is lit without shadows
-_CASTERS = 30.0  # [m] towards the light from what is seen: what casts shadows on it
+SHADOWED = 10.0  # [m] from the camera; no shadows beyond
+WIDEST = 2.4  # [rad] horizontal; no shadows beyond in wider cameras
+_CASTERS = 30.0  # [m] from the visible region towards the light: range of shadow casters
 
 
 def matrices(poses: NDArray[Any]) -> NDArray[Any]:
-    """Return (n, 4, 4) of poses (n, 7): position [m], quaternion x, y, z, w."""
+    """Return transforms (n, 4, 4) of poses (n, 7): position [m], quaternion x, y, z, w."""
     x, y, z, w = poses[:, 3:].T
     result = np.zeros((len(poses), 4, 4))
     result[:, 0, 0] = 1.0 - 2.0 * (y * y + z * z)
@@ -35,7 +35,7 @@ def matrices(poses: NDArray[Any]) -> NDArray[Any]:
 
 
 def projection(lens: Lens) -> NDArray[Any]:
-    """Return the pinhole."""
+    """Return the projection matrix (4, 4) of a pinhole camera."""
     near, far = lens.near, lens.far
     across = 2.0 * lens.focal_length / lens.width
     upward = 2.0 * lens.focal_length / lens.height
@@ -47,7 +47,7 @@ def projection(lens: Lens) -> NDArray[Any]:
 
 
 def camera_view(eye: NDArray[Any]) -> NDArray[Any]:
-    """Return the matrix from the world to OpenGL's camera that stands at `eye` (4, 4)."""
+    """Return the view matrix (4, 4) of a camera with the transform `eye` (4, 4)."""
     turned = eye[:3, :3].T
     inverse = np.eye(4)
     inverse[:3, :3], inverse[:3, 3] = turned, -turned @ eye[:3, 3]
@@ -63,10 +63,10 @@ def light_axes(direction: NDArray[Any]) -> NDArray[Any]:
 
 
 def seen_ball(eye: NDArray[Any], lens: Lens) -> tuple[NDArray[Any], float]:
-    """Return middle and radius of a ball around what a camera sees up to SHADOWED [m]."""
+    """Return centre and radius of the bounding sphere of a camera's view up to SHADOWED [m]."""
     reach = min(lens.far, SHADOWED)
     slope = np.hypot(1.0, lens.height / lens.width) * np.tan(min(lens.field_of_view, WIDEST) / 2.0)
-    # The ball around the pyramid of sight, or around its base where that is wide.
+    # The circumsphere of the view pyramid, or of its base for wide views.
     middle = reach * min(1.0, (1.0 + slope**2) / 2.0)
     return eye[:3, 3] + middle * eye[:3, 0], max(middle, reach * slope)
 
@@ -74,9 +74,9 @@ def seen_ball(eye: NDArray[Any], lens: Lens) -> tuple[NDArray[Any], float]:
 def shadow_view(
     axes: NDArray[Any], middle: NDArray[Any], radius: float, texel: float
 ) -> NDArray[Any]:
-    """Return the matrix from the world to a shadow map that holds a ball.
+    """Return the matrix from the world to a shadow map that covers a bounding sphere.
 
-    The map stands at a multiple of its texels [m], so that the edges of shadows stand still.
+    The map's position is a multiple of its texel size [m], so that shadow edges do not flicker.
     """
     matrix = np.eye(4)
     matrix[:3, :3] = axes

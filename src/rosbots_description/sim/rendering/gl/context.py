@@ -5,18 +5,18 @@ from typing import Any
 
 import moderngl
 
-_DEVICES = 16  # as many are tried
+_DEVICES = 16  # number of EGL devices to try
 _SOFTWARE = ('llvmpipe', 'softpipe', 'swrast')
 _EGL: dict[str, Any] = {'backend': 'egl'}
 LIBRARIES = {'libgl': ('GL', 'libgl1'), 'libegl': ('EGL', 'libegl1')}
 
 
 class NoContextError(Exception):
-    """Nothing draws here; the sentence says what would help."""
+    """There is no OpenGL; the message says what to install."""
 
 
 def open_context() -> tuple[moderngl.Context, str, bool]:
-    """Return a context, the name of what draws, and whether that is software.
+    """Return a context, the name of the renderer, and whether it is a software renderer.
 
     Raises:
         NoContextError: there is none.
@@ -30,7 +30,7 @@ def open_context() -> tuple[moderngl.Context, str, bool]:
         try:
             context = moderngl.create_context(
                 require=330, standalone=True, **_EGL | {'device_index': number})
-        except Exception as error:  # whatever a driver raises: the next one may do
+        except Exception as error:  # any error of a driver: the next device may work
             reason = str(error)
             if 'out of range' in reason or 'requested device index' in reason:
                 break

@@ -1,4 +1,4 @@
-"""What a camera does to a picture: distortion, noise, and the encoding of its pixels."""
+"""Camera effects: distortion, noise and pixel encoding."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from .values import BAYER, BGR, GREY8, GREY16, RGB16, Lens
 
 
 class Development:
-    """Turns what was drawn into what one camera gives out."""
+    """Converts drawn pixels to the picture of one camera."""
 
     def __init__(self, lens: Lens) -> None:
         self._lens = lens
@@ -20,7 +20,7 @@ class Development:
 
         Args:
             pixels: (height, width, 4) uint8.
-            seed: of the noise, which is the same for the same seed.
+            seed: of the noise.
         """
         lens = self._lens
         if self._distortion is not None:
@@ -49,7 +49,7 @@ def _mosaic(pixels: NDArray[Any], channels: tuple[int, int, int, int]) -> NDArra
 
 
 def _with_noise(pixels: NDArray[Any], lens: Lens, seed: int) -> NDArray[Any]:
-    """Add the same to all channels of a pixel, as Gazebo does."""
+    """Add the same noise to all channels of a pixel, as in Gazebo."""
     generator = np.random.Generator(np.random.Philox(seed))
     shape = pixels.shape[:2]
     added = generator.standard_normal(shape, 'f4') * np.float32(255.0 * lens.noise_stddev)
@@ -58,10 +58,9 @@ def _with_noise(pixels: NDArray[Any], lens: Lens, seed: int) -> NDArray[Any]:
 
 
 class _Distortion:
-    """Where in the pinhole's picture each pixel of the lens is, in Brown's model.
+    """Lookup from distorted pixels to the pinhole picture, by the inverse of Brown's model.
 
-    As in Gazebo, both axes are measured in shares of the picture's own width and height. The model
-    tells where the lens shows a point of the pinhole's picture; here its inverse is needed.
+    As in Gazebo, coordinates are normalised by the picture's width and height.
     """
 
     def __init__(self, lens: Lens) -> None:
@@ -85,17 +84,17 @@ class _Distortion:
             (1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down)]
 
     def apply(self, pixels: NDArray[Any]) -> NDArray[Any]:
-        """Return the lens's picture (height, width, 4) of the pinhole's."""
+        """Return the distorted picture (height, width, 4) of a pinhole picture."""
         read = sum(share * pixels[corner]
                    for share, corner in zip(self._shares, self._corners, strict=True))
         result: NDArray[Any] = np.rint(read).astype('u1')
-        result[self._outside] = pixels[0, 0] // 4  # Gazebo reads there halfway over both edges
+        result[self._outside] = pixels[0, 0] // 4  # as Gazebo: its sample there is 3/4 black border
         return result
 
     def _inverse(self, shown: NDArray[Any]) -> NDArray[Any]:
-        """Return the points that are shown there, by fixed-point iteration."""
+        """Return the undistorted points, by fixed-point iteration."""
         points: NDArray[Any] = shown.copy()
-        with np.errstate(all='ignore'):  # points far outside may have none
+        with np.errstate(all='ignore'):  # points far outside may have no solution
             for _ in range(50):
                 radial, tangential = self._terms(points)
                 points = (shown - tangential) / radial

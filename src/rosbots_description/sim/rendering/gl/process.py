@@ -1,4 +1,4 @@
-"""The rendering process: it mirrors a scene and answers requests until nobody can ask any more."""
+"""The rendering process: it keeps a scene and answers requests until its connection is closed."""
 
 import contextlib
 import mmap
@@ -16,13 +16,13 @@ from .development import Development
 from .renderer import Renderer
 from .values import Colour, Lens, Light, Look, Scene, ScenePart
 
-LARGEST_IMAGE = 2048  # [pixels] along an edge; larger ones are made smaller
-NICENESS = 2  # where processors are scarce, the clock comes first
+LARGEST_IMAGE = 2048  # [pixels] along an edge; larger ones are scaled down
+NICENESS = 2  # the simulation has priority
 
 
 def main(handle: int) -> None:
-    """Serve who holds the other end of the socket `handle`; end when it is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is for who started us, whose end is ours
+    """Serve the socket `handle` until its other end is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles it and closes the socket
     os.nice(NICENESS)
     connection: Connection[Any, Any] = Connection(handle)
     try:
@@ -36,7 +36,7 @@ def main(handle: int) -> None:
 
 
 class _Service:
-    """Does what the messages say; each is a tuple of a verb and its arguments."""
+    """Executes messages, each a tuple of a verb and its arguments."""
 
     def __init__(self, connection: 'Connection[Any, Any]', renderer: Renderer) -> None:
         self._connection = connection
@@ -53,9 +53,9 @@ class _Service:
         self._renderer.add_mesh(key, np.frombuffer(triangles, 'f4').reshape(-1, 8))
 
     def _image(self, path: str) -> None:
-        """Take an image file; one that cannot be read is white."""
+        """Load an image file; white if it cannot be read."""
         pixels = np.full((1, 1, 3), 255, 'u1')
-        with contextlib.suppress(Exception), Image.open(path) as image:  # whatever is in the file
+        with contextlib.suppress(Exception), Image.open(path) as image:  # any error of the decoder
             image.thumbnail((LARGEST_IMAGE, LARGEST_IMAGE))
             pixels = np.asarray(image.convert('RGBA' if 'A' in image.getbands() else 'RGB'))
         self._renderer.add_image(path, pixels)
@@ -70,7 +70,7 @@ class _Service:
             tuple(Light(*light) for light in lights), ambient, background, shadows))
 
     def _camera(self, number: int, lens: tuple[Any, ...], size: int) -> None:
-        """Take a camera, and the shared memory that is sent along."""
+        """Add a camera with the shared memory sent along."""
         stream = socket.socket(fileno=os.dup(self._connection.fileno()))
         with stream:
             _, (file, *_), _, _ = socket.recv_fds(stream, 1, 1)
@@ -84,7 +84,7 @@ class _Service:
         self, number: int, place: int, has_colour: bool, has_depth: bool, seed: int,
         eye: bytes, poses: bytes,
     ) -> None:
-        """Write a picture into the camera's memory from `place` on, and say so."""
+        """Write a picture to the camera's memory at offset `place`, and answer."""
         camera = self._cameras[number]
         lens = camera.lens
         where, bodies = np.frombuffer(eye), np.frombuffer(poses).reshape(-1, 7)
@@ -98,13 +98,13 @@ class _Service:
             if has_depth:
                 depths = self._renderer.depths(lens, where, bodies)
                 camera.memory[place:place + lens.depth_bytes] = depths.reshape(-1).view('u1').data
-        except Exception as error:  # such as a picture that is too large for the driver
+        except Exception as error:  # such as a picture too large for the driver
             fault = f'{type(error).__name__}: {error}'
         self._connection.send((number, fault))
 
 
 class _Camera:
-    """A lens, and where its pictures go."""
+    """A lens, and the shared memory for its pictures."""
 
     def __init__(self, lens: Lens, memory: mmap.mmap) -> None:
         self.lens = lens

@@ -1,4 +1,4 @@
-"""Draws a scene as cameras see it."""
+"""Draws the view of cameras of a scene."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -19,15 +19,15 @@ from .shaders import (
 from .shadows import Shadows, uniform
 from .values import DIRECTIONAL, Lens, Look, Scene, ScenePart
 
-SAMPLES = 4  # per pixel, of edges
-MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have plain edges
+SAMPLES = 4  # per pixel, for antialiasing
+MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have no antialiasing
 MAX_LIGHTS = 8
-_FARTHEST_SHADOW = 30.0  # [m] from what casts it
-_LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a corner
+_FARTHEST_SHADOW = 30.0  # [m] from its caster
+_LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a vertex
 
 
 class Renderer:
-    """Meshes, images and one scene; `draw` shows it to a camera."""
+    """Meshes, images and one scene, drawn for cameras by `colours` and `depths`."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -38,18 +38,18 @@ class Renderer:
         self._placed = _PlacedPrograms(context)
         self._shadows: Shadows | None = None
         self._drawables: list[_Drawable] = []
-        # By whether they have images, and whether shadows move over them.
+        # By whether they are textured, and whether there are moving shadows.
         self._surfaces: dict[tuple[bool, bool], moderngl.Program] = {}
         self.set_scene(Scene(()))
 
     def add_mesh(self, key: str, triangles: NDArray[Any]) -> None:
-        """Take triangles: (3 n, 8) float32 of position [m], normal, texture coordinates."""
+        """Add triangles: (3 n, 8) float32 of position [m], normal, texture coordinates."""
         corners = triangles[:, :3]
         bounds = np.stack([corners.min(0), corners.max(0)])
         self._meshes[key] = (self._context.buffer(np.ascontiguousarray(triangles, 'f4')), bounds)
 
     def add_image(self, key: str, pixels: NDArray[Any]) -> None:
-        """Take an image (height, width, 3 or 4) uint8, its first row on top."""
+        """Add an image (height, width, 3 or 4) uint8, top row first."""
         pixels = np.ascontiguousarray(pixels[::-1])
         height, width, channels = pixels.shape
         image = self._context.texture((width, height), channels, pixels.tobytes(), alignment=1)
@@ -58,7 +58,7 @@ class Renderer:
         self._images[key] = image
 
     def set_scene(self, scene: Scene) -> None:
-        """Draw this from now on; meshes and images that it does not use are dropped."""
+        """Set the scene; meshes and images that it does not use are freed."""
         self._scene = scene
         self._lights = scene.lights[:MAX_LIGHTS]
         casting = [number for number, light in enumerate(self._lights)
@@ -78,11 +78,11 @@ class Renderer:
             for part in scene.parts
         ]
         self._still_bodies = sorted({part.body for part in scene.parts if part.still})
-        self._stood: NDArray[Any] | None = None  # where what stands still was last
+        self._stood: NDArray[Any] | None = None  # poses of still bodies in the last shadow map
         self._write_surfaces()
 
     def _write_surfaces(self) -> None:
-        """Make the programs of surfaces, for the lights and shadows that there are."""
+        """Compile the programs of surfaces for the scene's lights and shadows."""
         for program in self._surfaces.values():
             program.release()
         textures = {bool(drawable.part.look.texture) for drawable in self._drawables}
@@ -119,7 +119,7 @@ class Renderer:
     def colours(
         self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]
     ) -> NDArray[Any]:
-        """Return the picture (height, width, 4) uint8, before what a lens adds.
+        """Return the picture (height, width, 4) uint8, without camera effects.
 
         Args:
             eye: the camera's pose (7,), position [m] and quaternion x, y, z, w.
@@ -139,7 +139,7 @@ class Renderer:
         return target.read()
 
     def depths(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> NDArray[Any]:
-        """Return distances along the optical axis (height, width) float32 [m]; none is inf."""
+        """Return depths (height, width) float32 along the optical axis [m]; inf: background."""
         frame = self._frame(lens, eye, poses)
         target = self._target(lens, 'depth', 0)
         target.use()
@@ -187,7 +187,7 @@ class Renderer:
     def _draw_surfaces(self, frame: '_Shot') -> None:
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        # What is near first: what it hides need not be lit.
+        # Front to back: hidden surfaces need no lighting.
         ordered = sorted(frame.visible, key=frame.distance)
         for drawable in ordered:
             if not drawable.transparent:
@@ -212,7 +212,7 @@ class Renderer:
 
 
 class _Shot:
-    """What one picture is drawn with."""
+    """View, lens and poses of one picture."""
 
     visible: list['_Drawable']
     shadows_move = False
@@ -225,15 +225,15 @@ class _Shot:
         self._planes = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
 
     def may_see(self, drawable: '_Drawable') -> bool:
-        """Tell whether a drawable's ball reaches into the pyramid of sight."""
+        """Tell whether a drawable's bounding sphere reaches into the view frustum."""
         return bool((self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
                      > -drawable.radius).all())
 
     def may_see_shadow(self, drawable: '_Drawable', light: NDArray[Any], low: float) -> bool:
-        """Tell whether a drawable's shadow reaches into the pyramid of sight.
+        """Tell whether a drawable's shadow reaches into the view frustum.
 
         Args:
-            light: unit vector in which it shines.
+            light: unit vector of its direction.
             low: height below which there is nothing [m].
         """
         fall = drawable.middle[2] + drawable.radius - low
@@ -243,13 +243,13 @@ class _Shot:
         return bool((np.maximum(begin, end) > -drawable.radius).all())
 
     def distance(self, drawable: '_Drawable') -> float:
-        """Return how far away a drawable begins along the optical axis [m]."""
+        """Return the distance of a drawable along the optical axis [m], for sorting."""
         way = drawable.middle - self.eye[:3, 3]
         return float(way @ self.eye[:3, 0]) - (0.0 if drawable.transparent else drawable.radius)
 
 
 class _PlacedPrograms:
-    """The programs that need nothing but where a surface is."""
+    """The shader programs that need only positions."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self.depth = context.program(vertex_shader=PLACED_VERTEX, fragment_shader=DEPTH_FRAGMENT)
@@ -258,7 +258,7 @@ class _PlacedPrograms:
 
 
 class _Drawable:
-    """A part of the scene on the graphics processor."""
+    """A part of the scene on the GPU."""
 
     def __init__(
         self,
@@ -283,10 +283,10 @@ class _Drawable:
         self._image = image
         self._context, self._buffer = context, buffer
         self._surfaces: list[moderngl.VertexArray] = []
-        self._normals = np.linalg.inv(self._matrix[:3, :3]).T  # how normals turn with it
+        self._normals = np.linalg.inv(self._matrix[:3, :3]).T  # transform of normals
 
     def set_surfaces(self, programs: Sequence[moderngl.Program]) -> None:
-        """Be drawn by these from now on: without and with shadows that move."""
+        """Set the programs: without and with moving shadows."""
         for program in programs:
             used = [name for name in _LAYOUT if name in program]
             layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
@@ -296,7 +296,7 @@ class _Drawable:
         self._looks = [_look_uniforms(program, self.part.look) for program in programs]
 
     def place(self, frame: _Shot) -> None:
-        """Take its place in a picture."""
+        """Update the placement for a picture."""
         body = frame.bodies[self.part.body]
         placement = body @ self._matrix
         self._turn = body[:3, :3]
@@ -318,23 +318,23 @@ class _Drawable:
         surface.render()
 
     def draw_depth(self) -> None:
-        """Draw how far away it is."""
+        """Draw its depth."""
         uniform(self._depth.program, 'placement').write(self._placement)
         self._depth.render()
 
     def draw_shadow(self) -> None:
-        """Draw it as the light sees it."""
+        """Draw it into the shadow map."""
         uniform(self._shadow.program, 'placement').write(self._placement)
         self._shadow.render()
 
     def release(self) -> None:
-        """Free what it has on the graphics processor."""
+        """Free its resources on the GPU."""
         for array in (*self._surfaces, self._depth, self._shadow):
             array.release()
 
 
 class _Target:
-    """What a camera's picture is drawn into."""
+    """The framebuffers of a camera's picture."""
 
     def __init__(
         self, context: moderngl.Context, width: int, height: int, kind: str, samples: int
@@ -354,7 +354,7 @@ class _Target:
             'f4' if dtype == 'f4' else 'u1')
 
     def use(self) -> None:
-        """Draw into it from now on."""
+        """Bind it for drawing."""
         self._drawn.use()
 
     def read(self) -> NDArray[Any]:
@@ -382,11 +382,11 @@ def _look_uniforms(program: moderngl.Program, look: Look) -> list[tuple[moderngl
 
 
 def _set(program: moderngl.Program, name: str, value: object) -> None:
-    """Set what the compiler has not found useless."""
+    """Set a uniform, unless the compiler has removed it."""
     if name in program:
         uniform(program, name).write(np.array(value, 'f4').tobytes())
 
 
 def _gl(matrix: NDArray[Any]) -> bytes:
-    """Return a matrix as OpenGL takes it: columns first, float32."""
+    """Return a matrix for OpenGL: column-major, float32."""
     return matrix.T.astype('f4').tobytes()

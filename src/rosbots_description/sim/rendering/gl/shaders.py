@@ -1,8 +1,8 @@
-"""What the graphics processor runs: lighting as Gazebo's per-pixel shaders do it, and depth.
+"""Shaders: the lighting of Gazebo's per-pixel shaders, and depth.
 
     colour = emissive + ambient * scene + sum of lights (diffuse * N.L + specular * (N.H)^shininess)
 
-The sum of a light is weakened by its distance and, for the sun, by what stands before it.
+The contribution of a light is attenuated by distance and, for the sun, by shadows.
 """
 
 from collections.abc import Sequence
@@ -102,8 +102,8 @@ void main() {
 }
 """
 
-# For each light, by its type. All branches of a shader cost where it runs in software, so it is
-# written for the lights that there are.
+# Code for each light, by type. In a software renderer all branches of a shader cost time, so the
+# shaders are generated for the lights of the scene.
 _SHINE = {
     DIRECTIONAL: """
     shine_on({i}, -light_direction[{i}], {sunshine});""",
@@ -124,9 +124,9 @@ def surface_fragment(types: Sequence[int], sun: int | None, moves: bool, texture
 
     Args:
         types: of the lights.
-        sun: number of the light that casts shadows.
-        moves: something casts a shadow that moves.
-        textured: surfaces have images.
+        sun: index of the light that casts shadows.
+        moves: whether there are moving shadows.
+        textured: whether surfaces have images.
     """
     shine = ''.join(
         _SHINE[kind].format(

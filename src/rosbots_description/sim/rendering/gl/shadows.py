@@ -1,9 +1,9 @@
-"""Shadows of the sun: a map of what stands still, drawn seldom, and one of what moves.
+"""Shadow maps of the sun: one of still bodies, drawn seldom, and one of moving bodies.
 
-Both tell for each texel how far the light reaches. The map of what stands still is wider than what
-a camera sees, so that the camera may move on before it is drawn anew; the map of what moves is
-small and drawn for every picture. Where they stand depends on nothing but the camera and what casts
-shadows, so that the same world gives the same picture, whatever was drawn before.
+The map of still bodies covers more than the camera's view, so that it need not be redrawn whenever
+the camera moves. The map of moving bodies is small and drawn for each picture. Their positions
+depend only on the camera and the shadow casters, so that pictures are reproducible, whatever was
+drawn before.
 """
 
 from collections.abc import Sequence
@@ -17,24 +17,24 @@ from .cameras import light_axes, seen_ball, shadow_view
 from .values import Lens
 
 STILL_SIZE, MOVING_SIZE = 2048, 1024  # texels along an edge
-_ROOM = 1.25  # how much wider than what is seen the map of what stands still is
-_CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # edge of the cubes in each of which one map does
-_MOST_MAPS = 4  # of what stands still, for cameras that see differently far
+_ROOM = 1.25  # size of the map of still bodies, relative to the view
+_CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # relative edge of the cells that share a map
+_MOST_MAPS = 4  # of still bodies, for cameras of different views
 
 
 def uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
-    """Return a uniform of a program, which has it."""
+    """Return a uniform of a program."""
     return cast(moderngl.Uniform, program[name])
 
 
 class Caster(Protocol):
-    """What casts a shadow."""
+    """A shadow caster."""
 
     middle: NDArray[Any]
     radius: float
 
     def draw_shadow(self) -> None:
-        """Draw it as the light sees it."""
+        """Draw it into the shadow map."""
 
 
 class Shadows:
@@ -48,8 +48,8 @@ class Shadows:
         self.direction = direction
         self._axes = light_axes(direction)
         self._moving = _Map(context, MOVING_SIZE)
-        self._still: dict[float, _Map] = {}  # by the radius of what is seen
-        self.move = False  # whether one that moves may be seen in the picture
+        self._still: dict[float, _Map] = {}  # by the radius of the view's bounding sphere
+        self.move = False  # whether a moving shadow may be visible
         self._used: tuple[_Map, _Map] = self._moving, self._moving
 
     def release(self) -> None:
@@ -58,14 +58,14 @@ class Shadows:
             one.release()
 
     def forget(self) -> None:
-        """Draw what stands still anew: it has been moved."""
+        """Invalidate the maps of still bodies after one was moved."""
         for one in self._still.values():
             one.place = None
 
     def draw(
         self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
     ) -> None:
-        """Draw what has changed for a camera's picture."""
+        """Update the maps for a camera's picture."""
         middle, radius = seen_ball(eye, lens)
         if radius not in self._still:
             if len(self._still) == _MOST_MAPS:
@@ -85,7 +85,7 @@ class Shadows:
         self._used = still_map, self._moving
 
     def use(self, program: moderngl.Program) -> None:
-        """Let a program read the maps."""
+        """Bind the maps to a program."""
         for unit, (name, one) in enumerate(zip(('still', 'moving'), self._used, strict=True), 1):
             if f'{name}_shadows' in program:
                 one.texture.use(unit)
@@ -95,7 +95,7 @@ class Shadows:
 
 
 def _ball_around(casters: Sequence[Caster]) -> tuple[NDArray[Any], float]:
-    """Return middle and radius of a ball around casters [m]."""
+    """Return centre and radius of the bounding sphere of casters [m]."""
     middles = np.array([one.middle for one in casters])
     reach = np.array([one.radius for one in casters])[:, None]
     low, high = (middles - reach).min(axis=0), (middles + reach).max(axis=0)
@@ -103,7 +103,7 @@ def _ball_around(casters: Sequence[Caster]) -> tuple[NDArray[Any], float]:
 
 
 class _Map:
-    """How far the light reaches, seen from it."""
+    """A depth map seen from the light."""
 
     def __init__(self, context: moderngl.Context, size: int) -> None:
         self._context = context
@@ -124,7 +124,7 @@ class _Map:
         self, program: moderngl.Program, axes: NDArray[Any], middle: NDArray[Any], radius: float,
         casters: Sequence[Caster],
     ) -> None:
-        """Draw what casts shadows into a ball."""
+        """Draw the casters of shadows into a bounding sphere."""
         self.texel = 2.0 * radius / self.size
         view = shadow_view(axes, middle, radius, self.texel)
         self.view = view.T.astype('f4').tobytes()

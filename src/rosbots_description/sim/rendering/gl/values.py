@@ -1,4 +1,4 @@
-"""What crosses the border of the rendering process; colours are red, green, blue in 0..1."""
+"""Values exchanged with the rendering process; colours are red, green, blue in 0..1."""
 
 import math
 from typing import NamedTuple
@@ -6,7 +6,7 @@ from typing import NamedTuple
 Colour = tuple[float, float, float]
 
 RGB, BGR, RGB16, GREY8, GREY16 = 'rgb8', 'bgr8', 'rgb16', 'mono8', 'mono16'
-# Of each two by two pixels, which channel is kept, row by row.
+# The channel kept in each pixel of a 2 by 2 block, row by row.
 BAYER = {'bayer_rggb8': (0, 1, 1, 2), 'bayer_bggr8': (2, 1, 1, 0),
          'bayer_gbrg8': (1, 2, 0, 1), 'bayer_grbg8': (1, 0, 2, 1)}
 BYTES = {RGB: 3, BGR: 3, RGB16: 6, GREY8: 1, GREY16: 2, **dict.fromkeys(BAYER, 1)}  # of a pixel
@@ -15,7 +15,7 @@ DIRECTIONAL, POINT, SPOT = range(3)
 
 
 class Look(NamedTuple):
-    """How a surface answers to light, as in fixed-function OpenGL."""
+    """Material of a surface, as in fixed-function OpenGL."""
 
     ambient: Colour = (1.0, 1.0, 1.0)
     diffuse: Colour = (1.0, 1.0, 1.0)
@@ -23,7 +23,7 @@ class Look(NamedTuple):
     shininess: float = 0.0
     emissive: Colour = (0.0, 0.0, 0.0)
     alpha: float = 1.0
-    lit: bool = True  # False: the diffuse colour is shown as it is
+    lit: bool = True  # False: the diffuse colour without lighting
     both_sides: bool = False
     texture: str = ''  # key of an image, which multiplies all but the specular light
 
@@ -40,11 +40,11 @@ class ScenePart(NamedTuple):
 
 
 class Light(NamedTuple):
-    """A light in the world [m, rad]. `spot` is the cosines of half the cones, and the falloff."""
+    """A light in the world [m]. `spot`: cosines of the inner and outer half cone angle, falloff."""
 
     type: int
     position: tuple[float, float, float]
-    direction: tuple[float, float, float]  # unit vector in which it shines
+    direction: tuple[float, float, float]  # unit vector
     diffuse: Colour
     specular: Colour
     range: float
@@ -54,7 +54,7 @@ class Light(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """Everything that is drawn, but for where it is."""
+    """Everything that is drawn, without poses."""
 
     parts: tuple[ScenePart, ...]
     lights: tuple[Light, ...] = ()
@@ -67,19 +67,20 @@ class Lens(NamedTuple):
     """A camera that looks along x, with y to the left and z up.
 
     The picture's centre is on the optical axis. Distortion is Brown's model (k1, k2, k3, p1, p2)
-    about a centre in shares of the picture's size; `crop` enlarges the picture until it is full.
+    about `centre`, relative to the picture's size. `crop` enlarges the picture to remove empty
+    borders.
     """
 
     width: int  # [pixels]
     height: int
-    field_of_view: float  # from the left to the right edge [rad]
+    field_of_view: float  # horizontal [rad]
     near: float  # [m] along the optical axis
     far: float
     encoding: str = RGB
     distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
     centre: tuple[float, float] = (0.5, 0.5)
     crop: bool = True
-    noise_mean: float = 0.0  # of 1.0 for white
+    noise_mean: float = 0.0  # relative to white, 1.0
     noise_stddev: float = 0.0
 
     @property
