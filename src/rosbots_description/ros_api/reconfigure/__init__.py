@@ -1,6 +1,6 @@
-"""Settings by dynamic_reconfigure, whose library is slow to import.
+"""Settings by dynamic_reconfigure.
 
-So each module is imported only where it is needed.
+Its library is slow to import, so each module is imported only where needed.
 """
 
 __all__ = ['camera', 'physics', 'wheel_slip']

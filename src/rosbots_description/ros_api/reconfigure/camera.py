@@ -6,7 +6,7 @@ Publishes:
 Services:
     <camera>/set_parameters (dynamic_reconfigure/Reconfigure)
 Parameters:
-    <camera>/imager_rate: written; the sensor's own rate counts until somebody changes it
+    <camera>/imager_rate: written; the sensor's own rate applies until it is changed here
 """
 
 import contextlib
@@ -29,13 +29,13 @@ class CameraReconfigure(ReconfigureServer):
     def __init__(
         self, plugin: CameraPlugin, name: str, post: Callable[[Callable[[], None]], None]
     ) -> None:
-        """Offer it in the namespace `name`; `post` hands a command to the world's thread."""
+        """Advertise in the namespace `name`; `post` hands a command to the world's thread."""
         self._plugin, self._post = plugin, post
         self._begun = False
         super().__init__(description(PARAMETERS), self._reconfigure, name)
 
     def close(self) -> None:
-        """Offer it no more."""
+        """Unregister the service and topics."""
         self.set_service.shutdown()
         for topic in (self.descr_topic, self.update_topic):
             topic.unregister()
@@ -45,7 +45,7 @@ class CameraReconfigure(ReconfigureServer):
             super()._copy_to_parameter_server()
 
     def _reconfigure(self, config: Config, _level: int) -> Config:
-        # The library calls first, before anybody wishes anything: the sensor keeps its own rate.
+        # The library's first call is not a request: the sensor keeps its own rate.
         if self._begun:
             rate = config[RATE]
             self._post(lambda: self._plugin.set_rate(rate))

@@ -6,7 +6,7 @@ Publishes:
 Services:
     ~set_parameters (dynamic_reconfigure/Reconfigure)
 Parameters:
-    ~time_step and the others of `PARAMETERS`, written only: presets are replaced by what counts.
+    ~time_step and the others of `PARAMETERS`, written only: presets are overwritten.
 """
 
 import contextlib
@@ -66,7 +66,7 @@ _TYPES = {float: 'double', int: 'int', bool: 'bool'}
 
 
 def advertise_reconfigure(server: Server) -> None:
-    """Offer the settings; needs the loop to run, and takes some calls to the ROS master."""
+    """Advertise the settings; needs the running loop, and makes calls to the ROS master."""
     reconfigure = PhysicsReconfigure(server)
     server.physics_listeners.append(lambda: server.registrar.post(reconfigure.follow))
     server.parameters.append(reconfigure.write)
@@ -74,7 +74,7 @@ def advertise_reconfigure(server: Server) -> None:
 
 
 class PhysicsReconfigure(ReconfigureServer):
-    """Lets dynamic_reconfigure show and change the physics; its calls come from ROS's threads."""
+    """Lets dynamic_reconfigure show and change the physics; called from ROS's threads."""
 
     config: Config
 
@@ -83,7 +83,7 @@ class PhysicsReconfigure(ReconfigureServer):
         super().__init__(description(PARAMETERS), self._reconfigure)
 
     def follow(self) -> None:
-        """Show settings that a service has changed."""
+        """Publish settings that a service has changed."""
         with self.mutex:
             current = self._current(self.config)
             if current is not None and current != self.config:
@@ -97,18 +97,18 @@ class PhysicsReconfigure(ReconfigureServer):
             self._copy_to_parameter_server()
 
     def _copy_from_parameter_server(self) -> None:
-        """Leave presets alone: as in Gazebo they are replaced by the settings that count."""
+        """Do nothing: as in Gazebo, presets are overwritten by the current settings."""
 
     def _copy_to_parameter_server(self) -> None:
-        """Write all in one call; a master that is away gets them when it is back, by `write`."""
+        """Write all in one call; a new master gets them later, by `write`."""
         with contextlib.suppress(*NO_MASTER):
             write_parameters({p.name: self.config[p.name] for p in PARAMETERS})
 
     def _reconfigure(self, config: Config, _level: int) -> Config:
-        """Apply what differs from what was shown last; return the settings that count then.
+        """Apply the settings that differ from those shown last; return the current settings.
 
-        What the caller left alone is never written back: it may have been shown before a service
-        changed it, or be the library's default, which the world has never had.
+        Unchanged settings are not applied: they may be out of date since a service changed them, or
+        defaults of the library that the world never had.
         """
         current = self._current(config)
         if current is None:
@@ -127,7 +127,7 @@ class PhysicsReconfigure(ReconfigureServer):
         return current
 
     def _current(self, config: Config) -> Config | None:
-        """Return a copy of `config` with the settings that count; None if they cannot be had."""
+        """Return a copy of `config` with the current settings; None if they are unavailable."""
         response = self._ask('get_physics_properties', GetPhysicsPropertiesRequest())
         if not response.success:
             return None
@@ -163,7 +163,7 @@ def _set_request(wanted: dict[str, float | int | bool]) -> SetPhysicsPropertiesR
 
 
 def description(parameters: Sequence[Parameter]) -> SimpleNamespace:
-    """Return what dynamic_reconfigure's generator would write into a module."""
+    """Return the description as dynamic_reconfigure's generator writes it into a module."""
     return SimpleNamespace(
         defaults={p.name: p.default for p in parameters},
         min={p.name: p.least for p in parameters},

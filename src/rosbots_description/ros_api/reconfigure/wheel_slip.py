@@ -33,12 +33,12 @@ class SlipReconfigure(ReconfigureServer):
     """Lets dynamic_reconfigure change the slip compliances of a model's wheels."""
 
     def __init__(self, plugin: WheelSlip, post: Callable[[Callable[[], None]], None]) -> None:
-        """Offer them; `post` hands a command to the thread that owns the world."""
+        """Advertise them; `post` hands a command to the thread that owns the world."""
         self._plugin, self._post = plugin, post
         super().__init__(description(PARAMETERS), self._reconfigure, f'/{plugin.namespace}')
 
     def close(self) -> None:
-        """Offer them no more."""
+        """Unregister the service and topics."""
         self.set_service.shutdown()
         for topic in (self.descr_topic, self.update_topic):
             topic.unregister()

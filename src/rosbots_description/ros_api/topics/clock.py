@@ -1,4 +1,4 @@
-"""The topic of simulated time, published before anything that happens at the time it tells.
+"""The topic /clock, published before anything that happens at its time.
 
 Publishes:
     /clock (rosgraph_msgs/Clock): simulated time, every step or at ~pub_clock_frequency [Hz].
@@ -20,13 +20,13 @@ from .topic import Topic
 
 logger = logging.getLogger(__name__)
 
-# /clock on the wire; `size` is that of what follows [bytes].
+# Serialized /clock message; `size` is the length prefix [bytes].
 _CLOCK = np.dtype([('size', '<u4'), ('secs', '<u4'), ('nsecs', '<u4')])
 _CLOCK_SIZE = 8
 
 
 class ClockTopic(Topic, PreRunPublisher):
-    """/clock, at every step or, with a frequency, at the first step a period after the last one."""
+    """/clock at every step or, with a frequency, at the first step after each period."""
 
     def __init__(self, server: Server, frequency: int) -> None:
         super().__init__(server, '/clock', Clock)
@@ -34,11 +34,11 @@ class ClockTopic(Topic, PreRunPublisher):
         self._last_ns = 0
 
     def publish_ahead(self, last: int) -> None:
-        """Publish the times of all steps that want it, up to `last`."""
+        """Publish the times of all due steps up to `last`."""
         clock, due = self._world.clock, np.arange(self.due, last + 1)
         if self._period_ns:
             due = np.fromiter(self._due_until(last), np.int64)
-        # of all at once: one by one takes 1 us each
+        # vectorised: a loop takes 1 us for each
         times = clock.ns_at(0) + due * clock.step_ns
         messages = np.empty(len(times), _CLOCK)
         messages['size'] = _CLOCK_SIZE
@@ -48,7 +48,7 @@ class ClockTopic(Topic, PreRunPublisher):
         self.due = self._first_after(int(due[-1]))
 
     def _due_until(self, last: int) -> Iterator[int]:
-        """Yield the steps that are a period apart."""
+        """Yield the due steps up to `last`, one for each period."""
         step = self.due
         while step <= last:
             yield step
@@ -56,16 +56,16 @@ class ClockTopic(Topic, PreRunPublisher):
             step = self._first_after(step)
 
     def schedule(self) -> None:
-        """Publish when the period has passed, if there is anyone to read it."""
+        """Publish after the period, if there are subscribers."""
         super().schedule()
         clock = self._world.clock
-        # Time that jumped back counts as never published: upstream would stay silent for long.
+        # After a jump back, publish at once: upstream would wait for the old time.
         self._last_ns = self._last_ns if self._last_ns <= clock.now_ns else 0
         if self.due != NEVER:
             self.due = self._first_after(clock.steps)
 
     def _first_after(self, step: int) -> int:
-        """Return the first step after `step` that is a period after the last one told of."""
+        """Return the first step after `step` that is a period after the last published one."""
         clock = self._world.clock
         if not self._period_ns:
             return step + 1
@@ -73,7 +73,7 @@ class ClockTopic(Topic, PreRunPublisher):
 
 
 def advertise_clock(server: Server) -> None:
-    """Publish /clock, before anything that happens at the time it tells."""
+    """Publish /clock before anything that happens at its time."""
     topic = ClockTopic(server, clock_frequency(rospy.get_param('~pub_clock_frequency', 0)))
     server.world.schedule.add_pre_run_publisher(topic)
     server.world.listeners.append(topic)
@@ -81,7 +81,7 @@ def advertise_clock(server: Server) -> None:
 
 
 def clock_frequency(value: object) -> int:
-    """Return the parameter's value [Hz]; 0, every step, if it is no whole number, with an error."""
+    """Return the parameter's value [Hz]; for other than whole numbers log an error, return 0."""
     with contextlib.suppress(ValueError, OverflowError):
         if isinstance(value, int | float | str) and int(value) == float(value):
             return int(value)

@@ -1,9 +1,9 @@
-"""How fast the simulation is, for those who ask for it.
+"""The topic of performance metrics: real-time factor and sensor rates.
 
 Publishes:
     ~performance_metrics (gazebo_msgs/PerformanceMetrics): while subscribed, every `PERIOD` of wall
         time; only if the parameter ~enable_performance_metrics is true. Gazebo has this topic from
-        11.2 on. Sensors that nobody reads have the rate 0, for they do nothing.
+        11.2 on. Sensors without readers are idle: their rate is 0.
 """
 
 import time
@@ -21,13 +21,13 @@ PERIOD = 0.2  # [s, wall]
 
 
 class Pace:
-    """Simulated time per wall time between two looks."""
+    """Real-time factor between two samples."""
 
     def __init__(self, simulated: float, wall: float) -> None:
         self._simulated, self._wall = simulated, wall
 
     def look(self, simulated: float, wall: float) -> float:
-        """Return the real-time factor since the last look; both times in seconds."""
+        """Return the real-time factor since the last sample; both times in seconds."""
         gained = max(0.0, simulated - self._simulated)  # time jumps back at a reset
         passed = wall - self._wall
         self._simulated, self._wall = simulated, wall
@@ -35,13 +35,13 @@ class Pace:
 
 
 class SensorPaces:
-    """Rates of sensors between two looks."""
+    """Update rates of sensors between two samples."""
 
     def __init__(self) -> None:
-        self._before: dict[SensorLife, tuple[int, int]] = {}  # count and time of the last [ns]
+        self._before: dict[SensorLife, tuple[int, int]] = {}  # count, time of the last reading [ns]
 
     def look(self, sensors: Iterable[SensorLife], passed: float) -> list[SensorPerformanceMetric]:
-        """Return the rates of sensors since the last look, which is so long ago [s, wall]."""
+        """Return the rates of sensors since the last sample, `passed` [s, wall] ago."""
         now = {sensor: (sensor.count, sensor.last_ns) for sensor in sensors}
         before, self._before = self._before, now
         found = []
@@ -55,7 +55,7 @@ class SensorPaces:
 
 
 def advertise_performance(server: Server) -> None:
-    """Offer the topic, if the parameter asks for it."""
+    """Advertise the topic, if the parameter enables it."""
     if not rospy.get_param('~enable_performance_metrics', False):
         return
     publisher = rospy.Publisher('~performance_metrics', PerformanceMetrics, queue_size=10)

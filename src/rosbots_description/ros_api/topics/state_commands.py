@@ -1,9 +1,9 @@
-"""The topics that move models and links: as the services of the same names, without an answer.
+"""The topics that set states of models and links, as the services of the same names.
 
 Subscribes:
     ~set_link_state (gazebo_msgs/LinkState): see the service ~set_link_state.
     ~set_model_state (gazebo_msgs/ModelState): see the service ~set_model_state.
-What fails is in the log only.
+Errors are only logged.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ QUEUE = 10  # messages that may wait, as upstream
 
 
 def subscribe_states(server: Server) -> None:
-    """Listen to both topics."""
+    """Subscribe to both topics."""
     for name, message, request in (
         ('set_link_state', LinkState, SetLinkStateRequest),
         ('set_model_state', ModelState, SetModelStateRequest),

@@ -1,4 +1,4 @@
-"""The topics of where everything is and how it moves, published from the step they belong to.
+"""The topics of link and model states, published within the step they belong to.
 
 Publishes:
     ~link_states (gazebo_msgs/LinkStates): every step while subscribed.
@@ -18,24 +18,24 @@ from .topic import Topic
 
 
 class StatesTopic(Topic, Hook):
-    """Names, world poses and world velocities of models or links, in the step they belong to."""
+    """Names, poses and twists of models or links in the world frame, in each step."""
 
     def __init__(self, server: Server, name: str, message: Message) -> None:
         super().__init__(server, name, type(message))
         self._message = message
 
     def before_step(self) -> None:
-        """Publish, and come again at the next step."""
+        """Publish, and schedule the next step."""
         self.fill()
         self._publisher.publish(self._message)
         self.schedule()
 
     def entities(self) -> Iterable[Model | Link]:
-        """Return what is to be listed, in order."""
+        """Return the models or links to list, in order."""
         raise NotImplementedError
 
     def fill(self) -> None:
-        """Write the present states; message parts are made once and used again."""
+        """Fill in the current states; message objects are reused."""
         message = self._message
         entities = list(self.entities())
         message.name = [entity.scoped_name for entity in entities]
@@ -52,7 +52,7 @@ class StatesTopic(Topic, Hook):
 
 
 class LinkStatesTopic(StatesTopic):
-    """Every link of every model, by scoped name; as in Gazebo not those of models within."""
+    """All links by scoped name; as in Gazebo without those of nested models."""
 
     def __init__(self, server: Server) -> None:
         super().__init__(server, '~link_states', LinkStates())
@@ -68,7 +68,7 @@ class LinkStatesTopic(StatesTopic):
 
 
 class ModelStatesTopic(StatesTopic):
-    """Every model, by its name."""
+    """All models by name."""
 
     def __init__(self, server: Server) -> None:
         super().__init__(server, '~model_states', ModelStates())

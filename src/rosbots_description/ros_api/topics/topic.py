@@ -1,4 +1,4 @@
-"""What the topics with a place in simulated time share: they are due while somebody reads them."""
+"""Base class of topics published at simulation steps while they have subscribers."""
 
 import rospy
 from genpy import Message
@@ -10,23 +10,23 @@ QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
 
 
 class _Subscribers(rospy.SubscribeListener):
-    """Tells a topic, on the world's thread, when subscribers come and go."""
+    """Reschedules a topic, on the world's thread, when its subscribers change."""
 
     def __init__(self, server: Server, topic: 'Topic') -> None:
         self._server = server
         self._topic = topic
 
     def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
-        """Take note of a new subscriber."""
+        """Handle a new subscriber."""
         self._server.loop.post(self._topic.schedule)
 
     def peer_unsubscribe(self, _topic: str, _count: int) -> None:
-        """Take note of one less."""
+        """Handle the loss of a subscriber."""
         self._server.loop.post(self._topic.schedule)
 
 
 class Topic:
-    """A topic with a place in time; it costs nothing while nobody subscribes."""
+    """A topic published at simulation steps; it costs nothing without subscribers."""
 
     def __init__(self, server: Server, name: str, message_class: type[Message]) -> None:
         self._world = server.world
@@ -35,14 +35,14 @@ class Topic:
         )
 
     def schedule(self) -> None:
-        """Publish from the next step on, if there is anyone to read it."""
+        """Publish from the next step on, if there are subscribers."""
         wanted = self._publisher.get_num_connections() > 0
         self.due = self._world.clock.steps + 1 if wanted else NEVER
 
-    # What the world tells its listeners.
+    # Callbacks of the world to its listeners.
 
     def world_reset(self) -> None:
-        """Publish again at once, also when time jumped back."""
+        """Publish again at once, even if time jumped back."""
         self.schedule()
 
     def model_spawned(self, model: Model) -> None:

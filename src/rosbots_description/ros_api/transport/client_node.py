@@ -1,4 +1,4 @@
-"""Start of a client program's ROS node."""
+"""Starts the ROS node of a client program."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _RETRY = 0.5  # [s] wall time between two tries to reach the master
 def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> None:
     """Wait for the ROS master as long as it takes, then start the node.
 
-    rospy waits for the master too, but there Ctrl-C takes seconds and ends in a traceback.
-    Signals that end the program shut the node down from a thread of their own: rospy would do it
-    in the midst of whatever the main thread does, and where that holds a lock (of /rosout, say)
-    it takes 5 s. Hence rospy.on_shutdown functions run beside the main thread.
+    rospy waits for the master too, but then Ctrl-C takes seconds and ends in a traceback. Signals
+    shut the node down on a separate thread: rospy would do so within the signal handler, which
+    takes 5 s if the main thread holds a lock, such as that of /rosout. So functions of
+    rospy.on_shutdown run concurrently with the main thread.
 
     Args:
         name: of the node.
@@ -36,11 +36,11 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
 
     Raises:
         KeyboardInterrupt: Ctrl-C while waiting.
-        AddressError: there can be no master at the address that is given.
+        AddressError: ROS_MASTER_URI is not a valid address.
     """
     require_address()
     if not rosgraph.is_master_online():
-        # Before the node exists logging has no handler but its last resort, standard error.
+        # Without a node, logging writes to standard error.
         logger.warning('No ROS master at %s. Start roscore; waiting for it.',
                        rosgraph.get_master_uri())
         while not rosgraph.is_master_online():
@@ -51,12 +51,12 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
 
 
 def own_parameters(defaults: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the node's private parameters of these names; where one is not set, its default."""
+    """Return the node's private parameters by name, with defaults for those not set."""
     return {name: rospy.get_param(f'~{name}', default) for name, default in defaults.items()}
 
 
 def is_running() -> bool:
-    """Tell whether the node was not told to end yet."""
+    """Tell whether the node is not shutting down."""
     return not rospy.is_shutdown()
 
 

@@ -1,9 +1,9 @@
-"""Keep faulty connections from blocking all others.
+"""Keeps faulty connections from blocking all others.
 
-rospy reads the header of each incoming connection on the thread that accepts them, waits without
-limit, and stops accepting for good when no more files can be opened. A client that connects and
-says nothing, the master's call to a node that died and whose port is now ours, or one that opens
-connections without end would make every topic and service of the simulator unreachable.
+rospy reads the header of each incoming connection on the accepting thread, without a timeout, and
+stops accepting for good when the process is out of file descriptors. So all topics and services of
+the simulator could be blocked by a client that connects and sends nothing, by the master's call to
+a dead node whose port is ours now, or by a client that opens too many connections.
 """
 
 import logging
@@ -18,26 +18,26 @@ from rospy.impl.tcpros_base import TCPServer
 logger = logging.getLogger(__name__)
 
 PATIENCE = 10.0  # how long a new connection may take to send its header [s, wall]
-# Of a header [bytes]. It waits in the socket's buffer as a whole, so it must fit in there; those of
-# real clients hold a message definition at most. Text of another protocol reads as far more.
+# Limit of a header [bytes]. The whole header must fit in the socket's buffer; a client's header
+# contains a message definition at most. Text of other protocols decodes to a far greater length.
 LONGEST_HEADER = 1 << 15
-_LENGTH = struct.Struct('<I')  # what a header begins with: how many bytes follow
-# Between two looks at a header that comes in pieces [s, wall]; each pause is twice the one before.
+_LENGTH = struct.Struct('<I')  # length prefix [bytes]
+# Between polls of an incomplete header [s, wall]; each pause is twice the previous one.
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.001, 0.1
-_WAITING = 128  # connections that may wait to be accepted; rospy's 5 are few when a launch begins
-_SHORTAGE = 0.1  # until somebody may have closed a file [s, wall]
+_WAITING = 128  # listen backlog; rospy's 5 are too few during a launch
+_SHORTAGE = 0.1  # pause without file descriptors [s, wall]
 
 
 def guard_handshakes() -> None:
-    """Receive each connection on a thread of its own; call once before `init_node`.
+    """Handle each connection on a separate thread; call once before `init_node`.
 
-    rospy has no public place for this.
+    rospy has no public API for this.
     """
     TCPServer.run = accept_connections
 
 
 def accept_connections(server: TCPServer) -> None:
-    """Accept connections until `server` is shut down, whatever happens to one of them."""
+    """Accept connections until `server` is shut down, despite errors of single ones."""
     server.server_sock.listen(_WAITING)
     complained = False
     while not server.is_shutdown:
@@ -47,7 +47,7 @@ def accept_connections(server: TCPServer) -> None:
                 target=_receive, args=(server, connection, address), daemon=True
             ).start()
             complained = False
-        except (OSError, RuntimeError) as error:  # no more files, or no more threads
+        except (OSError, RuntimeError) as error:  # out of file descriptors or threads
             if not (complained or server.is_shutdown):
                 logger.warning('cannot accept connections at the moment: %s', error)
             complained = True
@@ -55,7 +55,7 @@ def accept_connections(server: TCPServer) -> None:
 
 
 def _receive(server: TCPServer, connection: socket.socket, address: tuple) -> None:
-    """Let rospy have a connection that speaks TCPROS, and turn away any other."""
+    """Hand a connection to rospy if it speaks TCPROS, else close it."""
     if speaks_tcpros(connection):
         server.inbound_handler(connection, address)
     else:
@@ -64,7 +64,7 @@ def _receive(server: TCPServer, connection: socket.socket, address: tuple) -> No
 
 
 def speaks_tcpros(connection: socket.socket, patience: float = PATIENCE) -> bool:
-    """Tell whether a whole header arrives within `patience` [s, wall]; nothing is consumed."""
+    """Tell whether a complete header arrives within `patience` [s, wall]; consumes nothing."""
     deadline = time.monotonic() + patience
     pause = _FIRST_PAUSE
     hangup = select.poll()

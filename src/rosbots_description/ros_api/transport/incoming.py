@@ -1,4 +1,4 @@
-"""What rospy does not expect on a connection: endless messages, broken requests, lost clients."""
+"""Handles oversized messages, malformed requests and lost clients, which rospy does not."""
 
 import contextlib
 import logging
@@ -16,22 +16,22 @@ from rospy.impl.tcpros_service import ServiceImpl
 
 logger = logging.getLogger(__name__)
 
-# [bytes] rospy keeps a message in memory until all of it is there, and believes any length. Texts
-# far longer than any description have to come through, to be refused with a sentence.
+# [bytes] rospy buffers a whole message in memory and accepts any length. The limit is far above any
+# description, so that too long ones are still received and rejected with a message.
 LONGEST_MESSAGE = 1 << 28
-_LENGTH = struct.Struct('<I')  # what a message begins with: how many bytes follow
+_LENGTH = struct.Struct('<I')  # length prefix [bytes]
 _handle, _complain = ServiceImpl.handle, ServiceImpl.error_handler
 _answer = ServiceImpl._handle_request
-_answering: set[int] = set()  # threads that are about to answer a request
+_answering: set[int] = set()  # threads with a request in progress
 _answered = threading.Condition()
-# The connection that the request in hand came by.
+# The connection of the current request.
 _connection: ContextVar[socket.socket | None] = ContextVar('connection', default=None)
 
 
 def guard_messages() -> None:
-    """Let all connections of this process keep the bounds; call once before `init_node`.
+    """Install these checks for all connections of this process; call once before `init_node`.
 
-    rospy has no public place for this.
+    rospy has no public API for this.
     """
     tcpros_base.recv_buff = receive
     ServiceImpl.handle = serve
@@ -40,7 +40,7 @@ def guard_messages() -> None:
 
 
 def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
-    """Receive as rospy does into a buffer that begins with a message; return how many bytes.
+    """Receive as rospy does into a buffer that starts with a message; return the byte count.
 
     Raises:
         TransportTerminated: the connection is closed, or the message is too long.
@@ -57,7 +57,7 @@ def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
 
 
 def serve(service: ServiceImpl, transport: TCPROSTransport, header: dict[str, str]) -> None:
-    """Answer as rospy does, also a request that cannot be read, and let go of the connection."""
+    """Answer as rospy does, malformed requests too, and close the connection."""
     try:
         _handle(service, transport, header)
     except (ConnectionError, TransportException) as error:
@@ -66,14 +66,14 @@ def serve(service: ServiceImpl, transport: TCPROSTransport, header: dict[str, st
             return
         sentence = f'the request does not fit {service.service_class._type}: {error}'
         logger.warning('%s: %s', service.resolved_name, sentence)
-        with contextlib.suppress(OSError, TransportException):  # who asked may have gone
+        with contextlib.suppress(OSError, TransportException):  # the caller may have disconnected
             service._write_service_error(transport, sentence)
     finally:
         transport.close()
 
 
 def answer(service: ServiceImpl, transport: TCPROSTransport, request: Message) -> None:
-    """Answer a request as rospy does; `wait_for_answers` knows of it meanwhile."""
+    """Answer a request as rospy does, tracked for `wait_for_answers`."""
     me = threading.get_ident()
     with _answered:
         _answering.add(me)
@@ -87,7 +87,7 @@ def answer(service: ServiceImpl, transport: TCPROSTransport, request: Message) -
 
 
 def caller_waits() -> bool:
-    """Tell whether who asked for what this thread works on still waits for the answer."""
+    """Tell whether the caller of this thread's request still waits for the answer."""
     connection = _connection.get()
     try:
         return not connection or bool(
@@ -99,13 +99,13 @@ def caller_waits() -> bool:
 
 
 def wait_for_answers(patience: float) -> bool:
-    """Wait until no request is without its answer; tell whether that was within `patience` [s]."""
+    """Wait until all requests are answered; tell whether they were within `patience` [s]."""
     with _answered:
         return _answered.wait_for(lambda: not _answering, patience)
 
 
 def complain(service: ServiceImpl, error: Exception, *details: object) -> None:
-    """Log a fault in an answer, unless it is that who asked has not waited for it."""
+    """Log an error of an answer, at debug level if the caller has disconnected."""
     if isinstance(error, (ConnectionError, TransportException)):
         logger.debug('%s: nobody takes the answer: %s', service.resolved_name, error)
     else:

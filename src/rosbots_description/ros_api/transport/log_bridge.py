@@ -1,4 +1,4 @@
-"""Lets the simulator's log messages appear as a ROS node's: console, log file and /rosout."""
+"""Routes the simulator's log messages as a ROS node's: to console, log file and /rosout."""
 
 import logging
 from collections.abc import Callable
@@ -9,9 +9,9 @@ from rospy.rostime import _set_rostime
 
 from ...sim.core import one_line
 
-_ROOT = __name__.partition('.')[0]  # this library, under whichever name it was imported
-_PLUGINS = f'{_ROOT}.sim.plugins.'  # their modules log only while a plugin is loaded
-_REMEMBERED = 1000  # texts
+_ROOT = __name__.partition('.')[0]  # the package, by the name it was imported as
+_PLUGINS = f'{_ROOT}.sim.plugins.'  # they log only while loading
+_REMEMBERED = 1000  # distinct messages
 _LEVELS = {
     'debug': logging.DEBUG,
     'info': logging.INFO,
@@ -22,12 +22,12 @@ _LEVELS = {
 
 
 def connect_logging(now_ns: Callable[[], int]) -> None:
-    """Give this package's loggers the handlers that rospy made; call after `init_node`.
+    """Attach rospy's handlers to this package's loggers; call after `init_node`.
 
     rospy routes only its own logger `rosout` to the terminal, the log file and /rosout.
 
     Args:
-        now_ns: the simulated time [ns] that messages are stamped with, besides wall time.
+        now_ns: returns the simulated time [ns] that messages are stamped with.
 
     """
     ours, rosout = logging.getLogger(_ROOT), logging.getLogger('rosout')
@@ -41,9 +41,9 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
 
 
 def set_level(name: str) -> None:
-    """Show messages from this level on: debug, info, warn, error or fatal, in any case.
+    """Set the least level to show: debug, info, warn, error or fatal, in any case.
 
-    Another word changes nothing.
+    Other names are ignored.
     """
     level = _LEVELS.get(name.lower())
     if level is not None:
@@ -51,10 +51,10 @@ def set_level(name: str) -> None:
 
 
 def leave_rosout() -> None:
-    """Log to the terminal and the file only, once another node has this one's name.
+    """Stop logging to /rosout, after another node has taken this one's name.
 
-    rospy looks a parameter up for each message to /rosout, by which it registers the node again:
-    the master would shut the other one down.
+    For each message to /rosout rospy looks up a parameter, which registers this node again: the
+    master would shut the other node down.
     """
     for logger in (logging.getLogger(_ROOT), logging.getLogger('rosout')):
         for handler in tuple(logger.handlers):
@@ -63,7 +63,7 @@ def leave_rosout() -> None:
 
 
 def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
-    """Return the handlers that a message to `logger` would reach, its parents' included."""
+    """Return the handlers of `logger` and of its parents, as far as it propagates."""
     handlers: list[logging.Handler] = []
     while logger is not None:
         handlers += logger.handlers
@@ -72,14 +72,14 @@ def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
 
 
 class Unrepeated(logging.Filter):
-    """Lets each text through once: a robot that is spawned again has the same flaws as before."""
+    """Passes each message once: a robot that is spawned again causes the same warnings."""
 
     def __init__(self) -> None:
         super().__init__()
         self._said: set[str] = set()
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Tell whether the message is new, or was said too long ago to be known."""
+        """Tell whether the message is new, or was forgotten since."""
         text = record.getMessage()
         if text in self._said:
             return False
@@ -90,10 +90,10 @@ class Unrepeated(logging.Filter):
 
 
 class Preparation(logging.Handler):
-    """Makes each message ready for the handlers behind it: one printable line, at simulated time.
+    """Prepares each message for the handlers after it: one printable line, with simulated time.
 
-    The simulator does not listen to its own /clock: at 1000 messages per second that would cost
-    more than the physics. rospy offers no public way to set the time.
+    The simulator does not subscribe to its own /clock, which at 1000 messages per second would cost
+    more than the physics. rospy has no public API to set the time.
     """
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
@@ -102,6 +102,6 @@ class Preparation(logging.Handler):
         self._now_ns = now_ns
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Escape what a user's names bring into the text, and take over the simulated time."""
+        """Escape control characters of users' names, and set rospy's time."""
         record.msg, record.args = one_line(record.getMessage()), ()
         _set_rostime(rospy.Time(nsecs=self._now_ns()))

@@ -1,7 +1,7 @@
-"""The log file of a node: where it cannot be written, the node says so and works without.
+"""The log file of a node, which warns and continues if the file cannot be written.
 
-rospy itself would show no message anywhere where the folder for logs cannot be made, and would end
-with a traceback where the file cannot be opened.
+rospy itself shows no messages at all if the log folder cannot be created, and ends with a traceback
+if the file cannot be opened.
 """
 
 import logging
@@ -18,9 +18,9 @@ from rosgraph.roslogging import makedirs_with_parent_perms
 
 
 def log_file(name: str, arguments: Sequence[str]) -> Path:
-    """Return where rospy will log: as `__log:=FILE` says, else in ROS_LOG_DIR by the node's name.
+    """Return the path of rospy's log file: `__log:=FILE`, else ROS_LOG_DIR/<node>.log.
 
-    For an anonymous node, whose name nobody knows yet, only the folder is right.
+    For an anonymous node, whose name is not known yet, only the folder is correct.
     """
     given = dict(argument.split(REMAP, 1) for argument in arguments if REMAP in argument)
     name = given.get('__name', name).strip('/')
@@ -28,7 +28,7 @@ def log_file(name: str, arguments: Sequence[str]) -> Path:
 
 
 def obstacle(path: Path) -> str | None:
-    """Return why the log file cannot be written, or None if it can be; the folder is made."""
+    """Return why the log file cannot be written, or None; creates its folder."""
     try:
         if not path.parent.is_dir():
             makedirs_with_parent_perms(str(path.parent))
@@ -43,27 +43,27 @@ def obstacle(path: Path) -> str | None:
 
 
 def log_to_nowhere() -> list[str]:
-    """Return what to add to a node's arguments so that it logs without a file."""
-    # rospy insists on a file. Were it not in this very folder, a link /latest would be made.
+    """Return additional arguments for a node without a log file."""
+    # rospy requires a file. Were it outside ROS_LOG_DIR, rospy would create a link /latest.
     os.environ['ROS_LOG_DIR'] = os.path.dirname(os.devnull)
     return [f'__log{REMAP}{os.devnull}']
 
 
 def outlive_full_disk() -> None:
-    """Let the log file take every text, and one warning suffice when it takes nothing more.
+    """Let the log file accept all text, and warn once when it cannot be written any more.
 
-    Call it after `init_node`. Python's logging would print a traceback with each message.
+    Call it after `init_node`. Python's logging would print a traceback for each message.
     """
     for handler in logging.getLogger().handlers:
         if isinstance(handler, logging.FileHandler):
-            handler.encoding, handler.errors = 'utf-8', 'backslashreplace'  # when files rotate
+            handler.encoding, handler.errors = 'utf-8', 'backslashreplace'  # for rotated files
             if handler.stream is not None:
                 handler.stream.reconfigure(encoding=handler.encoding, errors=handler.errors)
             handler.handleError = _Complaint(handler)  # type: ignore[method-assign]  # the only way
 
 
 class _Complaint:
-    """Says once that a log file cannot be written any more; other faults are Python's to show."""
+    """Warns once that a log file cannot be written; passes other errors to Python's handler."""
 
     def __init__(self, handler: logging.FileHandler) -> None:
         self._path = handler.baseFilename
@@ -76,6 +76,6 @@ class _Complaint:
             self._show(record)
         elif not self._said:
             self._said = True
-            # Logged, it would come back here.
+            # Logging it would recurse.
             sys.stderr.write(f'[WARN] [{time.time():f}]: log file {self._path} cannot be written '
                              f'({error.strerror}); messages may be missing, free some space\n')

@@ -1,4 +1,4 @@
-"""Calls to the ROS master, which may be away for a while."""
+"""Calls to the ROS master, which may be unavailable for a while."""
 
 import time
 from collections.abc import Callable, Iterable, Mapping
@@ -13,19 +13,19 @@ from rosgraph.network import parse_http_host_and_port
 
 from ...sim.core import SimError
 
-# What a call raises where nobody answers, or somebody who is no master.
+# Errors of a call if nothing answers, or something other than a ROS master.
 NO_MASTER = (OSError, HTTPException, ProtocolError, ExpatError)
-_PERIOD = 0.2  # between two calls to a master that is away, as rospy's [s, wall]
+_PERIOD = 0.2  # between calls to an unavailable master, as in rospy [s, wall]
 
 Answer = TypeVar('Answer')
 
 
 class AddressError(SimError, ValueError):
-    """The address at which the master should be is none."""
+    """ROS_MASTER_URI is not a valid address."""
 
 
 def require_address() -> None:
-    """Raise `AddressError` if there can never be a master at ROS_MASTER_URI."""
+    """Raise `AddressError` if ROS_MASTER_URI is not a valid address."""
     address = rosgraph.get_master_uri()
     try:
         parse_http_host_and_port(address)
@@ -46,13 +46,11 @@ def is_master_there(name: str) -> bool:
 
 
 def node_address(node: str, asking: str) -> str | None:
-    """Return the XML-RPC address that the master knows of a node.
-
-    None: it knows of no such node, or nobody answers.
+    """Return the XML-RPC address of a node; None if it is not registered or no master answers.
 
     Args:
         node: its global name.
-        asking: global name of who asks.
+        asking: global name of the caller.
     """
     try:
         return rosgraph.Master(asking).lookupNode(node)
@@ -74,7 +72,7 @@ def has_service(name: str) -> bool:
 
 
 def once_there(ask: Callable[[], Answer]) -> Answer:
-    """Return what `ask()` gets from the master; wait while there is none, as rospy's topics do.
+    """Return `ask()`, a call to the master; retry while it is unavailable, as rospy does.
 
     Raises:
         rospy.ROSInterruptException: the node is shutting down.
@@ -88,10 +86,10 @@ def once_there(ask: Callable[[], Answer]) -> Answer:
 
 
 def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
-    """Return the names of the nodes that read a topic, by the master; wait while it is away.
+    """Return the names of a topic's subscribers; wait while the master is unavailable.
 
     Args:
-        publishing: another topic; those who publish it are returned as well, in a set of their own.
+        publishing: another topic, whose publishers are returned as the second set.
     """
     publishers, readers, _ = once_there(
         lambda: rosgraph.Master(rospy.get_name()).getSystemState())
@@ -103,14 +101,14 @@ def _nodes(topics: Iterable[tuple[str, list[str]]], wanted: str) -> set[str]:
 
 
 def write_parameters(values: Mapping[str, str | float | bool]) -> None:
-    """Write private parameters of this node by one call: each takes as long as all together.
+    """Write private parameters of this node in a single call, which takes no longer than one.
 
     Raises:
-        Exception: one of `NO_MASTER`; or what the master says to a value.
+        Exception: one of `NO_MASTER`; or the master's error for a value.
     """
     calls = MultiCall(rosgraph.Master(rospy.get_name()).handle)
     for name, value in values.items():
         calls.setParam(rospy.get_name(), rospy.resolve_name(f'~{name}'), value)
     results = calls()
     for number in range(len(values)):
-        results[number]  # looking at it raises what went wrong
+        results[number]  # raises the error of this call, if any

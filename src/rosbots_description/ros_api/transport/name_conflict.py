@@ -1,6 +1,6 @@
-"""One node per name: a second simulator does not end the first one by accident.
+"""Detects name conflicts, so that a second simulator does not end the first one by accident.
 
-The ROS master shuts a node down as soon as another one registers under its name.
+The ROS master shuts a node down as soon as another one registers with its name.
 """
 
 import socket
@@ -18,22 +18,22 @@ from rosgraph.names import get_ros_namespace, load_mappings, ns_join
 from ...sim.core import SimError
 from .master import NO_MASTER
 
-PATIENCE = 2.0  # for a node to answer [s, wall]
+PATIENCE = 2.0  # time for a node to answer [s, wall]
 
 
 class NameTakenError(SimError):
-    """A living node has the name that this one would get."""
+    """A running node already has this node's name."""
 
 
 @dataclass(frozen=True)
 class Holder:
-    """A node that is alive under a name."""
+    """The running node that has a name."""
 
     uri: str
-    pid: int | None  # None: it is there but does not answer, as a stopped process
+    pid: int | None  # None: it does not answer, as a stopped process
 
     def __str__(self) -> str:
-        """Return which process it is, and where."""
+        """Return process and address in words."""
         which = 'a process that does not answer' if self.pid is None else f'process {self.pid}'
         return f'{which} on {urlsplit(self.uri).hostname} ({self.uri})'
 
@@ -45,7 +45,7 @@ def node_name(name: str, arguments: Sequence[str]) -> str:
 
 
 def holder(name: str) -> Holder | None:
-    """Return the living node of that name; None where there is none, or only a dead one's entry.
+    """Return the running node of that name; None if there is none, or a stale entry.
 
     Raises:
         Exception: one of `NO_MASTER`.
@@ -58,18 +58,18 @@ def holder(name: str) -> Holder | None:
     try:
         socket.create_connection((where.hostname, where.port), PATIENCE).close()
     except OSError:
-        return None  # killed: it could not unregister
+        return None  # stale entry of a killed node
     try:
         node: Any = ServerProxy(uri, transport=_Impatient())
         return Holder(uri, node.getPid(name)[2])
     except TimeoutError:
         return Holder(uri, None)
-    except (*NO_MASTER, XmlRpcError):  # its port belongs to another program by now
+    except (*NO_MASTER, XmlRpcError):  # another program has its port now
         return None
 
 
 def require_free(name: str) -> None:
-    """Raise `NameTakenError` if a living node has that name."""
+    """Raise `NameTakenError` if a running node has that name."""
     other = holder(name)
     if other:
         raise NameTakenError(
@@ -79,7 +79,7 @@ def require_free(name: str) -> None:
 
 
 def successor(name: str, uri: str) -> Holder | None:
-    """Return the living node that has taken the name from the node at `uri`; None if none has."""
+    """Return the running node that has taken the name of the node at `uri`, or None."""
     try:
         other = holder(name)
     except NO_MASTER:
@@ -88,7 +88,7 @@ def successor(name: str, uri: str) -> Holder | None:
 
 
 class _Impatient(Transport):
-    """Waits for an answer for `PATIENCE` at most."""
+    """A transport with the timeout `PATIENCE`."""
 
     def make_connection(self, host: tuple[str, dict[str, str]] | str) -> HTTPConnection:
         connection = super().make_connection(host)

@@ -9,7 +9,7 @@ from rosgraph.names import resolve_name
 from ...sim.core import PluginError
 from .master import once_there
 
-# What rospy and the master stand as a global name. A hyphen or a dot is more than roscpp reads.
+# Global names that rospy and the master accept. roscpp rejects hyphens and dots.
 _GLOBAL_NAME = re.compile('(/[a-zA-Z0-9_.-]+)+')
 _PYTHON_ONLY = re.compile('[.-]')
 
@@ -17,10 +17,10 @@ _PYTHON_ONLY = re.compile('[.-]')
 def topic_name(namespace: str, topic: str) -> str:
     """Return the global name, before remapping, of a `topic` in a plugin's namespace.
 
-    Doubled slashes collapse, a leading one stays; a namespace beginning with ~ is in this node's.
+    Repeated slashes collapse, and a leading one is kept; ~ stands for this node's namespace.
 
     Raises:
-        PluginError: it is not a valid ROS name.
+        PluginError: the result is not a valid ROS name.
     """
     given = topic if topic.startswith('/') else f'{namespace}/{topic}'
     name = resolve_name(re.sub('/+', '/', given), rospy.get_name())
@@ -33,12 +33,12 @@ def topic_name(namespace: str, topic: str) -> str:
 
 
 def is_for_all(topic: str) -> bool:
-    """Tell whether C++ nodes, such as rviz, can read a topic of that name, too."""
+    """Tell whether C++ nodes, such as rviz, accept a topic of that name, too."""
     return not _PYTHON_ONLY.search(topic)
 
 
 def frame_name(prefix: str, frame: str) -> str:
-    """Return `frame` with a tf prefix, as tf::resolve does; a leading slash takes none."""
+    """Return `frame` with a tf prefix, as tf::resolve; no prefix after a leading slash."""
     if frame.startswith('/'):
         return frame[1:]
     prefix = prefix.lstrip('/')
@@ -48,11 +48,11 @@ def frame_name(prefix: str, frame: str) -> str:
 def find_tf_prefix(namespace: str) -> str:
     """Return the parameter tf_prefix, searched from `namespace` upward; '' if there is none.
 
-    While there is no ROS master, wait for one.
+    Waits while there is no ROS master.
     """
     namespace = rospy.resolve_name(namespace).rstrip('/')
     try:
-        # The master searches upward from the name of who asks.
+        # The master searches upward from the caller's name.
         name = once_there(lambda: rosgraph.Master(f'{namespace}/plugin').searchParam('tf_prefix'))
     except rosgraph.MasterError:
         return ''

@@ -1,4 +1,4 @@
-"""How our programs behave as nodes: they begin wherever they are, and end at once."""
+"""Starts and ends this process as a node: without long waits, whatever its environment."""
 
 import os
 import socket
@@ -13,11 +13,11 @@ from rospy.impl.registration import get_registration_listeners
 
 from .log_file import log_file, log_to_nowhere, obstacle, outlive_full_disk
 
-_LOOK = 0.001  # between two looks whether the master has taken the node in [s, wall]
+_LOOK = 0.001  # between polls of the node's registration [s, wall]
 
 
 def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
-    """Start the node as `rospy.init_node` does, also without a log file or a name to be found by.
+    """Start the node as `rospy.init_node` does, even without a log file or a resolvable hostname.
 
     Args:
         name: of the node.
@@ -46,40 +46,40 @@ def is_node() -> bool:
 
 
 def _address_without_name() -> str | None:
-    """Let others find this node by localhost if this machine's name does not resolve.
+    """Use localhost as this node's address if the hostname cannot be resolved.
 
-    rospy would tell everybody that name, and nobody could connect.
+    rospy would advertise the hostname, to which nobody could connect.
 
     Returns:
-        That name if so; None if all is well or the user has given an address.
+        The hostname in that case; None if it resolves or the user has set an address.
     """
     name = socket.gethostname()
     if get_address_override():
         return None
     try:
         socket.getaddrinfo(name, None)
-    except (OSError, UnicodeError):  # the latter for what cannot be a host's name at all
+    except (OSError, UnicodeError):  # UnicodeError: not a valid hostname
         os.environ['ROS_HOSTNAME'] = 'localhost'
         return name
     return None
 
 
 def _begin_at_once() -> None:
-    """Spare this process a tenth of a second at its beginning.
+    """Start 0.1 s faster.
 
-    rospy sleeps for so long before it looks again whether the master has taken the node in, and the
-    first look always comes too soon. There is no public way.
+    rospy polls the node's registration at that period, and the first poll is always too early.
+    There is no public API for this.
     """
     rospy.impl.init.time = SimpleNamespace(sleep=lambda _seconds: time.sleep(_LOOK))
 
 
 def _end_at_once() -> None:
-    """Spare this process up to half a second at its end.
+    """Shut down up to 0.5 s faster.
 
-    rospy's registration thread looks only every 0.5 s whether the node is shutting down, and the
-    shutdown waits for it. Waking it needs rospy's internals: there is no public way.
+    rospy's registration thread checks only every 0.5 s whether the node is shutting down, and the
+    shutdown waits for it. There is no public API to wake it.
     """
-    # Now, since rospy clears the list before the hook runs.
+    # Collected now: rospy clears the list before the hook runs.
     conditions = [
         listener.cond for listener in get_registration_listeners().listeners
         if hasattr(listener, 'cond')

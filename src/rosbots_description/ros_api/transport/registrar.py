@@ -1,4 +1,4 @@
-"""A thread that registers and unregisters with the ROS master, so that no step waits for it."""
+"""A thread for calls to the ROS master, so that simulation steps do not wait for it."""
 
 import logging
 import threading
@@ -11,18 +11,18 @@ logger = logging.getLogger(__name__)
 
 
 class Registrar:
-    """Does jobs one after the other on a thread of its own; faults are logged."""
+    """Runs jobs in order on its own thread; errors are logged."""
 
     def __init__(self) -> None:
         self._jobs: SimpleQueue[Callable[[], None]] = SimpleQueue()
         threading.Thread(target=self._work, name='registrar', daemon=True).start()
 
     def post(self, job: Callable[[], None]) -> None:
-        """Do `job()` after those posted before it; any thread may post."""
+        """Queue `job()`; may be called from any thread."""
         self._jobs.put(job)
 
     def wait(self, deadline: float) -> bool:
-        """Wait until all jobs posted so far are done; tell whether they were, by `deadline` [s]."""
+        """Wait until all queued jobs are done; tell whether they were within `deadline` [s]."""
         done = threading.Event()
         self.post(done.set)
         return done.wait(deadline)

@@ -1,7 +1,7 @@
-"""What this node has registered, told again to a ROS master that was started anew.
+"""Registers this node again after a restart of the ROS master.
 
-A ROS node registers once; when its master dies, the next one knows nothing of it. Gazebo has to be
-started again then. Here the simulation goes on meanwhile, and who is connected stays so.
+A ROS node registers once; a restarted master does not know it. Gazebo has to be restarted, too.
+Here the simulation continues, and existing connections are kept.
 """
 
 import logging
@@ -23,8 +23,8 @@ from .registrar import Registrar
 
 logger = logging.getLogger(__name__)
 
-PERIOD = 1.0  # time between two looks for the master [s, wall]
-PATIENCE = 30.0  # how long a registration may take before it is begun again [s, wall]
+PERIOD = 1.0  # between checks of the master [s, wall]
+PATIENCE = 30.0  # time for a registration before it is retried [s, wall]
 
 
 def published_types() -> dict[str, str]:
@@ -38,11 +38,11 @@ def subscribed_types() -> dict[str, str]:
 
 
 def watch_master(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> None:
-    """Look after the master from now on, on a thread of its own.
+    """Start a thread that monitors the master.
 
     Args:
-        registrar: registers everything again with a new master.
-        parameters: what sets our parameters there again; it may grow meanwhile.
+        registrar: runs the registrations with a new master.
+        parameters: functions that set our parameters again; more may be added later.
     """
     threading.Thread(
         target=_watch, args=(registrar, parameters), name='master_watch', daemon=True
@@ -55,7 +55,7 @@ def _watch(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> No
     rospy.on_shutdown(ended.set)
     while True:
         known = _is_known(master)
-        if rospy.core.is_shutdown_requested():  # who is shutting down has unregistered on purpose
+        if rospy.core.is_shutdown_requested():  # unregistered on purpose
             return
         if known is None and not gone:
             logger.warning('the ROS master is gone; the simulation goes on and waits for it')
@@ -68,7 +68,7 @@ def _watch(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> No
 
 
 def _is_known(master: rosgraph.Master) -> bool | None:
-    """Tell whether we were introduced to the master; None if there is no master."""
+    """Tell whether this node is registered with the master; None if there is no master."""
     try:
         master.lookupService(_first_service())
     except rosgraph.MasterError:
@@ -79,7 +79,7 @@ def _is_known(master: rosgraph.Master) -> bool | None:
 
 
 def _introduce(parameters: Iterable[Callable[[], None]]) -> None:
-    """Tell the master everything that was told to the one before; rospy has no public way."""
+    """Register everything with a new master; rospy has no public API for this."""
     listeners, topics = get_registration_listeners(), get_topic_manager()
     services = dict(get_service_manager().get_services())
     first = _first_service()
@@ -97,9 +97,9 @@ def _introduce(parameters: Iterable[Callable[[], None]]) -> None:
 
 
 def _first_service() -> str:
-    """Return the name of what a master is told first when we are introduced, and only then.
+    """Return the service that is registered first with a master, and only by `_introduce`.
 
-    A master that knows it has been told the rest, too, or is being told. What else it may know
-    was registered by a model that came before we noticed the new master.
+    A master that knows it has the other registrations, too, or is about to get them. Other topics
+    may have been registered by a model spawned before the new master was noticed.
     """
-    return rospy.resolve_name('~get_loggers')  # rospy offers it before anything else
+    return rospy.resolve_name('~get_loggers')  # rospy registers it before anything else

@@ -1,16 +1,16 @@
-"""Which node a message or a topic comes from."""
+"""Names of the nodes that publish a message or topic."""
 
 import rospy
 from genpy import Message
 
 
 def sender_of(message: Message) -> str:
-    """Return the name of the node that a received message comes from."""
+    """Return the name of the node that sent a received message."""
     return message._connection_header['callerid']
 
 
 def publisher_names(subscriber: rospy.Subscriber) -> set[str]:
-    """Return the names of the nodes that are connected as publishers of what is subscribed to.
+    """Return the names of the publishers that a subscriber is connected to.
 
     Raises:
         rospy.ROSInterruptException: the node is shutting down.

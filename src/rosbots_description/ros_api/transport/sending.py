@@ -1,8 +1,8 @@
-"""Sends messages from the thread that publishes them, and never waits for a reader.
+"""Sends messages on the publishing thread, and never waits for a reader.
 
-rospy hands every message to a thread of the reader's connection and yields to it. The two threads
-wake each other for each message, which costs several times what sending it does; and to the system
-each send costs as much as ten steps, however little it sends.
+rospy hands each message to a thread of the reader's connection and yields to it. The context
+switches cost several times as much as sending. Each system call to send costs as much as ten steps,
+whatever its size.
 """
 
 import contextlib
@@ -19,7 +19,7 @@ from rospy.impl.tcpros_base import TCPROSTransport
 
 logger = logging.getLogger(__name__)
 
-_LARGEST_NUMBER = 0xFFFFFFFF  # that a header has room for; then it begins at 0 again
+_LARGEST_NUMBER = 0xFFFFFFFF  # of `seq`, which then wraps to 0
 
 
 class Outlets:
@@ -28,18 +28,18 @@ class Outlets:
     def __init__(self) -> None:
         self.lock = threading.RLock()  # closing a connection may log, and so publish
         self.gathering = False
-        self.filled: list[Outlet] = []  # those that have gathered something
+        self.filled: list[Outlet] = []  # those with gathered messages
 
     def serve_publishers(self) -> None:
-        """Let all publishers of this process send so; call once before `init_node`.
+        """Use `Outlet` for all publishers of this process; call once before `init_node`.
 
-        rospy has no public place for this.
+        rospy has no public API for this.
         """
         rospy.topics.QueuedConnection = lambda *arguments: Outlet(self, *arguments)
 
     @contextlib.contextmanager
     def gathered(self) -> Iterator[None]:
-        """Send what is published meanwhile at the end, to each reader in one piece."""
+        """Gather published messages, and send them at the end in one call for each reader."""
         self.gathering = True
         try:
             yield
@@ -52,10 +52,10 @@ class Outlets:
 
 
 class Outlet:
-    """A reader's connection, in the place of rospy's QueuedConnection.
+    """A reader's connection, in place of rospy's QueuedConnection.
 
-    What the reader has no room for now waits for a thread that lives only until all is sent. Of the
-    messages that come meanwhile the newest `queue_size` wait, too; 0 means any number.
+    If the socket's buffer is full, a temporary thread sends the rest. Meanwhile the newest
+    `queue_size` messages are queued; 0 means no limit.
     """
 
     def __init__(self, outlets: Outlets, connection: TCPROSTransport, queue_size: int) -> None:
@@ -66,14 +66,14 @@ class Outlet:
         self._draining = False
 
     def __getattr__(self, name: str) -> object:
-        """Be the connection in everything else."""
+        """Delegate all else to the connection."""
         return getattr(self._connection, name)
 
     def write_data(self, data: bytes) -> bool:
-        """Send a message now, with others at the end of a batch, or after those that wait already.
+        """Send a message now, at the end of a batch, or after those already queued.
 
         Raises:
-            TransportTerminated: the reader has gone.
+            TransportTerminated: the reader has disconnected.
         """
         if self._connection.done:
             raise TransportTerminated('connection closed')
@@ -89,20 +89,20 @@ class Outlet:
         return True
 
     def flush(self) -> None:
-        """Send what was gathered; the caller holds the lock."""
+        """Send the gathered messages; the caller holds the lock."""
         data = b''.join(self._gathered)
         self._gathered.clear()
         self._send(data)
 
     def _send(self, data: bytes) -> None:
-        """Send what there is room for, and leave the rest to a thread."""
+        """Send without blocking, and leave the rest to a thread."""
         connection = self._connection
         try:
             sent = connection.socket.send(data, socket.MSG_DONTWAIT)
         except BlockingIOError:
             sent = 0
-        except (OSError, AttributeError):  # closed meanwhile by another thread it has no socket
-            connection.close()  # the next message hears of it
+        except (OSError, AttributeError):  # no socket if another thread has closed it
+            connection.close()  # the next write raises
             return
         connection.stat_bytes += sent
         connection.stat_num_msg += 1
@@ -111,7 +111,7 @@ class Outlet:
             threading.Thread(target=self._drain, args=(data[sent:],), daemon=True).start()
 
     def _drain(self, data: bytes) -> None:
-        """Send the rest, and what came meanwhile, at the pace of the reader."""
+        """Send the rest and the queue, waiting for the reader."""
         while True:
             try:
                 self._connection.write_data(data)
@@ -128,49 +128,49 @@ class Outlet:
 
 
 class ReaderWatch(rospy.SubscribeListener):
-    """Calls `changed()` whenever a reader of a topic has come or gone, on whatever thread."""
+    """Calls `changed()` when a reader connects or disconnects, on any thread."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
 
     def peer_subscribe(self, _topic: str, _publish: object, _publish_to_one: object) -> None:
-        """Tell of a new reader."""
+        """Report a new reader."""
         self._changed()
 
     def peer_unsubscribe(self, _topic: str, _count: int) -> None:
-        """Tell of one less."""
+        """Report that a reader has disconnected."""
         self._changed()
 
 
 def stop_publishing(publisher: rospy.Publisher, watch: ReaderWatch) -> None:
-    """Publish no more; other publishers of this node may go on with the topic.
+    """Unregister a publisher and its watch; others of this node may share the topic.
 
-    rospy would then go on telling the watch of readers.
+    rospy would keep calling the watch.
     """
     topic = publisher.impl
     if topic is not None and topic.subscriber_listeners:
         others = [listener for listener in topic.subscriber_listeners if listener is not watch]
-        topic.subscriber_listeners = others  # another thread may be telling those there were
+        topic.subscriber_listeners = others  # a copy: another thread may iterate
     publisher.unregister()
 
 
 def has_readers(publisher: rospy.Publisher | None) -> bool:
-    """Tell whether anybody reads a topic; None is one that was left out.
+    """Tell whether a topic has readers; None stands for a disabled topic.
 
-    What rospy offers for it takes a lock, which matters where every robot asks at 100 Hz.
+    rospy's get_num_connections takes a lock, which is slow if each robot calls it at 100 Hz.
     """
     topic = publisher.impl if publisher is not None else None
     return topic is not None and bool(topic.connections)
 
 
 def reader_names(publisher: rospy.Publisher) -> set[str]:
-    """Return the names of the nodes that read a topic."""
+    """Return the names of the subscribed nodes."""
     topic = publisher.impl
     return {connection.endpoint_id for connection in topic.connections} if topic else set()
 
 
 def next_number(publisher: rospy.Publisher) -> int:
-    """Return what the header of the publisher's next message has as `seq`, as rospy counts."""
+    """Return the next `seq` for a header of the publisher, and count it as rospy does."""
     topic = publisher.impl
     if topic is None:  # the node is shutting down
         return 0
@@ -179,9 +179,9 @@ def next_number(publisher: rospy.Publisher) -> int:
 
 
 def publish_serialized(publisher: rospy.Publisher, messages: bytes) -> None:
-    """Publish messages that are serialized, each behind its size, as they go over the wire.
+    """Publish serialized messages, each with its length prefix.
 
-    Only one thread may publish on a topic so. rospy has no public place for this: it serializes a
+    Only one thread may use this for a topic. rospy has no public API for this: it serializes one
     message at a time.
     """
     topic = publisher.impl
