@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _MODEL = 'rosbots'
 PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
-_START = 30.0  # [s] wall time for the simulator to come up on a slow machine
+_START = 30.0  # [s] wall time for the simulator to start on a slow machine
 _SPAWN = 30.0  # [s] wall time for one spawn.launch
 _LANDED = -0.10  # [m] the wheels touch the ground when base_footprint is at -0.12
 _INTERRUPTED = 130  # exit code
@@ -54,7 +54,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument('--output', type=Path, default=Path('demo_output'), metavar='FOLDER',
                         help='where pictures and logs go; default: %(default)s')
     arguments = parser.parse_args(argv)
-    # a closed terminal and a kill end the demo as Ctrl-C does: with everything it started
+    # SIGTERM and SIGHUP end the demo and all its processes, as Ctrl-C does
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.default_int_handler)
     try:
@@ -70,15 +70,15 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _run(folder: Path) -> None:
-    """Do all steps in order.
+    """Run all steps in order.
 
     Raises:
-        DemoError, OSError: one of them failed.
+        DemoError, OSError: a step failed.
     """
     folder.mkdir(parents=True, exist_ok=True)
     environment = _private_environment(folder)
     os.environ.update(environment)  # for our own node
-    # Late, so that --help answers at once.
+    # Imported late, so that --help is fast.
     from ..ros_api.clients.demo import DemoClient
     from .demo_plot import save_picture
     with ExitStack() as stack:
@@ -107,7 +107,7 @@ def _run(folder: Path) -> None:
 
 
 def _private_environment(folder: Path) -> dict[str, str]:
-    """Return an environment with a ROS master of our own, so that no running one is disturbed."""
+    """Return an environment with a separate ROS master, so that no running one is disturbed."""
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
         port = probe.getsockname()[1]
@@ -119,7 +119,7 @@ def _private_environment(folder: Path) -> dict[str, str]:
 
 
 def _spawn(client: DemoClient, log: Path, environment: Mapping[str, str]) -> None:
-    """Spawn the robot by its launch file and wait until it stands and listens."""
+    """Spawn the robot by its launch file, and wait until it is on the ground and subscribes."""
     from ..ros_api.clients.demo import wait_until
     with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
         done = spawn.wait(_SPAWN)
@@ -130,7 +130,7 @@ def _spawn(client: DemoClient, log: Path, environment: Mapping[str, str]) -> Non
 
 
 def _drive(client: DemoClient, folder: Path) -> list[Row]:
-    """Drive all segments, write the picture and return what was measured."""
+    """Drive all segments, write the picture and return the measurements."""
     from .demo_plot import plot_path
     rows, path, odometry = [], [], []
     for segment in DRIVE:

@@ -1,4 +1,4 @@
-"""The picture of the path that the robot drove in the demo."""
+"""Plots the robot's path in the demo."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-matplotlib.use('Agg')  # before pyplot: there may be no display
+matplotlib.use('Agg')  # before importing pyplot: there may be no display
 from matplotlib import pyplot
 
 from ..ros_api.clients.planar_sample import PlanarSample
@@ -35,8 +35,8 @@ def plot_path(
     """Write a top view of the drive as PNG.
 
     Args:
-        drive: each segment with the ground truth of its time, world frame.
-        odometry: the whole drive as odometry has it.
+        drive: each segment with its ground truth, in the world frame.
+        odometry: of the whole drive.
     Raises:
         OSError: the file cannot be written.
     """

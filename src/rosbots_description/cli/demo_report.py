@@ -1,4 +1,4 @@
-"""What the demo measured, as numbers and as a table. Poses are in the world frame."""
+"""Measurements of the demo, as numbers and as a table. Poses are in the world frame."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 from ..ros_api.clients.planar_sample import PlanarSample
 
-# What the robot's plugin is told, against the geometry it drives [m].
+# Actual geometry, and that configured in the robot's plugin [m].
 _WHEEL_RADIUS, _WHEEL_RADIUS_TOLD = 0.23, 0.26
 _TRACK, _TRACK_TOLD = 0.88, 1.1
 
-#: Ground speed by commanded speed of a robot that does not slip.
+#: Ratio of ground speed to commanded speed without slip.
 SPEED_RATIO = _WHEEL_RADIUS / _WHEEL_RADIUS_TOLD
-#: Turn rate by commanded turn rate of a robot that does not slip.
+#: Ratio of turn rate to commanded turn rate without slip.
 TURN_RATIO = SPEED_RATIO * _TRACK_TOLD / _TRACK
 
 SETTLING = 1.0  # [s] simulated; the ramp to 0.5 m/s takes 0.46 s, the one to 1 rad/s 0.5 s
@@ -28,7 +28,7 @@ _TURN_TOLERANCE = 0.12  # [rad/s]
 
 @dataclass(frozen=True)
 class Segment:
-    """One part of the drive: a command that stands for some time."""
+    """One part of the drive: a constant command for some time."""
 
     name: str
     speed: float  # [m/s] along the robot's x, as commanded
@@ -46,15 +46,15 @@ DRIVE = (
 
 @dataclass(frozen=True)
 class MeanMotion:
-    """Mean velocity in the frame of what moves."""
+    """Mean velocity in the robot's frame."""
 
-    speed: float  # [m/s] along its x
+    speed: float  # [m/s] along x
     turn_rate: float  # [rad/s] counter-clockwise
 
 
 @dataclass(frozen=True)
 class Row:
-    """A segment of the drive and what came of it."""
+    """A segment of the drive and its measured motion."""
 
     segment: Segment
     odometry: MeanMotion
@@ -83,18 +83,18 @@ def steady_motion(samples: Sequence[PlanarSample]) -> MeanMotion:
 
 
 def real_time_factor(samples: Sequence[PlanarSample]) -> float:
-    """Return simulated time by wall time over the samples (two or more)."""
+    """Return the ratio of simulated to wall time over the samples (two or more)."""
     first, last = samples[0], samples[-1]
     return (last.stamp - first.stamp) / (last.wall - first.wall)
 
 
 def expected_motion(segment: Segment) -> MeanMotion:
-    """Return the velocity of the real geometry without slip."""
+    """Return the velocity for the actual geometry without slip."""
     return MeanMotion(SPEED_RATIO * segment.speed, TURN_RATIO * segment.turn_rate)
 
 
 def complaint(row: Row) -> str | None:
-    """Return a sentence when the robot did not move as commanded, else None."""
+    """Return a sentence if the robot did not move as commanded, else None."""
     expected, truth = expected_motion(row.segment), row.truth
     if (abs(truth.speed - expected.speed) <= _SPEED_TOLERANCE
             and abs(truth.turn_rate - expected.turn_rate) <= _TURN_TOLERANCE):
@@ -123,5 +123,5 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def _rounded(value: float) -> float:
-    """Round to the digits of the table, without its minus zero."""
+    """Round to the digits of the table, without a negative zero."""
     return round(value, 3) + 0.0

@@ -1,4 +1,4 @@
-"""Front end of the executable gazebo: the server and, as long as it is open, a window onto it."""
+"""Front end of the executable gazebo, which runs gzserver and gzclient."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from types import FrameType
 
 from .gzclient import display_works
 
-_POLL = 0.1  # [s] between two looks at the children
-_GRACE = 5.0  # [s] for a child to end after being asked
+_POLL = 0.1  # [s] between polls of the child processes
+_GRACE = 5.0  # [s] for a child to end after a signal
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run gzserver and gzclient, which lie beside this executable, until either ends.
+    """Run gzserver and gzclient, from the folder of this executable, until either ends.
 
     The server gets the whole command line, the client only --verbose. Without a display the server
     runs alone.
@@ -27,19 +27,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     folder = Path(sys.argv[0]).absolute().parent
-    # Noted rather than raised, so that no child started just then is left behind. roslaunch and
-    # kill send to us alone; a terminal's Ctrl-C goes to the children as well.
+    # Recorded, not raised: an exception while a child starts could leave it behind. roslaunch and
+    # kill signal this process only; Ctrl-C in a terminal signals the children as well.
     told: list[int] = []
     _on_signals(lambda number, _frame: told.append(number))
     server = subprocess.Popen([sys.executable, folder / 'gzserver', *arguments])
     try:
         client = subprocess.Popen([sys.executable, folder / 'gzclient',
                                    *(word for word in arguments if word == '--verbose')])
-        headless = not display_works()  # the client says so and ends at once; the server stays
+        headless = not display_works()  # then the client ends at once, and the server continues
         while not told and server.poll() is None and (headless or client.poll() is None):
             time.sleep(_POLL)
-        _on_signals(signal.default_int_handler)  # whoever asks again does not want to wait
-        _end(client, signal.SIGTERM)  # quiet even in a Python that has not begun yet
+        _on_signals(signal.default_int_handler)  # a second signal ends the wait
+        _end(client, signal.SIGTERM)  # SIGINT could cause a traceback while Python starts
     finally:
         _end(server, signal.SIGINT)
     return server.returncode
@@ -51,7 +51,7 @@ def _on_signals(react: Callable[[int, FrameType | None], object]) -> None:
 
 
 def _end(child: subprocess.Popen, number: signal.Signals) -> None:
-    """Ask a child to end; insist after a while."""
+    """Signal a child to end; kill it after a timeout."""
     if child.poll() is None:
         child.send_signal(number)
     try:

@@ -1,4 +1,4 @@
-"""The window onto the world: RViz, with a config that shows what the simulator shows."""
+"""Front end of the executable gzclient: RViz, configured to show the simulated world."""
 
 import argparse
 import contextlib
@@ -16,13 +16,13 @@ from pathlib import Path
 
 from .gzserver import split_remappings
 
-# The window shows the world as the simulator has it, whatever TF says of the robots in it.
+# The window shows poses from the simulator, independent of /tf.
 _PR_SET_PDEATHSIG = 1  # of prctl(2)
-PERIOD = 1.0  # time between two looks after the simulator [s]
-# Debian's RViz 1.14 now and then overwrites its own heap while it opens its window, without a
-# graphics card in one start of 28. Later the cause is another one, and would only come again.
+PERIOD = 1.0  # time between polls of the simulator [s]
+# Debian's RViz 1.14 sometimes corrupts its heap while it opens its window: without a graphics card
+# in one of 28 starts. Later crashes have other causes and would recur, so they are not retried.
 STARTS = 4  # at most
-OPENS = 30.0  # time within which a crash is one of the start [s]
+OPENS = 30.0  # time within which a crash counts as one of the start [s]
 CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGBUS}
 OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 
@@ -38,7 +38,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def display_works() -> bool:
-    """Tell whether an X server can be reached; RViz would abort where there is none."""
+    """Tell whether an X server can be reached; without one RViz would abort."""
     if not os.environ.get('DISPLAY'):
         return False
     library = ctypes.util.find_library('X11')
@@ -54,12 +54,12 @@ def display_works() -> bool:
 
 
 def config_file() -> Path:
-    """Return the layout of the window, which lies beside the code wherever that is installed."""
+    """Return the path of RViz's config, which is installed with the code."""
     return Path(__file__).resolve().parents[1] / 'config' / 'gzclient.rviz'
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Open the window and look after the simulator; return RViz's exit code, or what kept it."""
+    """Open the window and monitor the simulator; return RViz's exit code, 0 without a display."""
     own, remappings = split_remappings(sys.argv[1:] if arguments is None else arguments)
     _, unknown = parser().parse_known_args(own)
     if unknown:
@@ -78,10 +78,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
-    """Return the environment in which RViz and Qt say only what somebody should read."""
+    """Return an environment in which RViz and Qt log only relevant messages."""
     made = {'ROSCONSOLE_CONFIG_FILE': str(log_levels), **given}
     if not made.get('XDG_RUNTIME_DIR'):
-        with contextlib.suppress(OSError):  # then Qt says what it makes of it
+        with contextlib.suppress(OSError):  # then Qt prints a warning
             folder = Path(tempfile.gettempdir(), f'rosbots-runtime-{os.getuid()}')
             folder.mkdir(mode=0o700, exist_ok=True)
             made['XDG_RUNTIME_DIR'] = str(folder)
@@ -89,14 +89,14 @@ def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
 
 
 def _another_name(remappings: Sequence[str]) -> list[str]:
-    """Return what gives this window a name of its own, if an open one has that it would get.
+    """Return a remapping to a unique name if another window already has this one's name.
 
-    The ROS master would close that one: it allows one node per name.
+    The ROS master would shut the other window down: it allows one node per name.
     """
     from ..ros_api.transport import NO_MASTER, holder, node_name
 
     if not any(word.startswith('__name:=') for word in remappings):
-        return []  # RViz makes up a name that nobody has
+        return []  # RViz generates a unique name
     name = node_name('rviz', remappings)
     with contextlib.suppress(*NO_MASTER):
         if holder(name):
@@ -107,13 +107,13 @@ def _another_name(remappings: Sequence[str]) -> list[str]:
 
 
 def _end_with_parent() -> None:
-    """Let the kernel end this process when its parent is killed and cannot."""
+    """Let the kernel signal this process when its parent is killed."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
 
 
 def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
-    """Run the window until it is closed, and say there and here when the simulator has gone."""
-    from ..ros_api.clients.server_watch import ServerWatch  # only a window needs it
+    """Run the window until it is closed, and report when the simulator has gone."""
+    from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
 
     told: list[int | None] = []
     window: subprocess.Popen | None = None
@@ -121,7 +121,7 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     def end(number: int | None = None, _frame: object = None) -> None:
         told.append(number)
         if window is not None:
-            window.send_signal(signal.SIGINT)  # at which RViz takes leave of the master
+            window.send_signal(signal.SIGINT)  # RViz then unregisters from the master
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
@@ -129,9 +129,9 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     for left in reversed(range(STARTS)):
         started = time.monotonic()
         window = subprocess.Popen(command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  it only calls the kernel
-        if told:  # meanwhile
+        if told:  # a signal arrived during the start
             end()
-        while window.poll() is None and not told:  # then it says no more of the simulator
+        while window.poll() is None and not told:  # no reports while shutting down
             watch.look()
             with contextlib.suppress(subprocess.TimeoutExpired):
                 window.wait(PERIOD)
@@ -142,11 +142,11 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
             break
         _say(f'RViz crashed as it opened ({signal.Signals(-code).name}); '
              + ('restarting it' if left else f'no window after {STARTS} starts'))
-    return code if code >= 0 else 128 - code  # as shells tell of a signal
+    return code if code >= 0 else 128 - code  # 128 + signal, as in shells
 
 
 def _teller() -> Callable[[bool], None]:
-    """Return what tells, here and in the scene, whether there is a simulator."""
+    """Return the callback that reports, here and in the scene, whether there is a simulator."""
     from ..ros_api.clients.server_watch import NOTICE, Notice
 
     notice = Notice()

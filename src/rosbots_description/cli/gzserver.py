@@ -1,4 +1,4 @@
-"""The simulator's command line, as Gazebo's gzserver has it."""
+"""The simulator's command line, compatible with Gazebo's gzserver."""
 
 import argparse
 import gc
@@ -14,7 +14,7 @@ from ..sim.core import SimError
 EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'
 _VERSION = "gzserver of rosbots_description: Gazebo 11's ROS interface, by PyBullet"
-# What to install for a module that is missing, as requirements.txt has it.
+# Requirement to install for a missing module, as in requirements.txt.
 _INSTALLED_BY = {
     'pybullet': 'pybullet==3.2.7',
     'collada': 'pycollada==0.9.3',
@@ -87,10 +87,10 @@ def _main(arguments: Sequence[str]) -> int:
                 f'{sys.executable} with: pip install {package}\n'
             )
             return 1
-    # The threads of numpy's library would find nothing to do, and spin for it.
+    # Idle threads of numpy's library would spin.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-    gc.disable()  # modules stay to the end; looking for garbage among them takes time
-    from ..ros_api.node import node  # needs what may be missing
+    gc.disable()  # modules are never freed; collecting during imports costs time
+    from ..ros_api.node import node  # imports the modules checked above
 
     gc.freeze()
     gc.enable()
@@ -104,15 +104,15 @@ def _main(arguments: Sequence[str]) -> int:
 
 
 def _is_installed(module: str) -> bool:
-    """Tell whether a module can be imported, without the time that importing it takes."""
+    """Tell whether a module is installed, without importing it."""
     try:
         return find_spec(module) is not None
-    except ValueError:  # somebody forbids it
+    except ValueError:  # the module is blocked in sys.modules
         return False
 
 
 def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[int, str], ...]:
-    """Return what is to be said about options that do nothing here, each with its log level."""
+    """Return messages on options without effect here, each with its log level."""
     found = []
     if unknown:
         found.append((logging.WARNING, f'unknown options are ignored: {" ".join(unknown)}'))

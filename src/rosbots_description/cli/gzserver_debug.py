@@ -1,4 +1,4 @@
-"""Front end of the executable debug: the server, set up for finding faults."""
+"""Front end of the executable debug: gzserver with faulthandler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Front end of the executable perf: the server under a profiler."""
+"""Front end of the executable perf: gzserver under a profiler."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ LINES = 40  # of the table
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run gzserver, print where the simulating thread spent its time, return the exit code.
+    """Run gzserver, print a profile of the simulation thread, return the exit code.
 
-    The simulation is slower meanwhile. Threads that answer ROS are not in the table.
+    Profiling slows the simulation down. ROS's threads are not included.
     """
     profile = cProfile.Profile()
     try:

@@ -1,4 +1,4 @@
-"""Single keys from a terminal."""
+"""Reads single keys from a terminal."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-_POLL = 0.1  # [s] between two looks at whether to go on
+_POLL = 0.1  # [s] between calls of `go_on`
 
 
 @contextmanager
 def single_keys(fd: int) -> Iterator[None]:
-    """Have the terminal hand over each key at once and unseen, Ctrl-C included; undo it at the end.
+    """Read keys unbuffered, without echo and including Ctrl-C; restore the terminal at the end.
 
-    Output is treated as before, so that lines can be printed as usual.
+    Output processing is unchanged, so that lines can be printed as usual.
     """
     saved = termios.tcgetattr(fd)
     mode = termios.tcgetattr(fd)
@@ -35,11 +35,11 @@ def read_key(fd: int, timeout: float, go_on: Callable[[], bool]) -> str | None:
     Args:
         fd: file descriptor of a terminal in single_keys mode.
         timeout: longest wait for a key [s, wall].
-        go_on: asked every now and then; false ends the wait.
+        go_on: polled; False ends the wait.
     Returns:
-        One character; None when no key came.
+        One character; None if no key was pressed.
     Raises:
-        EOFError: the terminal is gone.
+        EOFError: the terminal was closed.
     """
     end = time.monotonic() + timeout
     while go_on():
@@ -47,10 +47,10 @@ def read_key(fd: int, timeout: float, go_on: Callable[[], bool]) -> str | None:
         if patience < 0.0:
             return None
         if select.select([fd], [], [], patience)[0]:
-            # Unbuffered: keys that came together are read one by one.
+            # Unbuffered: keys that arrive together are read one by one.
             try:
                 byte = os.read(fd, 1)
-            except OSError as error:  # how Linux tells that the other side hung up
+            except OSError as error:  # a hang-up on Linux
                 raise EOFError('the terminal is gone') from error
             if not byte:
                 raise EOFError('the terminal is gone')

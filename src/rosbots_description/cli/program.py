@@ -1,7 +1,7 @@
-"""What each of our programs does first, so that nothing around it can end it with a traceback.
+"""Common start of all programs, which prevents tracebacks from the environment.
 
-File names and texts are UTF-8 whatever the locale says, and standard streams take every text: one
-that is closed, full or whose reader has gone swallows what is written to it.
+File names and texts are UTF-8 in any locale. Standard streams accept any text: output to a stream
+that is closed, full or without a reader is discarded.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, TextIO
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
-INTERRUPTED = 130  # exit code, as shells have it for who was ended by Ctrl-C
+INTERRUPTED = 130  # exit code after Ctrl-C, as in shells
 
 
 def run(main: Callable[[], int]) -> int:
-    """Return `main()`, with surroundings that it can rely on.
+    """Return `main()`, with encoding and standard streams set up.
 
-    Ctrl-C that `main` does not expect, such as while modules are loaded, ends it without a word.
+    Ctrl-C that `main` does not handle, such as during imports, ends the program silently.
     """
     _speak_utf8()
     _take_its_name()
@@ -37,33 +37,33 @@ def run(main: Callable[[], int]) -> int:
 
 
 def _speak_utf8() -> None:
-    """Begin anew in Python's UTF-8 mode where the locale has another encoding.
+    """Restart in Python's UTF-8 mode if the locale has another encoding.
 
-    Python takes that one for the names of files, and it cannot be changed later. Without
-    LC_ALL and with the locale C, Python does this itself.
+    The encoding of file names cannot be changed at run time. In the locale C without LC_ALL, Python
+    uses UTF-8 by itself.
     """
     if sys.getfilesystemencoding() != 'utf-8':
-        os.environ['PYTHONUTF8'] = '1'  # for the programs that this one starts
+        os.environ['PYTHONUTF8'] = '1'  # for child processes
         os.execv(sys.executable, [sys.executable, '-X', 'utf8', *sys.orig_argv[1:]])
 
 
 def _take_its_name() -> None:
-    """Let `killall gzserver` and the like find this program, as they find Gazebo's."""
+    """Set the process name to the script's, so that `killall gzserver` works as with Gazebo."""
     with contextlib.suppress(OSError):
         Path('/proc/self/comm').write_text(Path(sys.argv[0]).name, encoding='utf-8')
 
 
 def _occupy_closed_descriptors() -> None:
-    """Let no file or connection get the number of a standard stream, to which C code prints."""
+    """Reserve the numbers of closed standard streams, to which C code prints."""
     for descriptor in range(3):
         try:
             os.fstat(descriptor)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # gets the lowest number, which is this one
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free number: this one
 
 
 def _patient(stream: TextIO | None) -> TextIO:
-    """Return a stream to the same place that writes line by line and never fails."""
+    """Return a line-buffered stream to the same descriptor whose writes never fail."""
     descriptor = os.open(os.devnull, os.O_WRONLY) if stream is None else stream.fileno()
     return io.TextIOWrapper(
         io.BufferedWriter(_Patient(descriptor, 'w', closefd=False)),
@@ -74,11 +74,11 @@ def _patient(stream: TextIO | None) -> TextIO:
 
 
 class _Patient(io.FileIO):
-    """A file that drops what cannot be written."""
+    """A file that discards what cannot be written."""
 
     def write(self, content: ReadableBuffer) -> int:
         with contextlib.suppress(OSError):
             written = super().write(content)
-            if written is not None:  # else it would have to wait, and somebody has forbidden it
+            if written is not None:  # None: a non-blocking descriptor is full
                 return written
         return memoryview(content).nbytes

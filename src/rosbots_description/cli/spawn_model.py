@@ -1,4 +1,4 @@
-"""Front end of the executable spawn_model: read the command line, hand over to the ROS client."""
+"""Front end of the executable spawn_model: parses the command line, runs the ROS client."""
 
 from __future__ import annotations
 
@@ -65,10 +65,10 @@ def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     Returns:
         The flags by name; positions in m, angles in rad.
     Raises:
-        SystemExit: code 2 with usage on stderr for wrong flags, code 0 for -h.
+        SystemExit: code 2 with usage on stderr for invalid flags, code 0 for -h.
     """
     def plain(text: str) -> str:
-        # argparse takes -1e-3 for a flag, but knows -0.001 for a number.
+        # argparse parses -1e-3 as a flag, but -0.001 as a number.
         return format(Decimal(text), 'f') if _NEGATIVE_WITH_EXPONENT.fullmatch(text) else text
 
     return _parser().parse_args([plain(text) for text in arguments if ':=' not in text])
@@ -83,6 +83,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     flags = parse_arguments(arguments)
-    # Late, so that -h and wrong usage answer at once and without a ROS installation.
+    # Imported late, so that -h and usage errors are fast and need no ROS.
     from ..ros_api.clients import spawn_model
     return spawn_model.run(flags, arguments)

@@ -1,4 +1,4 @@
-"""What the keys of the keyboard teleoperation mean; no terminal and no ROS in here."""
+"""Key bindings of the keyboard teleoperation, independent of terminal and ROS."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 Direction = tuple[int, int, int, int]  # forward, left, up, counter-clockwise; each -1, 0 or 1
 
 STANDSTILL: Direction = (0, 0, 0, 0)
-QUIT = '\x03'  # what Ctrl-C sends in a terminal in raw mode
+QUIT = '\x03'  # Ctrl-C in a terminal in raw mode
 BANNER_EVERY = 15  # speed keys between two banners
 
 MOVES: dict[str, Direction] = {
@@ -56,7 +56,7 @@ Ctrl-C to leave
 
 @dataclass
 class Speeds:
-    """Linear [m/s] and angular [rad/s] speed, with the bounds that speed keys keep to."""
+    """Linear [m/s] and angular [rad/s] speed, with limits for the speed keys."""
 
     linear: float = 0.5
     angular: float = 1.0
@@ -64,7 +64,7 @@ class Speeds:
     angular_limit: float = 1000.0
 
     def scale(self, linear_factor: float, angular_factor: float) -> list[str]:
-        """Scale the speeds up to their bounds; return a line for each bound that is met."""
+        """Scale the speeds up to their limits; return a line for each limit reached."""
         self.linear = min(self.linear_limit, self.linear * linear_factor)
         self.angular = min(self.angular_limit, self.angular * angular_factor)
         lines = []
@@ -91,14 +91,14 @@ class Velocity:
 
 @dataclass
 class Driver:
-    """Turns keys into commands; remembers direction and speeds."""
+    """Converts keys to commands; keeps direction and speeds."""
 
     speeds: Speeds = field(default_factory=Speeds)
     direction: Direction = STANDSTILL
     _speed_keys: int = 0
 
     def press(self, key: str) -> list[str]:
-        """Take in one key; return the lines to show. A key without meaning stops the robot."""
+        """Handle a key; return the lines to show. An unassigned key stops the robot."""
         if key in MOVES:
             self.direction = MOVES[key]
             return []
@@ -112,13 +112,13 @@ class Driver:
         return []
 
     def fall_silent(self) -> bool:
-        """Take in that no key came for a while: stop; return whether the robot was moving."""
+        """Handle the key timeout: stop; return whether the robot was moving."""
         was_moving = self.direction != STANDSTILL
         self.direction = STANDSTILL
         return was_moving
 
     def velocity(self) -> Velocity:
-        """Return the command for the present direction and speeds."""
+        """Return the command for the current direction and speeds."""
         x, y, z, yaw = self.direction
         linear = self.speeds.linear
         return Velocity(x * linear, y * linear, z * linear, yaw * self.speeds.angular)

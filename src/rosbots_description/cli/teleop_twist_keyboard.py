@@ -1,4 +1,4 @@
-"""Front end of teleop_twist_keyboard.py: drive a robot from the keys of a terminal."""
+"""Front end of teleop_twist_keyboard.py: drives a robot by keys of a terminal."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .teleop_keys import BANNER, QUIT, Driver, Speeds
 if TYPE_CHECKING:
     from ..ros_api.clients.velocity_publisher import VelocityPublisher
 
-_LOOK = 0.1  # [s] between two looks for a subscriber
+_LOOK = 0.1  # [s] between polls for a subscriber
 _FIRST_NOTE, _NEXT_NOTE = 2.0, 2.5  # [s] of waiting before the first and between further notes
 
 
@@ -28,7 +28,7 @@ class Settings:
     speed_limit: float = 1000.0  # [m/s]
     turn_limit: float = 1000.0  # [rad/s]
     repeat_rate: float = 0.0  # [Hz]; 0: one message per key
-    key_timeout: float = 0.5  # [s] of silence before the robot is stopped; 0: never
+    key_timeout: float = 0.5  # [s] without a key until the robot is stopped; 0: never
     stamped: bool = False
     frame_id: str = ''
 
@@ -48,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Read keys and publish velocity commands until Ctrl-C.
 
     Returns:
-        Exit code: 0 at the end, 1 when there is no terminal or a parameter is wrong.
+        Exit code: 0 at the end, 1 without a terminal or for an invalid parameter.
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     if not sys.stdin.isatty():
@@ -56,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
               'it with rosrun in a terminal of its own; in a launch file give the node '
               'launch-prefix="xterm -e".', file=sys.stderr)
         return 1
-    # Late, so that the message above needs no ROS.
+    # Imported late, so that the message above needs no ROS.
     from ..ros_api.clients.velocity_publisher import VelocityPublisher
     from ..ros_api.transport import is_running, own_parameters, start_node
     try:
@@ -79,9 +79,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _wait_for_subscriber(publisher: VelocityPublisher, go_on: Callable[[], bool]) -> bool:
-    """Wait until somebody listens; return false if told to end first.
+    """Wait for a subscriber; return False if the node is shut down first.
 
-    In wall time: with use_sim_time and no clock yet, ROS time stands still.
+    In wall time: with use_sim_time and no /clock yet, ROS time is stopped.
     """
     next_note = time.monotonic() + _FIRST_NOTE
     while not publisher.has_subscribers():
@@ -97,7 +97,7 @@ def _wait_for_subscriber(publisher: VelocityPublisher, go_on: Callable[[], bool]
 def _drive(
     settings: Settings, publisher: VelocityPublisher, fd: int, go_on: Callable[[], bool]
 ) -> None:
-    """Turn keys into commands until Ctrl-C, the end of the node or of the terminal."""
+    """Convert keys to commands until Ctrl-C, shutdown of the node or end of the terminal."""
     driver = Driver(Speeds(settings.speed, settings.turn,
                            settings.speed_limit, settings.turn_limit))
 

@@ -1,7 +1,7 @@
-"""The executable xacro: PyPI's xacro 1.13 with what robots made for Noetic's 1.14 need beyond it.
+"""The executable xacro: PyPI's xacro 1.13 with the features of Noetic's 1.14 that robots need.
 
-Noetic's own is on no package index; what ROS 2 has there knows neither rospack nor tags without
-`xacro:`, which older robots have. 1.13 alone cannot read YAML files with a PyYAML of today.
+Noetic's version is on no package index. The ROS 2 version supports neither rospack nor tags without
+`xacro:`, as in older robots. Version 1.13 alone cannot read YAML files with current PyYAML.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ _UNITS = {'!radians': 1.0, '!degrees': math.pi / 180.0, '!meters': 1.0, '!millim
 
 
 def main() -> int:
-    """Expand the file that the command line names; return the exit code."""
-    # The script beside ours is called xacro.py: keep its folder from hiding the module.
+    """Expand the file given on the command line; return the exit code."""
+    # Remove folders with a script xacro.py from the path: it would hide the module.
     sys.path[:] = [p for p in sys.path if not os.path.isfile(os.path.join(p or '.', 'xacro.py'))]
     try:
-        import xacro  # only now can it be found
+        import xacro  # after the path is cleaned
     except ImportError:
         sys.stderr.write(f'xacro: the Python module xacro is missing for {sys.executable}; install '
                          'it with "python3 -m pip install xacro==1.13.3".\n')
         return 1
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(encoding='utf-8')  # as XML is, whatever PYTHONIOENCODING says
+        sys.stdout.reconfigure(encoding='utf-8')  # the encoding of XML, despite PYTHONIOENCODING
     extend(xacro)
     xacro.main()
     return 0
 
 
 def extend(xacro: ModuleType) -> None:
-    """Let the module understand, in place, what expressions and includes may say in Noetic."""
+    """Add Noetic's expressions and includes to the module, in place."""
     for unit, factor in _UNITS.items():
         _Loader.add_constructor(unit, partial(_scaled, xacro, factor))
     load_yaml = partial(_load_yaml, xacro)
@@ -65,7 +65,7 @@ def _scaled(xacro: ModuleType, factor: float, loader: yaml.Loader, node: yaml.No
 
 
 class _Dotted(dict[str, object]):
-    """A mapping that is also read with dots: robot.wheel.radius."""
+    """A mapping with attribute access: robot.wheel.radius."""
 
     def __getattr__(self, name: str) -> object:
         try:
@@ -83,11 +83,11 @@ def _dotted(value: object) -> object:
 
 
 class _Loader(yaml.SafeLoader):
-    """Reads numbers with units as well: !degrees 90."""
+    """A YAML loader that supports units: !degrees 90."""
 
 
 def _load_yaml(xacro: ModuleType, name: str) -> object:
-    """Return what a YAML file holds; a relative name starts where the present file is."""
+    """Return the contents of a YAML file; a relative name starts at the current file's folder."""
     path = xacro.abs_filename_spec(name)
     files = xacro.push_file(path)
     try:
@@ -102,7 +102,7 @@ def _include(
     xacro: ModuleType, include: Callable[..., None], element: Element, macros: object,
     symbols: object, func: object,
 ) -> None:
-    """Include a file, or nothing where it is `optional` and not there."""
+    """Include a file, or nothing if it is `optional` and missing."""
     optional = element.getAttribute('optional')
     if optional:
         element.removeAttribute('optional')

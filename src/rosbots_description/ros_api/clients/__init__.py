@@ -1,4 +1,4 @@
-"""Programs that talk to the simulator, one module each; none loads what only another needs."""
+"""Client programs of the simulator, one module each, imported only where needed."""
 
 __all__ = [
     'demo', 'gazebo_interface', 'joint_follower', 'joint_sliders', 'planar_sample', 'server_watch',

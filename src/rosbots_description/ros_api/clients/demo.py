@@ -1,4 +1,4 @@
-"""The demo's ROS node: it drives the robot and watches where it goes."""
+"""The demo's ROS node, which drives the robot and records its motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ...sim.core import yaw_of
 from ...sim.rendering import EYE, TARGET
 from .planar_sample import PlanarSample
 
-_PERIOD = 0.04  # [s] wall time between two looks; every look asks the simulator
+_PERIOD = 0.04  # [s] wall time between two polls of the simulator
 _ANSWER = 5.0  # [s] wall time in which a running simulator answers
 _SLOWEST = 0.1  # real-time factor below which the demo gives up
 
@@ -31,7 +31,7 @@ def wait_until(condition: Callable[[], bool], timeout: float, what: str,
         what: what is waited for, completes the sentence "gave up waiting for …".
         alive: tells whether waiting still makes sense.
     Raises:
-        TimeoutError: it did not come true in time, or waiting makes no sense any more.
+        TimeoutError: the condition was not met in time, or `alive` returned false.
     """
     deadline = time.monotonic() + timeout
     while not condition():
@@ -43,7 +43,7 @@ def wait_until(condition: Callable[[], bool], timeout: float, what: str,
 
 
 class DemoClient:
-    """Talks to the simulator at /gazebo about one model.
+    """A client of the simulator at /gazebo for one model.
 
     Publishes:
         /part2_cmr/cmd_vel (geometry_msgs/Twist)
@@ -60,7 +60,7 @@ class DemoClient:
             timeout: longest time to wait for both [s, wall].
             alive: tells whether the simulator's process still runs.
         Raises:
-            TimeoutError: they did not come.
+            TimeoutError: one of them did not start in time.
         """
         self._model = model
         wait_until(rosgraph.is_master_online, timeout, 'the ROS master', alive)
@@ -86,11 +86,11 @@ class DemoClient:
         return self._state().success
 
     def height(self) -> float:
-        """Return z of the model's origin in the world [m]; 0 when there is no such model."""
+        """Return z of the model's origin in the world [m]; 0 if there is no such model."""
         return self._state().pose.position.z
 
     def delete(self) -> str:
-        """Delete the model and return the simulator's words.
+        """Delete the model and return the simulator's status message.
 
         Raises:
             ConnectionError: the simulator refused or did not answer.
@@ -104,10 +104,10 @@ class DemoClient:
         return response.status_message
 
     def wait_for_plugin(self) -> None:
-        """Wait until the robot listens to commands and reports odometry.
+        """Wait until the robot subscribes to commands and publishes odometry.
 
         Raises:
-            TimeoutError: it does not.
+            TimeoutError: it does not in time.
         """
         self._odometry.clear()
         wait_until(lambda: self._command.get_num_connections() > 0 and bool(self._odometry),
@@ -115,16 +115,16 @@ class DemoClient:
 
     def drive(self, speed: float, turn_rate: float, duration: float) \
             -> tuple[list[PlanarSample], list[PlanarSample]]:
-        """Command a velocity and watch.
+        """Command a velocity and record the motion.
 
         Args:
             speed: along the robot's x [m/s].
             turn_rate: counter-clockwise [rad/s].
             duration: how long [s, simulated].
         Returns:
-            The samples of ground truth and of odometry, world frame, oldest first.
+            Samples of ground truth and of odometry, in the world frame, oldest first.
         Raises:
-            TimeoutError: simulated time stands still or crawls.
+            TimeoutError: simulated time is stopped or too slow.
             ConnectionError: the model or the simulator has gone.
         """
         command = Twist()
@@ -144,10 +144,10 @@ class DemoClient:
         return truth, list(self._odometry)
 
     def look_at_robot(self) -> np.ndarray:
-        """Return the robot as the simulator's own camera sees it: (height, width, 3) RGB bytes.
+        """Return an overview picture of the robot: (height, width, 3) RGB bytes.
 
         Raises:
-            TimeoutError: no picture came.
+            TimeoutError: no picture arrived.
         """
         robot = self._state().pose.position
         for name, point in (('eye', EYE), ('target', TARGET)):
@@ -163,7 +163,7 @@ class DemoClient:
         return np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3)
 
     def close(self) -> None:
-        """Take the node off the master."""
+        """Shut the node down."""
         rospy.signal_shutdown('the demo is over')
 
 

@@ -1,7 +1,7 @@
 """Client side of Gazebo's services: spawn a model, set its joints.
 
 Names, arguments, log lines and results are those of the module ``gazebo_ros.gazebo_interface``,
-under which other people's scripts import these functions.
+from which existing scripts import these functions.
 """
 
 
@@ -19,7 +19,7 @@ from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
 from genpy import Message
 from geometry_msgs.msg import Pose
 
-_POLL = 0.05  # [s] wall time between two looks at the shutdown flag
+_POLL = 0.05  # [s] wall time between polls of the shutdown flag
 
 Result = TypeVar('Result')
 
@@ -27,14 +27,14 @@ Result = TypeVar('Result')
 def interruptibly(function: Callable[[], Result], patience: float = math.inf) -> Result:
     """Return function(), but stop waiting for it when the node is shut down.
 
-    rospy sits in a socket while a service works and does not hear Ctrl-C there. So the function
-    runs in a thread of its own that may be left behind.
+    rospy blocks in a socket during a service call and does not react to Ctrl-C. So the function
+    runs on a separate thread, which may be abandoned.
 
     Args:
         patience: longest time to wait [s, wall].
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
-        rospy.ROSException: patience ran out.
+        rospy.ROSException: `patience` has passed.
         Exception: whatever the function raises.
     """
     outcome: Future[Result] = Future()
@@ -42,7 +42,7 @@ def interruptibly(function: Callable[[], Result], patience: float = math.inf) ->
     def run() -> None:
         try:
             outcome.set_result(function())
-        except Exception as error:  # handed on to the caller's thread below
+        except Exception as error:  # raised on the caller's thread below
             outcome.set_exception(error)
 
     threading.Thread(target=run, daemon=True).start()
@@ -89,10 +89,10 @@ def _spawn(service: str, *, model_name: str, model_xml: str, robot_namespace: st
 def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
                            initial_pose: Pose, reference_frame: str,
                            gazebo_namespace: str) -> bool | None:
-    """Put a model given as SDF into the world; wait without limit for the simulator.
+    """Spawn a model given as SDF; wait for the simulator without a time limit.
 
     Args:
-        robot_namespace: namespace for those of the model's plugins that name none themselves.
+        robot_namespace: namespace for the model's plugins that do not set one themselves.
         initial_pose: pose [m, quaternion x y z w] in reference_frame.
         reference_frame: name of an entity; empty, 'world' or 'map' for the world frame.
         gazebo_namespace: namespace of the simulator's services, usually '/gazebo'.
@@ -109,7 +109,7 @@ def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str
 def spawn_urdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
                             initial_pose: Pose, reference_frame: str,
                             gazebo_namespace: str) -> bool | None:
-    """Put a model given as URDF into the world; else as spawn_sdf_model_client."""
+    """Spawn a model given as URDF; otherwise like spawn_sdf_model_client."""
     return _spawn(gazebo_namespace + '/spawn_urdf_model', model_name=model_name,
                   model_xml=model_xml, robot_namespace=robot_namespace,
                   initial_pose=initial_pose, reference_frame=reference_frame)
@@ -118,7 +118,7 @@ def spawn_urdf_model_client(model_name: str, model_xml: str, robot_namespace: st
 def set_model_configuration_client(model_name: str, model_param_name: str,
                                    joint_names: Sequence[str], joint_positions: Sequence[float],
                                    gazebo_namespace: str) -> bool | None:
-    """Set joint positions [rad or m] of a model at once; wait without limit for the simulator.
+    """Set joint positions [rad or m] of a model; wait for the simulator without a time limit.
 
     Args:
         model_param_name: passed on; simulators do not use it.

@@ -1,10 +1,10 @@
-"""Debian's joint_state_publisher, which passes on what others say of the joints.
+"""Debian's joint_state_publisher, with the joint states of other nodes as its source.
 
-By itself it says that all of them stand at zero, also beside a simulator that turns them, so that
-the wheels in RViz jump to and fro between both.
+By itself it publishes zero for all joints, even if a simulator publishes their positions, so that
+the wheels in RViz jump between both.
 
 Subscribes:
-    joint_states (sensor_msgs/JointState): those of other nodes, unless ~source_list says what else.
+    joint_states (sensor_msgs/JointState): those of other nodes, unless ~source_list is set.
 Publishes:
     joint_states (sensor_msgs/JointState) and parameters: as joint_state_publisher has them.
 """
@@ -22,7 +22,7 @@ NAME = 'joint_state_publisher'
 
 
 def main() -> int:
-    """Publish until told to end; return an exit code."""
+    """Publish until shutdown; return an exit code."""
     rospy.init_node(NAME)
     try:
         joints = JointStatePublisher()

@@ -1,7 +1,7 @@
-"""A window with a slider for each joint: Debian's, with sliders that take any number.
+"""Debian's joint_state_publisher_gui, with sliders that round their values.
 
-Debian 12's joint_state_publisher_gui hands its sliders fractions, which a QSlider refuses under
-Python 3.10 and later, so that its own program ends at once.
+The version of Debian 12 passes floats to its sliders, which QSlider rejects under Python 3.10 and
+later, so that the program ends at once.
 
 Publishes:
     joint_states (sensor_msgs/JointState) and parameters: as joint_state_publisher has them.
@@ -20,17 +20,17 @@ NAME = 'joint_state_publisher_gui'
 
 
 class RoundingSlider(QSlider):
-    """A slider that goes to the nearest of its values."""
+    """A slider that accepts floats."""
 
     def setValue(self, value: float) -> None:  # noqa: N802  Qt's name
-        """Go to the nearest value."""
+        """Set the nearest integer."""
         super().setValue(round(value))
 
 
 def main() -> int:
     """Show the window until it is closed; return an exit code."""
     rospy.init_node(NAME)
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # while Qt waits, Python hears of none
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Python's handlers do not run in Qt's event loop
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     app = QApplication(sys.argv)
     window.QSlider = RoundingSlider

@@ -1,4 +1,4 @@
-"""The XML of a model: read it, check that it is XML, bring it into the form that is sent."""
+"""Reads the XML of a model, checks that it is well-formed, and normalises it for sending."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MESH_IN_PACKAGE = re.compile(r'(<mesh\b[^<>]*\bfilename\s*=\s*["\'])package://'
 
 
 class SourceError(Exception):
-    """The XML cannot be had; the text is a sentence for the user."""
+    """The XML cannot be read; the message is for the user."""
 
 
 class MissingFileError(SourceError):
@@ -25,7 +25,7 @@ def read_file(name: str) -> bytes:
 
     Raises:
         MissingFileError: there is no such file.
-        SourceError: it is unreadable or empty.
+        SourceError: the file is unreadable or empty.
     """
     path = Path(name)
     if not path.exists():
@@ -42,9 +42,9 @@ def read_file(name: str) -> bytes:
 
 
 def canonical_xml(text: bytes | str, package_to_model: bool = False) -> str:
-    """Return the XML as ASCII without declaration and comments, every element in its own line.
+    """Return the XML as ASCII without declaration and comments, with each element on its line.
 
-    What is said about a line of it is so true of the file, and tags keep the prefix they have.
+    So line numbers in messages are those of the file. Tags keep their prefixes.
 
     Args:
         package_to_model: turn ``package://`` of mesh file names into ``model://``.
@@ -55,10 +55,10 @@ def canonical_xml(text: bytes | str, package_to_model: bool = False) -> str:
         document = plain_text(text, 'the XML')
         _check(document)
         if '<!DOCTYPE' in document or not (document.isascii() or '<![CDATA[' not in document):
-            # Entities stay behind with the document type, and references mean nothing in CDATA.
+            # Entities need the document type, and CDATA cannot hold character references.
             document = ElementTree.tostring(ElementTree.fromstring(document)).decode('ascii')
     except (ElementTree.ParseError, expat.ExpatError, ValueError, LookupError) as error:
-        # LookupError and ValueError: an encoding that Python does not know.
+        # LookupError and ValueError: an encoding unknown to Python.
         raise SourceError(f'Invalid XML: {error}') from error
     if package_to_model:
         document = _MESH_IN_PACKAGE.sub(r'\1model://', document)
@@ -66,5 +66,5 @@ def canonical_xml(text: bytes | str, package_to_model: bool = False) -> str:
 
 
 def _check(document: str) -> None:
-    """Raise ExpatError where a text is not well-formed; prefixes need no declaration."""
+    """Raise ExpatError if a text is not well-formed; prefixes need no declaration."""
     expat.ParserCreate('utf-8').Parse(document.encode(), True)

@@ -1,14 +1,14 @@
-"""Where something was at one moment; free of ROS, so that measurements can be worked on without."""
+"""A sample of planar motion; without ROS, so that reports can use it without ROS."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class PlanarSample:
-    """Position and heading in the plane of the ground, world frame, at one moment."""
+    """Position and yaw in the ground plane at one time, in the world frame."""
 
     stamp: float  # [s] simulated
-    wall: float  # [s] monotonic clock of the machine
+    wall: float  # [s] monotonic clock
     x: float  # [m]
     y: float  # [m]
     yaw: float  # [rad] counter-clockwise

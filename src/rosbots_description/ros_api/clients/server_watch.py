@@ -1,4 +1,4 @@
-"""Watch the simulator from its window, and show a notice when it is gone.
+"""Monitors the simulator for gzclient, and shows a notice when it is gone.
 
 Publishes:
     gazebo/view/markers (visualization_msgs/MarkerArray, latched): the notice, once the simulator
@@ -17,30 +17,29 @@ from ..transport import node_address
 if TYPE_CHECKING:
     import rospy
 
-TIMEOUT = 2.0  # for the simulator to take a connection [s, wall]
+TIMEOUT = 2.0  # for the simulator to accept a connection [s, wall]
 NOTICE = 'the simulator has gone'
 NODE = 'gazebo'
 MARKERS_TOPIC = 'gazebo/view/markers'
 
 
 class ServerWatch:
-    """Looks after the simulator; asks nothing of it but to take a connection."""
+    """Monitors the simulator by opening connections to it."""
 
     def __init__(self, tell: Callable[[bool], None], node: str = NODE) -> None:
-        """Begin to watch.
+        """Start in the state unknown.
 
         Args:
-            tell: called with False when a simulator that was there has gone, and with True when
-                one is there again.
-            node: the simulator's name, as in this program's namespace.
+            tell: called with False when the simulator has gone, and with True when it is back.
+            node: the simulator's name, relative to this program's namespace.
         """
         self._tell = tell
         self._node = resolve_name(node, make_caller_id('gzclient'))
-        self._address: str | None = None  # where it was seen last
-        self._there: bool | None = None  # None: it has not been seen yet
+        self._address: str | None = None  # last known XML-RPC address
+        self._there: bool | None = None  # None: not seen yet
 
     def look(self) -> None:
-        """Look once, and tell if it has changed."""
+        """Poll once, and report a change."""
         there, before = self._is_there(), self._there
         if there == before or not (there or before):
             return
@@ -51,7 +50,7 @@ class ServerWatch:
     def _is_there(self) -> bool:
         if self._address is not None and _takes_connections(self._address):
             return True
-        # One that was killed is still in the master's table.
+        # A killed simulator is still registered with the master.
         self._address = node_address(self._node, '/gzclient')
         return self._address is not None and _takes_connections(self._address)
 
@@ -66,14 +65,14 @@ def _takes_connections(address: str) -> bool:
 
 
 class Notice:
-    """A text in the scene, shown by a node that lives from the first time it is needed."""
+    """A text in the scene, published by a node that is started on demand."""
 
     def __init__(self) -> None:
         self._publisher: rospy.Publisher | None = None
 
     def show(self) -> None:
-        """Write that the simulator has gone where its models were."""
-        import rospy  # a window seldom needs it
+        """Show in the scene that the simulator has gone."""
+        import rospy  # seldom needed, slow to import
         from visualization_msgs.msg import MarkerArray
 
         from ..transport import init_node, is_node
@@ -86,7 +85,7 @@ class Notice:
         self._publisher.publish(MarkerArray([notice(NOTICE)]))
 
     def withdraw(self) -> None:
-        """Leave the scene to the simulator that is there again."""
+        """Stop publishing; the simulator that is back clears the scene."""
         if self._publisher is not None:
             self._publisher.unregister()
             self._publisher = None

@@ -1,4 +1,4 @@
-"""The work of the executable spawn_model: fetch the XML, have it spawned, do the extras."""
+"""The executable spawn_model: reads the XML, spawns the model, and handles further flags."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ from .model_source import MissingFileError, SourceError, canonical_xml, read_fil
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 
-_SETTLE = 1.0  # [s] wall time that a simulator may need between its answer and the model's joints
-# As Gazebo's client asks for it; the server looks along its model path, and nowhere else.
+_SETTLE = 1.0  # [s] wall time for the joints to appear after the simulator's answer
+# As sent by Gazebo's client; the server searches its model path only.
 _DATABASE = ('<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
              '</world></sdf>')
-_LISTED = 12  # parts a model stands without that are named one by one
-_LAST_WORD = 1.5  # [s] wall time for the deletion at the end; Ctrl-C has to end us within 2 s
+_LISTED = 12  # omissions that are listed by name
+_LAST_WORD = 1.5  # [s] wall time for the deletion at the end, within the 2 s that Ctrl-C may take
 
 
 def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
-    """Spawn a model as spawn_model's flags say.
+    """Spawn a model according to spawn_model's flags.
 
     Args:
         flags: see cli.spawn_model; positions in m, angles in rad.
@@ -51,12 +51,12 @@ def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
         <gazebo_namespace>/model_states (gazebo_msgs/ModelStates)
     Calls:
         <gazebo_namespace>/spawn_urdf_model or spawn_sdf_model, set_model_configuration (-J),
-        unpause_physics (-unpause), delete_model (-b); get_model_omissions where there is one
+        unpause_physics (-unpause), delete_model (-b); get_model_omissions if available
     """
     try:
         start_node('spawn_model', arguments, anonymous=True)
         if flags.wait and not _wait_for_model(flags.wait, flags.gazebo_namespace):
-            return DONE  # as Gazebo's client: being stopped here counts as a clean end
+            return DONE  # as Gazebo's client: a shutdown here is no failure
         joints = _joint_positions(flags.joints)
         xml = canonical_xml(_fetch(flags), flags.package_to_model)
         return _spawn(flags, xml, joints)
@@ -66,7 +66,7 @@ def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
     except SourceError as error:
         rospy.logerr('%s', error)
         return FAILED
-    except AddressError as error:  # there is no node yet that could log it
+    except AddressError as error:  # without a node, it cannot be logged
         sys.stderr.write(f'spawn_model: {error}\n')
         return FAILED
     except (rospy.ROSInterruptException, KeyboardInterrupt):
@@ -74,7 +74,7 @@ def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _wait_for_model(name: str, gazebo_namespace: str) -> bool:
-    """Return true once the model is there, false when the node is shut down first."""
+    """Return True once the model exists, False if the node is shut down first."""
     rospy.loginfo('Waiting for model %s before proceeding.', name)
     there = threading.Event()
 
@@ -83,7 +83,7 @@ def _wait_for_model(name: str, gazebo_namespace: str) -> bool:
             there.set()
 
     subscriber = rospy.Subscriber(gazebo_namespace + '/model_states', ModelStates, look)
-    # Wall time: simulated time may stand still.
+    # Wall time: simulated time may be stopped.
     while not there.wait(0.1):
         if rospy.is_shutdown():
             return False
@@ -92,7 +92,7 @@ def _wait_for_model(name: str, gazebo_namespace: str) -> bool:
 
 
 def _joint_positions(pairs: list[list[str]]) -> dict[str, float]:
-    """Return joint name -> position [rad or m] from the texts after -J."""
+    """Return joint positions [rad or m] by name from the arguments of -J."""
     joints = {}
     for name, text in pairs:
         try:
@@ -105,7 +105,7 @@ def _joint_positions(pairs: list[list[str]]) -> dict[str, float]:
 
 
 def _fetch(flags: argparse.Namespace) -> bytes | str:
-    """Return the XML from the source that the flags name."""
+    """Return the XML from the source given by the flags."""
     if flags.file is not None:
         rospy.loginfo('Loading model XML from file %s', flags.file)
         return read_file(flags.file)
@@ -160,9 +160,9 @@ def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int
 
 
 def _tell_omissions(model: str, gazebo_namespace: str) -> None:
-    """Log what the simulator left out of the model, if it is one that can tell.
+    """Log what the simulator left out of the model, if it has a service for that.
 
-    Gazebo has no such service, so whatever fails here is nobody's business.
+    Gazebo has no such service, so errors are ignored.
     """
     service = rospy.resolve_name(gazebo_namespace + '/get_model_omissions')
     with contextlib.suppress(rospy.ServiceException, rospy.ROSException):
@@ -194,7 +194,7 @@ def _unpause(gazebo_namespace: str) -> bool:
 
 
 def _delete(name: str, gazebo_namespace: str) -> None:
-    """Delete the model in rospy's shutdown, where services can still be called."""
+    """Delete the model during rospy's shutdown, when services can still be called."""
     rospy.loginfo('Deleting model %s', name)
     delete = rospy.ServiceProxy(gazebo_namespace + '/delete_model', DeleteModel)
     try:

@@ -1,4 +1,4 @@
-"""Publishes velocity commands, with repetition if wanted."""
+"""Publishes velocity commands, optionally repeated."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import time
 import rospy
 from geometry_msgs.msg import Twist, TwistStamped
 
-_BREATH = 0.05  # [s] wall time for a message to leave: the queue holds only one
+_BREATH = 0.05  # [s] wall time to send a message: the queue holds only one
 
 
 class VelocityPublisher:
@@ -24,12 +24,12 @@ class VelocityPublisher:
         Args:
             frame_id: frame of stamped commands.
             repeat_rate: [Hz, wall]; 0 means no repetition. Repetition starts at once, with
-                zeros, so that the robot hears from its driver from the beginning.
+                zeros, so that the robot gets commands from the beginning.
         """
         self._stamped = stamped
         self._frame_id = frame_id
         self._twist = Twist()
-        self._sent = 0  # commands so far; tells the repeater that it need not repeat
+        self._sent = 0  # number of commands, to detect that no repetition is needed
         self._ended = False
         self._changed = threading.Condition()
         self._publisher = rospy.Publisher('cmd_vel', TwistStamped if stamped else Twist,
@@ -44,7 +44,7 @@ class VelocityPublisher:
         return self._publisher.name
 
     def has_subscribers(self) -> bool:
-        """Tell whether anybody listens."""
+        """Tell whether the topic has subscribers."""
         return self._publisher.get_num_connections() > 0
 
     def send(self, linear: tuple[float, float, float], angular: float) -> None:
@@ -60,9 +60,9 @@ class VelocityPublisher:
             self._changed.notify()
 
     def end(self) -> None:
-        """Stop the robot, twice as the original does, and send nothing more.
+        """Stop the robot, with two messages as the original, and send nothing more.
 
-        rospy calls this too when the node is shut down from outside, while it can still publish.
+        rospy calls this on shutdown, too, while publishing is still possible.
         """
         for _ in range(0 if self._ended else 2):
             self.send((0.0, 0.0, 0.0), 0.0)
@@ -80,7 +80,7 @@ class VelocityPublisher:
         self._publisher.publish(message)
 
     def _repeat(self, period: float) -> None:
-        """Publish the last command whenever none was sent for a period [s, wall]."""
+        """Publish the last command again after each period [s, wall] without a new one."""
         with self._changed:
             while not self._ended and not rospy.is_shutdown():
                 sent = self._sent

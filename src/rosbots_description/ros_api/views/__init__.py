@@ -1,3 +1,3 @@
-"""What people look at: markers and frames for RViz, and overview pictures."""
+"""Visualisation: markers and frames for RViz, and overview pictures."""
 
 __all__ = ['frames', 'markers', 'overview_picture', 'visuals']

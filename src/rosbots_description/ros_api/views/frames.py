@@ -1,9 +1,9 @@
-"""The poses of the models, for a view that follows one of them.
+"""Frames of the models, for a view that follows a model.
 
 Publishes:
     ~view/frames (tf2_msgs/TFMessage, as on /tf_static): world to each model, named as the model;
-        all of them for a new subscriber, then those that moved. The window uses no other frames,
-        because on /tf a robot may have two parents, or none, and stamps that jump back.
+        all of them for a new subscriber, then those that moved. gzclient uses no other frames,
+        since on /tf a robot may have two parents or none, and stamps may jump back.
 """
 
 import rospy
@@ -19,18 +19,18 @@ from .visuals import PERIOD, Viewers
 
 
 class ShownFrames:
-    """Where the models were shown last; each look tells which have moved."""
+    """Poses of the models as last published, to find those that moved."""
 
     def __init__(self, world: World) -> None:
         self._world = world
         self._shown: dict[str, Pose] = {}
 
     def begin(self) -> None:
-        """Show all at the next look."""
+        """Publish all frames next time."""
         self._shown.clear()
 
     def look(self) -> list[TransformStamped]:
-        """Return the frames of the models that moved since the last look."""
+        """Return the frames of the models that moved since the last call."""
         poses = {name: model.pose for name, model in self._world.models.items()}
         moved = [_transform(name, pose) for name, pose in poses.items()
                  if self._shown.get(name) != pose]
@@ -46,7 +46,7 @@ def _transform(name: str, pose: Pose) -> TransformStamped:
 
 
 def advertise_frames(server: Server) -> None:
-    """Offer the frames and keep them up to date by wall time, so also while paused."""
+    """Advertise the frames and update them in wall time, also while paused."""
     shown = ShownFrames(server.world)
     publisher = rospy.Publisher('~view/frames', TFMessage, Viewers(server, shown), queue_size=10)
 

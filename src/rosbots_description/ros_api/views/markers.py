@@ -1,4 +1,4 @@
-"""Visuals as markers that RViz shows: one marker per visual, posed in the frame `world`."""
+"""Visuals as RViz markers: one marker per visual, in the frame `world`."""
 
 from pathlib import Path
 
@@ -13,10 +13,10 @@ from ..messages import fill_pose
 FRAME = 'world'
 # Two triangles, counter-clockwise seen from above.
 _UNIT_SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
-NOTICE_HEIGHT, NOTICE_SIZE = 1.5, 0.4  # [m] of a notice: its middle, and a capital letter
-# Ground is shown in a darker grey than it has, so that what stands on it is seen.
+NOTICE_HEIGHT, NOTICE_SIZE = 1.5, 0.4  # [m] of a notice: its centre, and a capital letter
+# Ground is shown in a darker grey than its material, for contrast with models.
 GROUND, GROUND_COLOUR = 'Gazebo/Grey', (0.5, 0.5, 0.5, 1.0)
-PLANE_DEPTH = 0.001  # [m] how deep a plane is drawn, so that a grid at its height stays visible
+PLANE_DEPTH = 0.001  # [m] a plane is drawn lower by this, so that a grid stays visible
 
 
 def visual_marker(namespace: str, number: int, visual: Visual) -> Marker:
@@ -25,25 +25,25 @@ def visual_marker(namespace: str, number: int, visual: Visual) -> Marker:
     marker.header.frame_id = FRAME
     _shape(marker, visual.geometry)
     if isinstance(visual.geometry, Mesh) and visual.material is None:
-        marker.mesh_use_embedded_materials = True  # a colour of zeros leaves them untinted
+        marker.mesh_use_embedded_materials = True  # a zero colour means no tint
     else:
         material = visual.material or Material()
         is_ground = isinstance(visual.geometry, Plane) and material.script == GROUND
         marker.color = ColorRGBA(*(GROUND_COLOUR if is_ground else material.rgba))
-    # RViz lights from the eye, which leaves wide ground dark; points with colours of their own are
-    # drawn as they are.
+    # RViz's light is at the camera, which leaves wide ground dark; points with colours of their own
+    # are drawn without lighting.
     marker.colors = [marker.color] * len(marker.points)
     return marker
 
 
 def use_sunlit(marker: Marker, file: str) -> None:
-    """Let a marker show a file of `SunlitMeshes`, which has the colours in it."""
+    """Let a marker show a file of `SunlitMeshes`, which includes the colours."""
     marker.type, marker.mesh_resource = Marker.MESH_RESOURCE, Path(file).as_uri()
-    marker.mesh_use_embedded_materials, marker.color = True, ColorRGBA()  # zeros: not tinted
+    marker.mesh_use_embedded_materials, marker.color = True, ColorRGBA()  # zero: no tint
 
 
 def place_marker(marker: Marker, link_pose: Pose, visual: Visual) -> None:
-    """Move a marker to where its visual is while its link stands at `link_pose` in the world."""
+    """Set the pose of a marker for its link's pose in the world."""
     pose = compose(link_pose, visual.pose)
     if isinstance(visual.geometry, Plane):
         pose = compose(pose, Pose((0.0, 0.0, -PLANE_DEPTH)))
@@ -51,19 +51,19 @@ def place_marker(marker: Marker, link_pose: Pose, visual: Visual) -> None:
 
 
 def removal(marker: Marker) -> Marker:
-    """Return the marker that takes `marker` away."""
+    """Return the marker that deletes `marker`."""
     return Marker(header=marker.header, ns=marker.ns, id=marker.id, action=Marker.DELETE)
 
 
 def clearance() -> Marker:
-    """Return the marker that takes all markers away."""
+    """Return the marker that deletes all markers."""
     marker = Marker(action=Marker.DELETEALL)
     marker.header.frame_id = FRAME
     return marker
 
 
 def notice(text: str) -> Marker:
-    """Return a text that faces who looks, above the origin."""
+    """Return a text above the origin that faces the camera."""
     marker = Marker(ns='notice', type=Marker.TEXT_VIEW_FACING, action=Marker.ADD, text=text)
     marker.header.frame_id = FRAME
     marker.pose.position.z, marker.pose.orientation.w = NOTICE_HEIGHT, 1.0

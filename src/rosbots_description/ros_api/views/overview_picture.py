@@ -1,13 +1,11 @@
-"""Overview pictures of the world by the simulator's own camera, for machines without a screen.
+"""Overview pictures of the world, for machines without a screen.
 
 Publishes:
-    ~view/image_raw (sensor_msgs/Image, rgb8): while someone subscribes, `RATE` times a second of
-        wall time, also while paused. Each picture takes about 0.1 s, so it is for looking, not for
-        sensing.
+    ~view/image_raw (sensor_msgs/Image, rgb8): while subscribed, at `RATE` in wall time, also while
+        paused. Each picture takes about 0.1 s: use camera sensors for perception.
 Parameters:
-    ~view/eye, ~view/target (lists of three numbers) [m]: from where to where the camera looks;
-        what is set before someone looks counts for the first picture; they are read again with
-        each picture, and what is read then counts from the next one on.
+    ~view/eye, ~view/target (lists of three numbers) [m, world]: position and target of the camera;
+        read before the first picture, then with each picture, for the next one.
 """
 
 import logging
@@ -24,11 +22,11 @@ from ..transport import Registrar
 
 logger = logging.getLogger(__name__)
 
-RATE = 2.0  # pictures per second [Hz, wall]
+RATE = 2.0  # of pictures [Hz, wall]
 
 
 def advertise_view(server: Server) -> None:
-    """Offer pictures; nothing is drawn while nobody looks."""
+    """Advertise pictures; they are drawn only while there are subscribers."""
     publisher = rospy.Publisher('~view/image_raw', Image, queue_size=1)
     view = View(server.world)
     viewpoint = Viewpoint()
@@ -54,34 +52,34 @@ def advertise_view(server: Server) -> None:
 
 
 class Viewpoint:
-    """Keeps what the parameters said last, so that no picture waits for the ROS master.
+    """Caches the parameters, so that no picture waits for the ROS master.
 
-    `ready` tells whether they have been asked since someone began to look.
+    `ready` tells whether they were read since the first subscriber connected.
     """
 
     def __init__(self) -> None:
         self.ready = False
         self.sight: tuple[Vector, Vector] = (EYE, TARGET)  # eye and target [m, world]
         self._asked = False
-        self._complaint = ''  # said once, not with every picture
+        self._complaint = ''  # logged once, not with every picture
 
     def rest(self) -> None:
-        """Take note that nobody looks."""
+        """Note that there are no subscribers."""
         self.ready = False
 
     def read_soon(self, registrar: Registrar) -> None:
-        """Let the registrar's thread read the parameters, unless it is about to."""
+        """Let the registrar's thread read the parameters, unless already queued."""
         if not self._asked:
             self._asked = True
             registrar.post(self.read)
 
     def read(self) -> None:
-        """Ask the ROS master, on a thread that may wait; bad values are told and not used."""
+        """Read the parameters, on a thread that may block; log and ignore invalid values."""
         try:
             values = [rospy.get_param('~view/eye', EYE), rospy.get_param('~view/target', TARGET)]
             self.sight = line_of_sight(*values)
         except OSError:
-            pass  # there is no master now, which `watch_master` tells
+            pass  # there is no master now, which `watch_master` logs
         except RequestError as error:
             if str(error) != self._complaint:
                 self._complaint = str(error)
@@ -94,7 +92,7 @@ class Viewpoint:
 
 
 def line_of_sight(eye: object, target: object) -> tuple[Vector, Vector]:
-    """Return eye and target [m] as parameters give them.
+    """Return eye and target [m] from the values of the parameters.
 
     Raises:
         RequestError: one is not a list of three finite numbers, or both are the same point.

@@ -20,18 +20,18 @@ from ...sim.runtime import Link, Model, World
 from ..server import Server
 from .markers import clearance, place_marker, removal, use_sunlit, visual_marker
 
-PERIOD = 0.04  # time between two looks at the world [s, wall]
-# Every so many looks all is shown again: RViz forgets its markers when time jumps back.
+PERIOD = 0.04  # time between two updates [s, wall]
+# Updates between refreshes of all markers: RViz drops its markers when time jumps back.
 REFRESH = 25
 
 
 class LinkView:
-    """The markers of one link, and where they were last shown."""
+    """The markers of one link, and its pose as last published."""
 
     def __init__(self, link: Link, files: Sequence[str | None] = ()) -> None:
-        """Show a link; by the files of its visuals, as far as there are any."""
+        """Make the markers of a link, from the mesh files of its visuals where given."""
         self._link = link
-        self._files = files  # held
+        self._files = files  # references keep the files
         self._shown: Pose | None = None
         self.markers = [
             visual_marker(link.scoped_name, number, visual)
@@ -42,11 +42,11 @@ class LinkView:
                 use_sunlit(marker, file)
 
     def forget(self) -> None:
-        """Count as moved at the next look."""
+        """Publish again at the next update."""
         self._shown = None
 
     def moved(self) -> list[Marker]:
-        """Return the markers at their new place; none if the link stands where it was."""
+        """Return the markers with their new poses; none if the link has not moved."""
         pose = self._link.pose
         if pose == self._shown:
             return []
@@ -57,7 +57,7 @@ class LinkView:
 
 
 class ShownMarkers:
-    """What has been shown of a world; each look tells what is new."""
+    """The published markers of a world, to find what has changed."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -65,12 +65,12 @@ class ShownMarkers:
         self._looks = 0
 
     def begin(self) -> None:
-        """Show everything at the next look, to someone who may have seen another world."""
+        """Publish all at the next update, for a subscriber that may show another world."""
         self._models.clear()
         self._looks = 0
 
     def look(self) -> list[Marker]:
-        """Return the markers that changed since the last look."""
+        """Return the markers that changed since the last update."""
         markers = [] if self._looks else [clearance()]
         refresh = self._looks % REFRESH == 0
         self._looks += 1
@@ -92,12 +92,12 @@ class ShownMarkers:
         return markers
 
     def _views(self, _name: str, model: Model) -> list[LinkView] | None:
-        """Return how a new model is shown; None if that must wait for another look."""
+        """Return the link views of a new model; None if they are not ready yet."""
         return [LinkView(link) for link in _shown_links(model)]
 
 
 class SunlitMarkers(ShownMarkers):
-    """Shows each model as soon as its mesh files are made, on another thread."""
+    """Markers of each model once its mesh files are written, on another thread."""
 
     def __init__(self, world: World, meshes: SunlitMeshes, thread: Executor) -> None:
         super().__init__(world)
@@ -105,12 +105,12 @@ class SunlitMarkers(ShownMarkers):
         self._coming: dict[str, tuple[Model, Future[list[LinkView]]]] = {}
 
     def begin(self) -> None:
-        """Show everything as soon as it can be."""
+        """Publish all models as soon as their files are written."""
         super().begin()
         self._coming.clear()
 
     def look(self) -> list[Marker]:
-        """Return the markers that changed since the last look, of models whose files are made."""
+        """Return the changed markers of the models whose files are written."""
         markers, models = super().look(), self._world.models
         self._coming = {name: coming for name, coming in self._coming.items() if name in models}
         return markers
@@ -134,26 +134,26 @@ def _shown_links(model: Model) -> list[Link]:
 
 
 class Shown(Protocol):
-    """What remembers what it has shown."""
+    """A view that publishes changes only."""
 
     def begin(self) -> None:
-        """Show everything at the next look."""
+        """Publish everything at the next update."""
 
 
 class Viewers(rospy.SubscribeListener):
-    """Lets everything be shown again when someone begins to look."""
+    """Lets a view publish everything for a new subscriber."""
 
     def __init__(self, server: Server, view: Shown) -> None:
         self._server = server
         self._view = view
 
     def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
-        """Begin again."""
+        """Handle a new subscriber."""
         self._server.loop.post(self._view.begin)
 
 
 def advertise_visuals(server: Server) -> None:
-    """Offer the markers and keep them up to date by wall time, so also while paused."""
+    """Advertise the markers and update them in wall time, also while paused."""
     thread = ThreadPoolExecutor(1, 'sunlit_meshes')
     _advertise(server, '~visual_markers', ShownMarkers(server.world))
     _advertise(server, '~view/markers', SunlitMarkers(server.world, SunlitMeshes(), thread))
