@@ -119,7 +119,7 @@ class RenderProcess:
                 self._process.kill()
             number, fault, *rest = self._connection.recv()
         except (EOFError, OSError):
-            self._mourn()
+            self._handle_exit()
             return False
         if not self._ready:
             self._begin(number, fault, *rest)
@@ -185,9 +185,9 @@ class RenderProcess:
         try:
             self._connection.send(message)
         except OSError:
-            self._mourn()
+            self._handle_exit()
 
-    def _mourn(self) -> None:
+    def _handle_exit(self) -> None:
         """Handle the death of the process: restart it, or give up."""
         process = self._process
         self.close()

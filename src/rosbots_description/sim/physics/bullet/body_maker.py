@@ -12,7 +12,7 @@ from .client import pybullet
 from .collision_filter import CollisionFilter
 from .compiler import CompiledContactPart, CompiledTree
 from .contact_stiffness import contact_spring, is_rigid, parting_rate
-from .friction_axes import EVENLY
+from .friction_axes import ISOTROPIC
 from .friction_pairs import FrictionPairs, Side
 from .generated_urdf import AUXILIARY_MASS, Tree, filtered_links
 from .springs import compliance
@@ -219,7 +219,7 @@ class BodyMaker:
             self._set_spring(place)
         body.shapes[place] = part.shapes
         body.friction_axes[place] = part.axes
-        if part.axes.scales != EVENLY:
+        if part.axes.scales != ISOTROPIC:
             self.scale_friction(place, part.axes.scales)
 
     def _set_spring(self, place: Place) -> None:

@@ -127,7 +127,7 @@ class Engine(BodyStates):
             if not fast.rest:
                 fast.look()
             run = min(steps, self._until_look, fast.rest)
-            self._step_alike(run)
+            self._step_uniform(run)
             self._joint_readings.clear()
             steps -= run
             fast.rest -= run
@@ -136,12 +136,12 @@ class Engine(BodyStates):
                 self._until_look = CHECK
                 self._effort.look(self._motors())
 
-    def _step_alike(self, steps: int) -> None:
+    def _step_uniform(self, steps: int) -> None:
         """Advance by steps between two checks for fast bodies."""
         step, client, fast = self._step, self._client, self._fast
         is_sprung = bool(self._springs)
         if self._pushes and steps > 1:  # a push lasts for one call of PyBullet
-            self._step_alike(1)
+            self._step_uniform(1)
             steps -= 1
         self._pushes.clear()
         one_by_one = is_sprung or self._springs.has_dampers or self._weightless
@@ -156,7 +156,7 @@ class Engine(BodyStates):
             if is_sprung:
                 self._springs.push()
             for body, link, slip in self._slipping.links:
-                self._let_slip(body, link, *slip)
+                self._update_slip(body, link, *slip)
             step(client)
             if fast:
                 fast.after_step()
@@ -234,7 +234,7 @@ class Engine(BodyStates):
         """Set the slip compliance of a link; see `PhysicsEngine`."""
         self._slipping.set(body, link, (axis, compliances))
 
-    def _let_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
+    def _update_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
         state = self.link_state(body, link)
         self._slipping.weaken(body, link, state, axle, slips, self._physics.step_size)
 

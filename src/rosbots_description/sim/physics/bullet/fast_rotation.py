@@ -20,11 +20,11 @@ LOOK = 20  # steps between two checks of all bodies
 # Thresholds of the correction: dt w^2 [1/s] for bodies of several links without contact, and the
 # relative energy gain per second for single links.
 _FAST, _GAINS = 0.01, 2e-4
-_HELD = 10.0  # factor on both for bodies in contact, such as a robot turning on the spot
-_CALM = 100  # slow checks in a row that end the correction of a body
+_CONTACT_FACTOR = 10.0  # factor on both for bodies in contact, such as a robot turning on the spot
+_MAX_CALM_CHECKS = 100  # slow checks in a row that end the correction of a body
 # Allowed growth of energy, as a share of the peak kinetic energy. Velocities and positions are half
 # a step apart, which makes the computed energy of a body vary by less than this.
-_GROWS = 0.01
+_ALLOWED_GROWTH = 0.01
 
 
 class FastBodies:
@@ -34,14 +34,14 @@ class FastBodies:
         """Work in the world of that PyBullet client, which is empty."""
         self._client = client
         self._bodies: dict[int, Masses] = {}
-        self._swinging: dict[int, _Swinging] = {}
+        self._fast_bodies: dict[int, _FastBody] = {}
         self.rest = 0  # steps until the next check
         self.set(0.001, (0.0, 0.0, 0.0))
 
     def set(self, step_size: float, gravity: Vector) -> None:
         """Set step size [s] and gravity [m/s^2]."""
         self._step_size, self._gravity = step_size, gravity
-        self._swinging.clear()
+        self._fast_bodies.clear()
         self.rest = 0
 
     def add(self, bodies: dict[int, Masses]) -> None:
@@ -52,7 +52,7 @@ class FastBodies:
         """Stop watching these bodies."""
         for number in numbers:
             self._bodies.pop(number, None)
-            self._swinging.pop(number, None)
+            self._fast_bodies.pop(number, None)
 
     def clear(self) -> None:
         """Forget all bodies."""
@@ -61,9 +61,9 @@ class FastBodies:
 
     def disturb(self, number: int) -> None:
         """Note that an external force may do work on a body in the next step."""
-        swinging = self._swinging.get(number)
-        if swinging:
-            swinging.ceiling = None
+        body = self._fast_bodies.get(number)
+        if body:
+            body.ceiling = None
 
     def set_in_motion(self, number: int) -> None:
         """Note that the velocity of a body has been set."""
@@ -73,20 +73,20 @@ class FastBodies:
     def note(self) -> tuple[Any, ...]:
         """Return the state for `recall`."""
         return self.rest, {number: (one.calm, one.ceiling, one.flies, one.peak, one.total)
-                           for number, one in self._swinging.items()}
+                           for number, one in self._fast_bodies.items()}
 
     def recall(self, note: tuple[Any, ...]) -> None:
         """Restore the state of a note; the bodies must be the same."""
-        self.rest, swinging = note
-        self._swinging.clear()
-        for number, state in swinging.items():
-            one = _Swinging(self._client, number, self._bodies[number])
+        self.rest, states = note
+        self._fast_bodies.clear()
+        for number, state in states.items():
+            one = _FastBody(self._client, number, self._bodies[number])
             one.calm, one.ceiling, one.flies, one.peak, one.total = state
-            self._swinging[number] = one
+            self._fast_bodies[number] = one
 
     def __bool__(self) -> bool:
         """Tell whether any body is corrected in the next step."""
-        return bool(self._swinging)
+        return bool(self._fast_bodies)
 
     def look(self) -> None:
         """Find the fast rotating bodies."""
@@ -98,7 +98,7 @@ class FastBodies:
             if masses.unbalanced:
                 states = pybullet.getJointStates(number, masses.unbalanced, client)
                 speed += sum(state[1] * state[1] for state in states) * step_size
-            if speed <= _FAST and number not in self._swinging:
+            if speed <= _FAST and number not in self._fast_bodies:
                 continue
             fast = speed / _FAST
             if fast > 1.0 and len(masses.parts) == 1 and not masses.joints:
@@ -109,25 +109,25 @@ class FastBodies:
 
     def _note(self, number: int, masses: Masses, fast: float) -> None:
         """Record the speed of a body as a multiple of the threshold."""
-        swinging = self._swinging.get(number)
-        if swinging is not None:
+        body = self._fast_bodies.get(number)
+        if body is not None:
             # A free body may speed up again: rotation about the intermediate axis is unstable.
-            swinging.calm = 0 if fast > 1.0 or swinging.flies else swinging.calm + 1
-            if swinging.calm > _CALM:
-                del self._swinging[number]
+            body.calm = 0 if fast > 1.0 or body.flies else body.calm + 1
+            if body.calm > _MAX_CALM_CHECKS:
+                del self._fast_bodies[number]
         elif fast > 1.0:
-            swinging = _Swinging(self._client, number, masses)
-            if fast > _HELD or not swinging.touched():
-                self._swinging[number] = swinging
+            body = _FastBody(self._client, number, masses)
+            if fast > _CONTACT_FACTOR or not body.touched():
+                self._fast_bodies[number] = body
 
     def after_step(self) -> None:
         """Remove the energy that PyBullet's integration has added."""
         with np.errstate(all='ignore'):  # a model may have diverged
-            for swinging in self._swinging.values():
-                swinging.hold(self._step_size, self._gravity, self._bodies)
+            for body in self._fast_bodies.values():
+                body.limit_energy(self._step_size, self._gravity, self._bodies)
 
 
-class _Swinging:
+class _FastBody:
     """A fast rotating body, whose energy grows by no more than the work done on it.
 
     Motors and dampers do work; static bodies do none. The work of external forces and of moving
@@ -151,12 +151,12 @@ class _Swinging:
         self.flies, self.total = False, 0.0  # after the last step
         self.calm = 0
 
-    def hold(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
+    def limit_energy(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
         """Remove energy that the last step added without work."""
         touched = self.touched()
         total, own, kinetic, drift = self._energy(step_size, gravity)
         self.peak = max(self.peak, kinetic)
-        slack = _GROWS * self.peak
+        slack = _ALLOWED_GROWTH * self.peak
         flew, self.flies = self.flies, not (touched or self._all.is_fixed)
         flies_on = flew and self.flies
         if self.ceiling is None or not touched.isdisjoint(moving):

@@ -8,13 +8,13 @@ from ...description import Collision, LinkSpec, Surface
 from .body import Body, FrictionAxes
 from .friction_pairs import MAX_FRICTION
 
-EVENLY = (1.0, 1.0, 1.0)  # friction scales along the axes of a part
+ISOTROPIC = (1.0, 1.0, 1.0)  # friction scales along the axes of a part
 
 
 def directions(collision: Collision) -> tuple[Any, ...]:
     """Return a key for the anisotropic friction of a collision; () if it is isotropic."""
     surface = collision.surface
-    if _is_even(surface, MAX_FRICTION):
+    if _is_isotropic(surface, MAX_FRICTION):
         return ()
     first = surface.fdir1
     return surface.mu, surface.mu2, any(first) and rotate(collision.pose.orientation, first)
@@ -47,19 +47,19 @@ def friction_scales(
         friction: coefficient that PyBullet is given for the part.
     """
     surface = collision.surface
-    if _is_even(surface, friction):
-        return EVENLY
+    if _is_isotropic(surface, friction):
+        return ISOTROPIC
     first = rotate(conjugate(turn), first_direction(collision, link))
     along = [abs(component) > ALONG for component in first]
     if not any(along):
-        return EVENLY
+        return ISOTROPIC
     greatest = min(friction, surface.greatest_mu)
     share, other = (min(1.0, mu / greatest) for mu in (surface.mu, surface.mu2))
     x, y, z = (share if is_first else other for is_first in along)
     return (x, y, z)
 
 
-def _is_even(surface: Surface, most: float) -> bool:
+def _is_isotropic(surface: Surface, most: float) -> bool:
     """Tell whether friction is isotropic, with coefficients clamped to `most`."""
     return min(surface.mu, surface.mu2) >= min(most, surface.greatest_mu)
 

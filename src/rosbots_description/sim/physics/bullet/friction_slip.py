@@ -8,7 +8,7 @@ from ...core import Pose, Twist, Vector, rotate, subtract
 from ...description import ModelSpec
 from .body import Body, Place
 from .client import pybullet
-from .friction_axes import EVENLY, axes_along, can_slip, first_direction
+from .friction_axes import ISOTROPIC, axes_along, can_slip, first_direction
 from .friction_slip_compliance import NONE_SLIPS, Touch, shares, velocity_at
 
 Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances [m/s per N]
@@ -74,7 +74,7 @@ class Slipping:
         whole = {place: axes.scales for body, _, _ in (*self.links, *links)
                  for place, axes in body.friction_axes.items()}
         for place in self._held:
-            self._scale(place, held.get(place, whole.get(place, EVENLY)))
+            self._scale(place, held.get(place, whole.get(place, ISOTROPIC)))
         self.links, self._held = list(links), dict(held)
 
     def weaken(

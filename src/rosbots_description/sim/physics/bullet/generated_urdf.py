@@ -34,7 +34,7 @@ AUXILIARY_MASS = 1e-9
 
 # Placeholder visual. Without one PyBullet makes visuals of the collisions, which nobody sees: 9 MB
 # for a plane, and for a mesh twice its memory and as much time as the mesh itself.
-_UNSEEN = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</visual>')
+_PLACEHOLDER_VISUAL = ('<visual>', '<geometry>', '<box size="1 1 1"/>', '</geometry>', '</visual>')
 
 # Collision group of moving bodies until their filter is set. In PyBullet's default, 1, the group of
 # rays, they would collide with everything, which changes the solver's order of contacts for good.
@@ -111,7 +111,7 @@ def _link(
         f'<mass value="{mass!r}"/>',
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>',
         '</inertial>',
-        *(_UNSEEN if collisions else ()),
+        *(_PLACEHOLDER_VISUAL if collisions else ()),
     ]
     for collision in collisions:
         # Exact surfaces only if static: moving concave meshes are slow and can be penetrated.

@@ -18,14 +18,14 @@ from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphe
 from ...meshes import read_stl, support_points
 from .generated_urdf import MeshFile
 
-_ONTO = 1e-6  # margin for rounding, as a share of the body's size
+_MARGIN = 1e-6  # margin for rounding, as a share of the body's size
 _MAX_CORNERS = 40  # vertices of a hull; finding its sides takes time with the cube of their number
 _AT_ONCE = 1000  # planes in a batch that stays within memory already allocated
 _CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 _POLES = np.concatenate([np.eye(3), -np.eye(3)])
 _RIM = [(math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)) for k in range(8)]
 _RIMS = np.array([(x, y, z) for x, y in _RIM for z in (-1.0, 1.0)])
-_WAYS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
+_DIRECTIONS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
 
 
 def occluded_shapes(collisions: Sequence[Collision], mesh_file: MeshFile) -> tuple[bool, ...]:
@@ -51,7 +51,7 @@ def _inner(shapes: tuple[tuple[Geometry | str, Pose], ...]) -> tuple[bool, ...]:
     points = np.concatenate(placed)
     owners = np.repeat(np.arange(len(placed)), [len(some) for some in placed])
     # A hull of few support points, then one refined by support points beyond its sides.
-    corners = support_points(points, _WAYS)
+    corners = support_points(points, _DIRECTIONS)
     sides, _ = _hull(points[corners])
     corners += sorted({*support_points(points, sides)} - {*corners})
     corners = corners[:_MAX_CORNERS]
@@ -102,7 +102,7 @@ def _hull(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     A side is a plane through three points with all others behind it. Coplanar points give no sides.
     """
     size = np.ptp(points, axis=0).max()
-    margin = _ONTO * size
+    margin = _MARGIN * size
     triples = _triples(len(points))
     sides, reaches = [np.empty((0, 3))], [np.empty(0)]
     for start in range(0, triples.shape[1], _AT_ONCE):

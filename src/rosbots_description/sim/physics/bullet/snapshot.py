@@ -22,7 +22,7 @@ from .client import pybullet
 _LOOKS = 80
 _APART = 1e4  # [m] distance between bodies while stale pairs are dropped
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
-_NEXT_TO_NONE = 1e-300  # [N m or N]
+_NEGLIGIBLE_EFFORT = 1e-300  # [N m or N]
 
 Joints = Sequence[tuple[int, int]]  # by PyBullet's body and index
 
@@ -91,7 +91,7 @@ class Snapshots:
         client, put = self._client, pybullet.resetBasePositionAndOrientation
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
         # A motor that was switched off still reports its last effort.
-        self._give_effort(snapshot.idle, _NEXT_TO_NONE)
+        self._give_effort(snapshot.idle, _NEGLIGIBLE_EFFORT)
         for look in range(_LOOKS):
             for i, number in enumerate(moving if look < 2 else moving[:1]):
                 # PyBullet drops pairs only after something has moved.

@@ -7,7 +7,11 @@ import pytest
 from rosbots_description.sim.core.transforms import NO_ROTATION, Pose, from_rpy
 from rosbots_description.sim.description.model_spec import Box, Collision, LinkSpec, Surface
 from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
-from rosbots_description.sim.physics.bullet.friction_axes import EVENLY, can_slip, friction_scales
+from rosbots_description.sim.physics.bullet.friction_axes import (
+    ISOTROPIC,
+    can_slip,
+    friction_scales,
+)
 
 
 def scales(link=None, turn=NO_ROTATION, friction=1.0, **surface):
@@ -17,14 +21,14 @@ def scales(link=None, turn=NO_ROTATION, friction=1.0, **surface):
 
 
 @pytest.mark.parametrize(('surface', 'expected'), [
-    ({'mu': 0.4, 'mu2': 0.4, 'fdir1': (1.0, 0.0, 0.0)}, EVENLY),
-    ({'mu': 100.0, 'mu2': 50.0}, EVENLY),  # as the ground's: the other of a pair has the lesser one
+    ({'mu': 0.4, 'mu2': 0.4, 'fdir1': (1.0, 0.0, 0.0)}, ISOTROPIC),
+    ({'mu': 100.0, 'mu2': 50.0}, ISOTROPIC),  # as the ground: the other mu is less
     ({'mu': 0.5, 'mu2': 0.1}, (0.2, 1.0, 0.2)),
     ({'mu': 0.1, 'mu2': 0.5}, (1.0, 0.2, 1.0)),
     ({'mu': 5.0, 'mu2': 0.5}, (0.5, 1.0, 0.5)),
     ({'mu': 5.0, 'mu2': 0.5, 'friction': 5.0}, (0.1, 1.0, 0.1)),
     ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (0.0, 0.0, 3.0)}, (0.2, 0.2, 1.0)),
-    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, EVENLY),  # none of its axes
+    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, ISOTROPIC),  # none of its axes
 ])
 def test_friction_is_weaker_along_the_direction_of_the_lesser_mu(surface, expected):
     assert scales(**surface) == pytest.approx(expected)
@@ -41,6 +45,6 @@ def test_without_a_direction_the_first_mu_acts_along_the_models_y_axis():
 def test_a_link_slips_along_what_is_an_axis_of_all_its_parts(turns, can):
     body, places = Body(0), [Place(0, index) for index in range(len(turns))]
     body.surfaces = {'wheel': places}
-    body.friction_axes = {place: FrictionAxes(from_rpy(turn, 0.0, 0.0), EVENLY)
+    body.friction_axes = {place: FrictionAxes(from_rpy(turn, 0.0, 0.0), ISOTROPIC)
                           for place, turn in zip(places, turns, strict=True)}
     assert can_slip(body, 'wheel', (0.0, 1.0, 0.0)) == can
