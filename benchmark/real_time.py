@@ -58,7 +58,7 @@ def measure_cost(frequency: int, slowness: float) -> tuple[float, float]:
             if robots:
                 server.spawn()
                 server.drive()
-            server.settle(2.0)
+            server.rounded(2.0)
             used, factor = _least_share(server)
             scaled = share * slowness
             print(f'/clock {frequency:4} Hz, robots driving {robots}: {used:5.1f} % of a core, '
@@ -150,7 +150,7 @@ def measure_promptness() -> None:
     """Print how soon commands reach wheels, and how late steps are while services are called."""
     with Server(launch=[str(ROOT / 'benchmark' / 'recorded.launch')]) as server:
         server.spawn()
-        server.settle(2.0)
+        server.rounded(2.0)
         sent = _command(server)
         server.drive(FORWARD)
         begin, before = server.simulated(), _processor_time()
@@ -179,10 +179,10 @@ def _command(server: Server) -> list[float]:
     sent = []
     for i in range(COMMANDS):
         server.drive(0.0)
-        server.settle(RAMP + 0.01 * i / COMMANDS)
+        server.rounded(RAMP + 0.01 * i / COMMANDS)
         sent.append(time.monotonic())
         server.drive(SLOW)
-        server.settle(RAMP)
+        server.rounded(RAMP)
     return sent
 
 

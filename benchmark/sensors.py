@@ -46,7 +46,7 @@ def best(server: Server, topic: str = '', rate: float = RATE) -> tuple[float, fl
     """Return the least cost, the greatest speed and the share of messages of several windows."""
     with ExitStack() as stack:
         reader = stack.enter_context(Reader(topic)) if topic else None
-        server.settle(1.0)
+        server.rounded(1.0)
         costs, speeds, arrived = zip(
             *(window(server, reader, rate) for _ in range(ROUNDS)), strict=True)
     return min(costs), max(speeds), max(arrived)

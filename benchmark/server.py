@@ -80,7 +80,7 @@ class Server:
                 self.seconds_to_spawn_service = self._wait_for('spawn_urdf_model') - begin
                 self._wait_for('step')  # the last one
             except TimeoutError:
-                raise TimeoutError(f'no simulator: {launched.complaint()}') from None
+                raise TimeoutError(f'no simulator: {launched.error()}') from None
             self._processes = processes.pop_all()
         rospy.init_node('benchmark', disable_rostime=True, disable_signals=True)
         self._world = self.service('get_world_properties', GetWorldProperties)
@@ -142,7 +142,7 @@ class Server:
         if not answer.success:
             raise RuntimeError(answer.status_message)
 
-    def settle(self, seconds: float) -> None:
+    def rounded(self, seconds: float) -> None:
         """Let simulated time [s] pass."""
         end, deadline = self.simulated() + seconds, time.monotonic() + PATIENCE
         while self.simulated() < end:

@@ -205,7 +205,7 @@ def soak(server: Server, seconds: float, seed: int) -> Soak:
     rospy.Subscriber('/clock', Clock, clocks.hear, tcp_nodelay=True)
     wait_until(lambda: clocks.messages, 'a message on /clock')
     drivers = Drivers(seed)
-    server.settle(1.0)
+    server.rounded(1.0)
     start, crowd = usage(server), Crowd(seed, robots)
     end = time.monotonic() + seconds
     time.sleep(max(WARM_UP[0] * seconds, WARM_UP[1]))
@@ -233,7 +233,7 @@ def left_over(server: Server, robots: list[str]) -> Iterator[str]:
         yield f'the models left are {", ".join(there)}'
     before = server.simulated()
     try:
-        server.settle(1.0)
+        server.rounded(1.0)
     except TimeoutError:
         yield f'time stands at {before:g} s'
 

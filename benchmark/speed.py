@@ -90,10 +90,10 @@ def measure() -> list[Case]:
             while spawned < case.robots:
                 server.spawn()
                 spawned += 1
-            server.settle(SETTLE)
+            server.rounded(SETTLE)
             if case.driving:
                 server.drive()
-                server.settle(SETTLE)
+                server.rounded(SETTLE)
             server.pause()
             _take_turns(case, server)
             server.unpause()

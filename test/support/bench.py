@@ -53,7 +53,7 @@ class Bench:
         self.world = world
         registrar = SimpleNamespace(wait=lambda _deadline: True)
         loop = SimpleNamespace(
-            **dict.fromkeys(('call', 'post', 'beside'), lambda command: command()))
+            **dict.fromkeys(('call', 'post', 'run_in_thread'), lambda command: command()))
         self.server = Server(
             world, loop, registrar, package_directory, lambda _inner: None, _sandbox())
 

@@ -120,10 +120,10 @@ class FakeEngine:
     def set_joint_motor(self, body, joint, velocity, effort):
         body.motors[joint], body.state[joint][1] = (velocity, effort), velocity
 
-    def push(self, body, link, force, torque, place=None):
+    def apply_wrench(self, body, link, force, torque, place=None):
         self.pushes.append((link, force, torque, place))
 
-    def push_joint(self, body, joint, effort):
+    def apply_joint_effort(self, body, joint, effort):
         self.pushes.append((joint, effort))
 
     def can_slip(self, body, link, axis):

@@ -72,11 +72,12 @@ def _events(world: World, events: list) -> Iterator[tuple[int, int, Callable[[],
             twist = Twist(tuple(values[:3]), tuple(values[3:]))
             yield first, last, lambda m=thing.model, t=twist: m.set_twist(t)
         elif kind == 'force':
-            yield first, last, lambda li=thing, v=values: li.push(tuple(v[:3]), tuple(v[3:]))
+            yield first, last, lambda link=thing, v=values: link.apply_wrench(
+                tuple(v[:3]), tuple(v[3:]))
         elif kind == 'jpos':
             yield first, last, lambda j=thing, v=values: j.set_position(v[0])
         elif kind == 'jforce':
-            yield first, last, lambda j=thing, v=values: j.push(v[0])
+            yield first, last, lambda j=thing, v=values: j.apply_effort(v[0])
         else:
             raise ValueError(f'no event is called {kind}')
 

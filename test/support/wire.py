@@ -55,7 +55,7 @@ class Topic:
         for listener in self.impl.subscriber_listeners:
             listener.peer_subscribe('', None, None)
 
-    def leave(self):
+    def remove_from_engine(self):
         """Let all readers go."""
         self.impl.connections.clear()
         for listener in self.impl.subscriber_listeners:

@@ -89,7 +89,7 @@ def _run(folder: Path) -> None:
         try:
             client = DemoClient(_MODEL, _START, lambda: server.running)
         except TimeoutError as error:
-            raise DemoError(f'{error}: {server.complaint()}') from error
+            raise DemoError(f'{error}: {server.error()}') from error
         stack.callback(client.close)
         _say('spawning the robot')
         _spawn(client, folder / 'spawn.log', environment)
@@ -124,7 +124,7 @@ def _spawn(client: DemoClient, log: Path, environment: Mapping[str, str]) -> Non
     with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
         done = spawn.wait(_SPAWN)
     if not done or not client.present():
-        raise DemoError(f'the robot was not spawned: {spawn.complaint()}')
+        raise DemoError(f'the robot was not spawned: {spawn.error()}')
     client.wait_for_plugin()
     wait_until(lambda: client.height() < _LANDED, _SPAWN, 'the robot to reach the ground')
 

@@ -73,11 +73,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if rviz is None:
         _say('no window: rviz is not installed; on Debian: apt install rviz')
         return 1
-    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_another_name(remappings)]
-    return _attend(command, surroundings(os.environ, config.with_name('gzclient_log.config')))
+    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_unique_name(remappings)]
+    environment = rviz_environment(os.environ, config.with_name('gzclient_log.config'))
+    return _run_window(command, environment)
 
 
-def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
+def rviz_environment(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
     """Return an environment in which RViz and Qt log only relevant messages."""
     made = {'ROSCONSOLE_CONFIG_FILE': str(log_levels), **given}
     if not made.get('XDG_RUNTIME_DIR'):
@@ -88,18 +89,18 @@ def surroundings(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
     return made
 
 
-def _another_name(remappings: Sequence[str]) -> list[str]:
+def _unique_name(remappings: Sequence[str]) -> list[str]:
     """Return a remapping to a unique name if another window already has this one's name.
 
     The ROS master would shut the other window down: it allows one node per name.
     """
-    from ..ros_api.transport import NO_MASTER, holder, node_name
+    from ..ros_api.transport import NO_MASTER, node_name, running_node
 
     if not any(word.startswith('__name:=') for word in remappings):
         return []  # RViz generates a unique name
     name = node_name('rviz', remappings)
     with contextlib.suppress(*NO_MASTER):
-        if holder(name):
+        if running_node(name):
             other = f'{name}_{os.getpid()}'
             _say(f'a window has the name {name} already; this one is {other}')
             return [f'__name:={other.rpartition("/")[2]}']
@@ -111,32 +112,32 @@ def _end_with_parent() -> None:
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
 
 
-def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
+def _run_window(command: Sequence[str], environment: Mapping[str, str]) -> int:
     """Run the window until it is closed, and report when the simulator has gone."""
     from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
 
-    told: list[int | None] = []
+    received: list[int | None] = []
     window: subprocess.Popen | None = None
 
     def end(number: int | None = None, _frame: object = None) -> None:
-        told.append(number)
+        received.append(number)
         if window is not None:
             window.send_signal(signal.SIGINT)  # RViz then unregisters from the master
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
-    watch = ServerWatch(_teller())
+    watch = ServerWatch(_reporter())
     for left in reversed(range(STARTS)):
         started = time.monotonic()
         window = subprocess.Popen(command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  it only calls the kernel
-        if told:  # a signal arrived during the start
+        if received:  # a signal arrived during the start
             end()
-        while window.poll() is None and not told:  # no reports while shutting down
-            watch.look()
+        while window.poll() is None and not received:  # no reports while shutting down
+            watch.poll()
             with contextlib.suppress(subprocess.TimeoutExpired):
                 window.wait(PERIOD)
         code = window.wait()
-        if told:
+        if received:
             return 0
         if code not in CRASHES or time.monotonic() - started > OPENS:
             break
@@ -145,21 +146,21 @@ def _attend(command: Sequence[str], environment: Mapping[str, str]) -> int:
     return code if code >= 0 else 128 - code  # 128 + signal, as in shells
 
 
-def _teller() -> Callable[[bool], None]:
+def _reporter() -> Callable[[bool], None]:
     """Return the callback that reports, here and in the scene, whether there is a simulator."""
     from ..ros_api.clients.server_watch import NOTICE, Notice
 
     notice = Notice()
 
-    def tell(there: bool) -> None:
-        if there:
+    def report(is_up: bool) -> None:
+        if is_up:
             _say('the simulator is running again')
             notice.withdraw()
         else:
             _say(f'{NOTICE}; this window shows its last state')
             notice.show()
 
-    return tell
+    return report
 
 
 def _say(sentence: str) -> None:

@@ -43,10 +43,10 @@ def read_key(fd: int, timeout: float, go_on: Callable[[], bool]) -> str | None:
     """
     end = time.monotonic() + timeout
     while go_on():
-        patience = min(_POLL, end - time.monotonic())
-        if patience < 0.0:
+        remaining = min(_POLL, end - time.monotonic())
+        if remaining < 0.0:
             return None
-        if select.select([fd], [], [], patience)[0]:
+        if select.select([fd], [], [], remaining)[0]:
             # Unbuffered: keys that arrive together are read one by one.
             try:
                 byte = os.read(fd, 1)

@@ -10,7 +10,7 @@ import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-_PATIENCE = 1.5  # [s] wall time for a clean end, within the 2 s that Ctrl-C may take
+_TIMEOUT = 1.5  # [s] wall time for a clean end, within the 2 s that Ctrl-C may take
 
 _ESCAPE = re.compile(r'\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07')  # colours and terminal titles
 
@@ -52,20 +52,20 @@ class Launched:
         roslaunch ends its nodes one by one, and ignores signals while it starts a master. So all
         processes are signalled at once.
         """
-        family = self._family()
-        send_signal(family, signal.SIGINT)
-        self.wait(_PATIENCE)
+        processes = self._process_tree()
+        send_signal(processes, signal.SIGINT)
+        self.wait(_TIMEOUT)
         # including processes started meanwhile
-        send_signal({*family, *self._family()}, signal.SIGKILL)
+        send_signal({*processes, *self._process_tree()}, signal.SIGKILL)
         self._process.wait()
 
-    def _family(self) -> set[int]:
+    def _process_tree(self) -> set[int]:
         """Return the ids of roslaunch and its descendants; none after it has ended."""
         if not self.running:
             return set()
         return {self._process.pid, *descendants(self._process.pid)}
 
-    def complaint(self) -> str:
+    def error(self) -> str:
         """Return the last error line of the output, and the path of the log."""
         text = _ESCAPE.sub('', self.log.read_text(errors='replace'))
         errors = [re.sub(', cmd .*', ']', line) for line in text.splitlines()

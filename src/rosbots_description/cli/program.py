@@ -25,18 +25,18 @@ def run(main: Callable[[], int]) -> int:
 
     Ctrl-C that `main` does not handle, such as during imports, ends the program silently.
     """
-    _speak_utf8()
-    _take_its_name()
+    _use_utf8()
+    _set_process_name()
     _occupy_closed_descriptors()
     sys.stdin = sys.stdin or open(os.devnull, encoding='utf-8')  # noqa: SIM115
-    sys.stdout, sys.stderr = _patient(sys.stdout), _patient(sys.stderr)
+    sys.stdout, sys.stderr = _tolerant(sys.stdout), _tolerant(sys.stderr)
     try:
         return main()
     except KeyboardInterrupt:
         return INTERRUPTED
 
 
-def _speak_utf8() -> None:
+def _use_utf8() -> None:
     """Restart in Python's UTF-8 mode if the locale has another encoding.
 
     The encoding of file names cannot be changed at run time. In the locale C without LC_ALL, Python
@@ -47,7 +47,7 @@ def _speak_utf8() -> None:
         os.execv(sys.executable, [sys.executable, '-X', 'utf8', *sys.orig_argv[1:]])
 
 
-def _take_its_name() -> None:
+def _set_process_name() -> None:
     """Set the process name to the script's, so that `killall gzserver` works as with Gazebo."""
     with contextlib.suppress(OSError):
         Path('/proc/self/comm').write_text(Path(sys.argv[0]).name, encoding='utf-8')
@@ -62,18 +62,18 @@ def _occupy_closed_descriptors() -> None:
             os.open(os.devnull, os.O_RDWR)  # gets the lowest free number: this one
 
 
-def _patient(stream: TextIO | None) -> TextIO:
+def _tolerant(stream: TextIO | None) -> TextIO:
     """Return a line-buffered stream to the same descriptor whose writes never fail."""
     descriptor = os.open(os.devnull, os.O_WRONLY) if stream is None else stream.fileno()
     return io.TextIOWrapper(
-        io.BufferedWriter(_Patient(descriptor, 'w', closefd=False)),
+        io.BufferedWriter(_TolerantFile(descriptor, 'w', closefd=False)),
         encoding=stream.encoding if stream else 'utf-8',
         errors='backslashreplace',
         line_buffering=True,
     )
 
 
-class _Patient(io.FileIO):
+class _TolerantFile(io.FileIO):
     """A file that discards what cannot be written."""
 
     def write(self, content: ReadableBuffer) -> int:

@@ -15,7 +15,7 @@ from .teleop_keys import BANNER, QUIT, Driver, Speeds
 if TYPE_CHECKING:
     from ..ros_api.clients.velocity_publisher import VelocityPublisher
 
-_LOOK = 0.1  # [s] between polls for a subscriber
+_POLL = 0.1  # [s] between polls for a subscriber
 _FIRST_NOTE, _NEXT_NOTE = 2.0, 2.5  # [s] of waiting before the first and between further notes
 
 
@@ -90,7 +90,7 @@ def _wait_for_subscriber(publisher: VelocityPublisher, go_on: Callable[[], bool]
         if time.monotonic() >= next_note:
             print(f'Waiting for subscriber to connect to {publisher.topic}', flush=True)
             next_note += _NEXT_NOTE
-        time.sleep(_LOOK)
+        time.sleep(_POLL)
     return True
 
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from support import ROOT
 
-from rosbots_description.cli.gzclient import STARTS, config_file, surroundings
+from rosbots_description.cli.gzclient import STARTS, config_file, rviz_environment
 
 WINDOW = """#!/bin/sh
 echo $$ "$@" > {folder}/arguments
@@ -111,11 +111,11 @@ def test_rviz_that_somebody_ends_stays_closed(tmp_path):
 
 def test_rviz_gets_a_folder_and_log_levels_unless_the_user_has_given_them(tmp_path, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
-    made = surroundings({}, Path('/levels'))
+    made = rviz_environment({}, Path('/levels'))
     assert made['ROSCONSOLE_CONFIG_FILE'] == '/levels'
     assert Path(made['XDG_RUNTIME_DIR']).stat().st_mode & 0o777 == 0o700
     given = {'XDG_RUNTIME_DIR': '/run/user/1', 'ROSCONSOLE_CONFIG_FILE': '/mine'}
-    assert surroundings(given, Path('/levels')) == given
+    assert rviz_environment(given, Path('/levels')) == given
 
 
 def test_the_layouts_have_time_displays_and_views_and_the_window_can_follow_a_model():

@@ -20,7 +20,7 @@ def test_complaint_is_the_last_error_without_colours(tmp_path, output, sentence)
     with Launched(['--version'], log, {'PATH': '/usr/bin'}) as launched:
         launched.wait(10.0)
     log.write_text(output)
-    assert launched.complaint() == sentence.format(log=log)
+    assert launched.error() == sentence.format(log=log)
 
 
 def testdescendants_are_found_across_sessions():

@@ -12,7 +12,7 @@ from genpy import Message
 from ...sim.plugins import ModelPlugin
 from ..server import Server
 from ..transport import (
-    ReaderWatch,
+    SubscriberWatch,
     find_tf_prefix,
     frame_name,
     is_for_all,
@@ -44,7 +44,7 @@ class Adapter:
         self.server = server
         self.plugin = plugin
         self._connected = False
-        self._watch = ReaderWatch(lambda: server.loop.post(self.refresh))
+        self._watch = SubscriberWatch(lambda: server.loop.post(self.refresh))
         self._opened: list[Callable[[], None]] = []  # functions to call in `close`
         self.endpoints = [one.join(self) for one in declared]
 

@@ -15,7 +15,7 @@ import rospy
 from genpy import Message
 
 from ..messages import stamp
-from ..transport import has_readers, next_number, publish_serialized, topic_name
+from ..transport import has_subscribers, next_number, publish_serialized, topic_name
 from .adapter import Adapter
 
 logger = logging.getLogger(__name__)
@@ -114,7 +114,7 @@ class PublishedTopic(Endpoint):
 
     def is_wanted(self) -> bool:
         """Return whether the topic has subscribers."""
-        return has_readers(self.publisher)
+        return has_subscribers(self.publisher)
 
     def refresh(self) -> None:
         """Connect the output while there are subscribers."""
@@ -171,22 +171,22 @@ class SubscribedTopic(Endpoint):
     def __init__(self, adapter: Adapter, declared: Subscribes) -> None:
         super().__init__(adapter, declared.topic)
         self._declared = declared
-        self._complained = -math.inf
+        self._last_complaint = -math.inf
 
     def open(self) -> None:
         """Subscribe to it."""
         declared = self._declared
         self.log(declared.log_before)
-        self.adapter.subscribe(self.name, declared.message, self._take, declared.queue)
+        self.adapter.subscribe(self.name, declared.message, self._receive, declared.queue)
         self.log(declared.log)
 
-    def _take(self, message: Message) -> None:
+    def _receive(self, message: Message) -> None:
         plugin, declared = self.adapter.plugin, self._declared
         try:
             arguments = declared.read(message)
         except ValueError as error:
-            if time.monotonic() > self._complained + COMPLAINT_PERIOD:
-                self._complained = time.monotonic()
+            if time.monotonic() > self._last_complaint + COMPLAINT_PERIOD:
+                self._last_complaint = time.monotonic()
                 logger.error('%sdropped a command on %s with %s',
                              plugin.log_prefix, self.text, error)
         else:

@@ -24,7 +24,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...sim.plugins import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from ..server import STATIC_TOPIC
-from ..transport import reader_names, set_level, subscribers
+from ..transport import set_level, subscriber_names, subscribers
 from .adapter import Adapter
 from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite
 from .packs import JointStatesPack, RootedTransformPack, TransformPack, odometry_pack
@@ -80,7 +80,7 @@ class WheelStatesTopic(PublishedTopic):
 
     def readers(self) -> frozenset[str]:
         """Return the names of the nodes that read it, or soon will."""
-        return self._followers | reader_names(self.publisher) if self.publisher else frozenset()
+        return self._followers | subscriber_names(self.publisher) if self.publisher else frozenset()
 
 
 class WheelFrames(Publishes):

@@ -19,7 +19,7 @@ from ...sim.core import IDENTITY, Pose, compose, relative
 from ...sim.plugins import Force, HandOfGod
 from ..messages import TransformLayout, read_transform
 from ..server import STATIC_TOPIC
-from ..transport import reader_names
+from ..transport import subscriber_names
 from .adapter import Adapter
 from .declarations import Endpoint, Pack, PublishedTopic, Publishes, Subscribes, finite
 from .registry import connects
@@ -62,7 +62,7 @@ class ActualTopic(PublishedTopic):
 
     def is_wanted(self) -> bool:
         """Tell whether another node reads it."""
-        return super().is_wanted() and bool(reader_names(self.publisher) - {rospy.get_name()})
+        return super().is_wanted() and bool(subscriber_names(self.publisher) - {rospy.get_name()})
 
 
 @dataclass(frozen=True)
@@ -81,31 +81,31 @@ class FollowedFrame(Endpoint):
         super().__init__(adapter)
         self._edges: dict[str, tuple[str, Pose]] = {}  # by frame: its parent, and its pose in that
         self._desired = f'{_hand(adapter).frame}_desired'.lstrip('/')
-        self._told: Pose | None = None
+        self._followed: Pose | None = None
 
     def open(self) -> None:
         """Listen to TF."""
         for topic in ('/tf', STATIC_TOPIC):
-            self.adapter.subscribe(topic, TFMessage, self._take, 100)
+            self.adapter.subscribe(topic, TFMessage, self._receive, 100)
 
     def refresh(self) -> None:
         """Look again; what others hold still may have changed."""
-        self._look()
+        self._update()
 
-    def _take(self, message: TFMessage) -> None:
+    def _receive(self, message: TFMessage) -> None:
         for edge in message.transforms:
             try:
                 pose = read_transform(edge.transform)
             except ValueError:
                 continue  # as TF leaves it out
             self._edges[edge.child_frame_id.lstrip('/')] = edge.header.frame_id.lstrip('/'), pose
-        self._look()
+        self._update()
 
-    def _look(self) -> None:
+    def _update(self) -> None:
         server, plugin = self.adapter.server, _hand(self.adapter)
         pose = pose_between(WORLD, self._desired, {**server.static_frames.parents, **self._edges})
-        if pose is not None and pose != self._told:
-            self._told = pose
+        if pose is not None and pose != self._followed:
+            self._followed = pose
             server.loop.post(lambda: plugin.follow(pose))
 
 

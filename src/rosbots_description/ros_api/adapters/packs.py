@@ -46,7 +46,7 @@ class TransformPack:
 class RootedTransformPack(TransformPack):
     """Moves what another node holds together by its root, in place of the robot's frame."""
 
-    _told = ''  # said once, not with every message
+    _logged = ''  # said once, not with every message
 
     def moved(self, edge: FrameTransform) -> FrameTransform:
         """Return the transform of the root."""
@@ -55,12 +55,12 @@ class RootedTransformPack(TransformPack):
         moved = from_root(named, self._frames.parents)
         if moved is named:
             return edge
-        self._tell(named, moved)
+        self._warn_replaced(named, moved)
         return FrameTransform(f'/{moved.parent}', f'/{moved.child}', moved.pose)
 
-    def _tell(self, edge: FrameTransform, moved: FrameTransform) -> None:
-        if self._told != moved.child:
-            self._told = moved.child
+    def _warn_replaced(self, edge: FrameTransform, moved: FrameTransform) -> None:
+        if self._logged != moved.child:
+            self._logged = moved.child
             logger.debug(
                 '%sanother node publishes a static transform to %s from %s, so %s -> %s is '
                 'published instead of %s -> %s: a TF frame has one parent',

@@ -132,7 +132,7 @@ class DemoClient:
         self._odometry.clear()
         truth: list[PlanarSample] = []
 
-        def look() -> bool:
+        def is_done() -> bool:
             self._command.publish(command)
             state = self._state()
             if not state.success:
@@ -140,7 +140,7 @@ class DemoClient:
             truth.append(_sample(state.header.stamp, state.pose))
             return truth[-1].stamp - truth[0].stamp >= duration
 
-        wait_until(look, duration / _SLOWEST, f'{duration:g} s of simulated time')
+        wait_until(is_done, duration / _SLOWEST, f'{duration:g} s of simulated time')
         return truth, list(self._odometry)
 
     def look_at_robot(self) -> np.ndarray:

@@ -24,7 +24,7 @@ _POLL = 0.05  # [s] wall time between polls of the shutdown flag
 Result = TypeVar('Result')
 
 
-def interruptibly(function: Callable[[], Result], patience: float = math.inf) -> Result:
+def interruptibly(function: Callable[[], Result], timeout: float = math.inf) -> Result:
     """Return function(), but stop waiting for it when the node is shut down.
 
     rospy blocks in a socket during a service call and does not react to Ctrl-C. So the function
@@ -34,7 +34,7 @@ def interruptibly(function: Callable[[], Result], patience: float = math.inf) ->
         patience: longest time to wait [s, wall].
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
-        rospy.ROSException: `patience` has passed.
+        rospy.ROSException: `timeout` has passed.
         Exception: whatever the function raises.
     """
     outcome: Future[Result] = Future()
@@ -46,10 +46,10 @@ def interruptibly(function: Callable[[], Result], patience: float = math.inf) ->
             outcome.set_exception(error)
 
     threading.Thread(target=run, daemon=True).start()
-    give_up = time.monotonic() + patience
+    give_up = time.monotonic() + timeout
     while not wait((outcome,), _POLL).done:
         if time.monotonic() > give_up:
-            raise rospy.ROSException(f'no answer within {patience} s')
+            raise rospy.ROSException(f'no answer within {timeout} s')
         if rospy.is_shutdown():
             raise rospy.ROSInterruptException('shut down while waiting')
     return outcome.result()

@@ -30,12 +30,12 @@ def main() -> int:
         sys.stderr.write(f'{NAME}: {error}\n')
         return 1
 
-    def pass_on(message: JointState) -> None:
+    def forward(message: JointState) -> None:
         if sender_of(message) != rospy.get_name():
             joints.source_cb(message)
 
     if not joints.sources:
-        joints.sources.append(rospy.Subscriber('joint_states', JointState, pass_on))
+        joints.sources.append(rospy.Subscriber('joint_states', JointState, forward))
     with contextlib.suppress(rospy.ROSInterruptException):
         joints.loop()
     return 0

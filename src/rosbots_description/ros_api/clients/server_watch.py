@@ -26,36 +26,36 @@ MARKERS_TOPIC = 'gazebo/view/markers'
 class ServerWatch:
     """Monitors the simulator by opening connections to it."""
 
-    def __init__(self, tell: Callable[[bool], None], node: str = NODE) -> None:
+    def __init__(self, report: Callable[[bool], None], node: str = NODE) -> None:
         """Start in the state unknown.
 
         Args:
             tell: called with False when the simulator has gone, and with True when it is back.
             node: the simulator's name, relative to this program's namespace.
         """
-        self._tell = tell
+        self._report = report
         self._node = resolve_name(node, make_caller_id('gzclient'))
         self._address: str | None = None  # last known XML-RPC address
-        self._there: bool | None = None  # None: not seen yet
+        self._is_up: bool | None = None  # None: not seen yet
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Poll once, and report a change."""
-        there, before = self._is_there(), self._there
-        if there == before or not (there or before):
+        is_up, before = self._is_reachable(), self._is_up
+        if is_up == before or not (is_up or before):
             return
-        self._there = there
+        self._is_up = is_up
         if before is not None:
-            self._tell(there)
+            self._report(is_up)
 
-    def _is_there(self) -> bool:
-        if self._address is not None and _takes_connections(self._address):
+    def _is_reachable(self) -> bool:
+        if self._address is not None and _accepts_connections(self._address):
             return True
         # A killed simulator is still registered with the master.
         self._address = node_address(self._node, '/gzclient')
-        return self._address is not None and _takes_connections(self._address)
+        return self._address is not None and _accepts_connections(self._address)
 
 
-def _takes_connections(address: str) -> bool:
+def _accepts_connections(address: str) -> bool:
     place = urlsplit(address)
     try:
         socket.create_connection((place.hostname, place.port), TIMEOUT).close()

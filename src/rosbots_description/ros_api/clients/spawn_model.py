@@ -35,7 +35,7 @@ _SETTLE = 1.0  # [s] wall time for the joints to appear after the simulator's an
 _DATABASE = ('<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
              '</world></sdf>')
 _LISTED = 12  # omissions that are listed by name
-_LAST_WORD = 1.5  # [s] wall time for the deletion at the end, within the 2 s that Ctrl-C may take
+_DELETE_TIMEOUT = 1.5  # [s] wall time, within the 2 s that Ctrl-C may take
 
 
 def run(flags: argparse.Namespace, arguments: Sequence[str]) -> int:
@@ -78,11 +78,11 @@ def _wait_for_model(name: str, gazebo_namespace: str) -> bool:
     rospy.loginfo('Waiting for model %s before proceeding.', name)
     there = threading.Event()
 
-    def look(states: ModelStates) -> None:
+    def receive(states: ModelStates) -> None:
         if name in states.name:
             there.set()
 
-    subscriber = rospy.Subscriber(gazebo_namespace + '/model_states', ModelStates, look)
+    subscriber = rospy.Subscriber(gazebo_namespace + '/model_states', ModelStates, receive)
     # Wall time: simulated time may be stopped.
     while not there.wait(0.1):
         if rospy.is_shutdown():
@@ -146,7 +146,7 @@ def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int
                  pose, flags.reference_frame, flags.gazebo_namespace):
         rospy.logerr('Spawn service failed. Exiting.')
         return FAILED
-    _tell_omissions(flags.model, flags.gazebo_namespace)
+    _log_omissions(flags.model, flags.gazebo_namespace)
     if joints and not _set_joints(flags, joints):
         rospy.logerr('SetModelConfiguration service failed. Exiting.')
         return FAILED
@@ -159,7 +159,7 @@ def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int
     return DONE
 
 
-def _tell_omissions(model: str, gazebo_namespace: str) -> None:
+def _log_omissions(model: str, gazebo_namespace: str) -> None:
     """Log what the simulator left out of the model, if it has a service for that.
 
     Gazebo has no such service, so errors are ignored.
@@ -168,8 +168,8 @@ def _tell_omissions(model: str, gazebo_namespace: str) -> None:
     with contextlib.suppress(rospy.ServiceException, rospy.ROSException):
         if not has_service(service):
             return
-        ask = rospy.ServiceProxy(service, GetModelOmissions)
-        omissions = interruptibly(lambda: ask(model), patience=_SETTLE).omissions
+        get_omissions = rospy.ServiceProxy(service, GetModelOmissions)
+        omissions = interruptibly(lambda: get_omissions(model), timeout=_SETTLE).omissions
         if omissions:
             more = f' and {len(omissions) - _LISTED} more' if len(omissions) > _LISTED else ''
             rospy.logwarn('spawned without: %s%s; see doc/gazebo_compatibility.md and the log of '
@@ -198,7 +198,7 @@ def _delete(name: str, gazebo_namespace: str) -> None:
     rospy.loginfo('Deleting model %s', name)
     delete = rospy.ServiceProxy(gazebo_namespace + '/delete_model', DeleteModel)
     try:
-        response = interruptibly(lambda: delete(name), patience=_LAST_WORD)
+        response = interruptibly(lambda: delete(name), timeout=_DELETE_TIMEOUT)
     except (rospy.ServiceException, rospy.ROSException) as error:
         rospy.logerr('Delete model service call failed: %s', error)
         return

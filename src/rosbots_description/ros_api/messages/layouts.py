@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...sim.core import NANOSECONDS, Pose
 from ...sim.runtime import JointStates, Odometry
-from ...sim.sensors import Inertia
+from ...sim.sensors import ImuReading
 
 _SIZE = 4  # of the number at the beginning, which does not count itself [bytes]
 _COVARIANCE = struct.Struct('<36d')  # row-major 6x6: x, y, z, then rotations about x, y, z
@@ -148,7 +148,7 @@ class ImuLayout:
         self._layout = struct.Struct(f'<4I{len(self._frame)}s4d9d3d9d3d9d')
         self._size = self._layout.size - _SIZE
 
-    def pack(self, seq: int, now_ns: int, reading: Inertia) -> bytes:
+    def pack(self, seq: int, now_ns: int, reading: ImuReading) -> bytes:
         """Return the message with the number `seq`, stamped `now_ns` [ns]."""
         variance = reading.deviation * reading.deviation
         covariance = (variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance)

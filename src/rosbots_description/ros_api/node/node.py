@@ -31,20 +31,20 @@ from ..server import Loop, Server
 from ..services import EXTENSIONS, SERVICES, advertise
 from ..topics import advertise_clock, advertise_performance, advertise_states, subscribe_states
 from ..transport import (
-    Outlets,
+    BatchedPublishing,
     Registrar,
     connect_logging,
     guard_handshakes,
     guard_messages,
-    holder,
     init_node,
-    is_master_there,
+    is_master_running,
     leave_rosout,
     node_name,
+    replacing_node,
     require_address,
     require_free,
+    running_node,
     set_level,
-    successor,
     wait_for_answers,
     watch_master,
 )
@@ -101,15 +101,15 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
             _take_name(node_name(NAME, ros_arguments), options.replace)
             guard_handshakes()
             guard_messages()
-            outlets = Outlets()
-            outlets.serve_publishers()
+            publishing = BatchedPublishing()
+            publishing.serve_publishers()
             init_node(
                 NAME,
                 ros_arguments,
                 disable_signals=True,  # the loop is stopped between two steps
                 disable_rostime=True,  # see log_bridge
             )
-            loop = Loop(world, outlets.gathered)
+            loop = Loop(world, publishing.batched)
             server = Server(world, loop, Registrar(), find_package, find_model, sandbox)
             _simulate(options, spec, records, server)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
@@ -189,7 +189,7 @@ def _wait_for_master() -> None:
     """
     require_address()
     reminder = time.monotonic()
-    while not is_master_there(f'/{NAME}'):
+    while not is_master_running(f'/{NAME}'):
         if time.monotonic() >= reminder:
             _warn('No ROS master - start roscore to continue...')
             reminder += REMINDER
@@ -204,7 +204,7 @@ def _take_name(name: str, replace: bool) -> None:
     """
     if not replace:
         require_free(name)
-    elif other := holder(name):
+    elif other := running_node(name):
         _warn(f'this simulator replaces the node {name}, {other}')
 
 
@@ -212,7 +212,7 @@ def _end(loop: Loop) -> None:
     """Stop the loop at node shutdown; warn if another simulator has taken the name."""
     if not loop.stopping:  # shut down by the master or by rosnode kill
         name = rospy.get_name()
-        if other := successor(name, rospy.get_node_uri()):
+        if other := replacing_node(name, rospy.get_node_uri()):
             leave_rosout()
             logger.warning('this simulator ends: %s has taken over the name %s', other, name)
         loop.stop()

@@ -40,8 +40,8 @@ class Parameter(NamedTuple):
 
     name: str
     default: float | int | bool
-    least: float | int | bool
-    most: float | int | bool
+    minimum: float | int | bool
+    maximum: float | int | bool
     description: str
 
 
@@ -68,7 +68,7 @@ _TYPES = {float: 'double', int: 'int', bool: 'bool'}
 def advertise_reconfigure(server: Server) -> None:
     """Advertise the settings; needs the running loop, and makes calls to the ROS master."""
     reconfigure = PhysicsReconfigure(server)
-    server.physics_listeners.append(lambda: server.registrar.post(reconfigure.follow))
+    server.physics_listeners.append(lambda: server.registrar.post(reconfigure.publish_changes))
     server.parameters.append(reconfigure.write)
     logger.info('Physics dynamic reconfigure ready.')
 
@@ -82,7 +82,7 @@ class PhysicsReconfigure(ReconfigureServer):
         self._server = server
         super().__init__(description(PARAMETERS), self._reconfigure)
 
-    def follow(self) -> None:
+    def publish_changes(self) -> None:
         """Publish settings that a service has changed."""
         with self.mutex:
             current = self._current(self.config)
@@ -113,22 +113,22 @@ class PhysicsReconfigure(ReconfigureServer):
         current = self._current(config)
         if current is None:
             return self.config
-        asked = {
+        requested = {
             p.name: type(p.default)(config[p.name])
             for p in PARAMETERS
             if config[p.name] != self.config[p.name]
         }
-        if any(current[name] != value for name, value in asked.items()):
-            response = self._ask('set_physics_properties', _set_request({**current, **asked}))
+        if any(current[name] != value for name, value in requested.items()):
+            response = self._call('set_physics_properties', _set_request({**current, **requested}))
             if response.success:
-                current.update(asked)
+                current.update(requested)
                 logger.info('physics dynamics reconfigure update complete')
         logger.info('physics dynamics reconfigure complete')
         return current
 
     def _current(self, config: Config) -> Config | None:
         """Return a copy of `config` with the current settings; None if they are unavailable."""
-        response = self._ask('get_physics_properties', GetPhysicsPropertiesRequest())
+        response = self._call('get_physics_properties', GetPhysicsPropertiesRequest())
         if not response.success:
             return None
         current = Config({p.name: config[p.name] for p in PARAMETERS})
@@ -136,7 +136,7 @@ class PhysicsReconfigure(ReconfigureServer):
         current.update(settings(response))
         return current
 
-    def _ask(self, name: str, request: Message) -> Message:
+    def _call(self, name: str, request: Message) -> Message:
         return respond(self._server, SERVICES[name], request)
 
 
@@ -166,8 +166,8 @@ def description(parameters: Sequence[Parameter]) -> SimpleNamespace:
     """Return the description as dynamic_reconfigure's generator writes it into a module."""
     return SimpleNamespace(
         defaults={p.name: p.default for p in parameters},
-        min={p.name: p.least for p in parameters},
-        max={p.name: p.most for p in parameters},
+        min={p.name: p.minimum for p in parameters},
+        max={p.name: p.maximum for p in parameters},
         config_description={
             'name': 'Default', 'type': '', 'id': 0, 'parent': 0, 'state': True, 'groups': [],
             'parameters': [

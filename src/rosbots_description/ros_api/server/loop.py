@@ -75,7 +75,7 @@ class Loop:
         if threading.get_ident() == self._owner:
             return command()
         future: Future[Result] = Future()
-        self._commands.put(lambda: _carry_out(future, command))
+        self._commands.put(lambda: _execute(future, command))
         if self._stopping:
             future.cancel()
         try:
@@ -89,7 +89,7 @@ class Loop:
                 'try again, or check whether a model is too expensive to simulate'
             ) from None
 
-    def beside(self, work: Callable[[], Result]) -> Result:
+    def run_in_thread(self, work: Callable[[], Result]) -> Result:
         """Return `work()`, or raise its exception; it runs on a new thread, parallel to the steps.
 
         The work runs in the caller's context (contextvars).
@@ -99,7 +99,7 @@ class Loop:
 
         """
         future: Future[Result] = Future()
-        threading.Thread(target=copy_context().run, args=(_carry_out, future, work), name='beside',
+        threading.Thread(target=copy_context().run, args=(_execute, future, work), name='beside',
                          daemon=True).start()
         either: list[Future[Any]] = [future, self._ended]
         wait(either, return_when=FIRST_COMPLETED)
@@ -148,13 +148,13 @@ class Loop:
     def _do(self, command: Callable[[], None]) -> None:
         if self._world.paused:
             self._next_step = time.monotonic()  # do not catch up for a pause, however short
-        _guard(command)
+        _run_safely(command)
 
     def _run_tasks(self) -> None:
         for task in self._tasks:
             now = time.monotonic()
             if now >= task.next_run:
-                _guard(task.run)
+                _run_safely(task.run)
                 task.next_run += task.period
                 if task.next_run <= now:  # more than a period late: skip the missed runs
                     task.next_run = now + task.period
@@ -178,10 +178,10 @@ class Loop:
         if self._left is not None:
             batch = min(batch, self._left)
             self._left -= batch
-        self._world.keeps_pace = rate > 0.0
+        self._world.is_paced = rate > 0.0
         with self._batch():
             self._world.run(batch)
-        self._world.keeps_pace = False
+        self._world.is_paced = False
         cost = (time.monotonic() - now) / batch
         self._step_cost += 0.1 * (cost - self._step_cost)
 
@@ -222,7 +222,7 @@ class _Task:
         self.next_run = time.monotonic() + period
 
 
-def _carry_out(future: Future[Result], command: Callable[[], Result]) -> None:
+def _execute(future: Future[Result], command: Callable[[], Result]) -> None:
     """Run `command` unless its caller has given up, and set the result of the future."""
     if not future.set_running_or_notify_cancel():
         return
@@ -234,7 +234,7 @@ def _carry_out(future: Future[Result], command: Callable[[], Result]) -> None:
         future.set_result(result)
 
 
-def _guard(run: Callable[[], None]) -> None:
+def _run_safely(run: Callable[[], None]) -> None:
     """Run a function without a waiting caller; log its errors, so that the simulation continues."""
     try:
         run()

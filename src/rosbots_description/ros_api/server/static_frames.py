@@ -46,29 +46,29 @@ class StaticFrames:
         """Subscribe to /tf_static."""
         self._watching = True
         subscriber = rospy.Subscriber(
-            STATIC_TOPIC, TFMessage, lambda message: loop.post(lambda: self._take(message))
+            STATIC_TOPIC, TFMessage, lambda message: loop.post(lambda: self._receive(message))
         )
 
-        def look() -> None:
+        def poll() -> None:
             with contextlib.suppress(rospy.ROSInterruptException):
-                self.keep(publisher_names(subscriber))
+                self.retain(publisher_names(subscriber))
 
-        loop.every(PERIOD, look)
+        loop.every(PERIOD, poll)
 
-    def _take(self, message: TFMessage) -> None:
+    def _receive(self, message: TFMessage) -> None:
         self.add(sender_of(message), message)
 
     def add(self, node: str, message: TFMessage) -> None:
         """Store the transforms of a node; invalid ones are ignored, as in TF."""
-        held = dict(self._by_node.get(node, ()))
+        transforms = dict(self._by_node.get(node, ()))
         for transform in message.transforms:
             try:
                 pose = read_transform(transform.transform)
             except ValueError:
                 continue
             parent, child = transform.header.frame_id, transform.child_frame_id
-            held[child.lstrip('/')] = parent.lstrip('/'), pose
-        self._by_node[node] = held
+            transforms[child.lstrip('/')] = parent.lstrip('/'), pose
+        self._by_node[node] = transforms
         self._merge()
 
     def expect(self, nodes: set[str]) -> None:
@@ -81,7 +81,7 @@ class StaticFrames:
                 self._by_node.setdefault(node, {})
             self._merge()
 
-    def keep(self, nodes: set[str]) -> None:
+    def retain(self, nodes: set[str]) -> None:
         """Remove the transforms of all nodes but these; the others are gone."""
         gone = self._by_node.keys() - nodes
         if gone:
@@ -91,7 +91,8 @@ class StaticFrames:
 
     def _merge(self) -> None:
         self.parents = {
-            child: edge for held in self._by_node.values() for child, edge in held.items()
+            child: edge for transforms in self._by_node.values()
+            for child, edge in transforms.items()
         }
         self.nodes = frozenset(self._by_node)
         for listener in self.listeners:
@@ -108,9 +109,9 @@ def from_root(edge: FrameTransform, parents: Parents) -> FrameTransform:
         return edge
     seen = {root}
     while root in parents:
-        root, held = parents[root]
+        root, transforms = parents[root]
         if root == parent or root in seen:
             return edge
         seen.add(root)
-        pose = compose(pose, inverse(held))
+        pose = compose(pose, inverse(transforms))
     return FrameTransform(parent, root, pose)

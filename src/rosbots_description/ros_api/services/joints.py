@@ -70,7 +70,8 @@ def apply_joint_effort(
     joint = server.world.find_joint(request.joint_name)
     if joint is not None:
         start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
-        server.world.external_forces.add(joint, lambda: joint.push(request.effort), start, duration)
+        server.world.external_forces.add(
+            joint, lambda: joint.apply_effort(request.effort), start, duration)
     elif not _is_fixed(server.world, request.joint_name):
         return refuse(ApplyJointEffortResponse(), 'ApplyJointEffort: joint not found')
     return ApplyJointEffortResponse(True, 'ApplyJointEffort: effort set')

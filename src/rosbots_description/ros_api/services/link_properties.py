@@ -12,9 +12,9 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Point
 
-from ...sim.core import HEAVIEST, LIGHTEST, LONGEST, MOST_INERT, Pose
+from ...sim.core import MAX_INERTIA, MAX_LENGTH, MAX_MASS, MIN_MASS, Pose
 from ...sim.description import Inertial
-from ...sim.description.inertia import in_link_axes, is_positive, turnable
+from ...sim.description.inertia import in_link_axes, is_positive, regularised
 from ...sim.runtime import Link
 from ..messages import RequestError, read_vector, require_finite
 from ..server import Server
@@ -63,10 +63,10 @@ def set_link_properties(
         **{name: getattr(request, name) for name in _MOMENTS},
     )
     farthest = max(inertial.pose.position, key=abs)
-    if abs(farthest) > LONGEST:
+    if abs(farthest) > MAX_LENGTH:
         raise RequestError(
             f"com.position of link '{link.scoped_name}' is {farthest:g} m from its frame; "
-            f'at most {LONGEST:g} m are accepted'
+            f'at most {MAX_LENGTH:g} m are accepted'
         )
     if not link.model.static:
         inertial = _movable(link, inertial)
@@ -90,14 +90,14 @@ def _movable(link: Link, inertial: Inertial) -> Inertial:
             'than zero [kg]'
         )
     moments = (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz)
-    if not LIGHTEST <= inertial.mass <= HEAVIEST or max(map(abs, moments)) > MOST_INERT:
+    if not MIN_MASS <= inertial.mass <= MAX_MASS or max(map(abs, moments)) > MAX_INERTIA:
         raise RequestError(
             f"mass or inertia of link '{link.scoped_name}' is out of range: "
-            f'{LIGHTEST:g} to {HEAVIEST:g} kg and at most {MOST_INERT:g} kg m^2 are accepted'
+            f'{MIN_MASS:g} to {MAX_MASS:g} kg and at most {MAX_INERTIA:g} kg m^2 are accepted'
         )
     if not is_positive(inertial):
         raise RequestError(
             f"the inertia tensor for link '{link.scoped_name}' has a negative principal moment; "
             'give the tensor about the centre of mass [kg m^2]'
         )
-    return turnable(inertial)
+    return regularised(inertial)

@@ -113,7 +113,7 @@ def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyB
         link.pose,
     )
     start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
-    world.external_forces.add(link, lambda: link.push(force, torque), start, duration)
+    world.external_forces.add(link, lambda: link.apply_wrench(force, torque), start, duration)
     return ApplyBodyWrenchResponse(success=True)
 
 

@@ -35,7 +35,7 @@ def get_model_properties(
     response.geom_names = [collision.name for link in links for collision in link.collisions]
     response.joint_names = [j.name for j in model.spec.joints if _INNER not in j.name]
     response.parent_model_name = model.parent_name
-    response.child_model_names = [name for name in model.spec.inner if _INNER not in name]
+    response.child_model_names = [name for name in model.spec.nested if _INNER not in name]
     response.is_static = model.static
     response.success, response.status_message = True, 'GetModelProperties: got properties'
     return response

@@ -101,7 +101,7 @@ def respond(server: Server, entry: Service, request: Message) -> Message:
     try:
         prepared = request
         if entry.prepare:
-            prepared = server.loop.beside(partial(entry.prepare, server, request))
+            prepared = server.loop.run_in_thread(partial(entry.prepare, server, request))
         if isinstance(prepared, response_class):
             return prepared
         answer = partial(entry.answer, server, prepared)

@@ -20,13 +20,13 @@ from ..server import Server
 PERIOD = 0.2  # [s, wall]
 
 
-class Pace:
+class RealTimeFactor:
     """Real-time factor between two samples."""
 
     def __init__(self, simulated: float, wall: float) -> None:
         self._simulated, self._wall = simulated, wall
 
-    def look(self, simulated: float, wall: float) -> float:
+    def update(self, simulated: float, wall: float) -> float:
         """Return the real-time factor since the last sample; both times in seconds."""
         gained = max(0.0, simulated - self._simulated)  # time jumps back at a reset
         passed = wall - self._wall
@@ -34,13 +34,13 @@ class Pace:
         return gained / passed if passed > 0.0 else 0.0
 
 
-class SensorPaces:
+class SensorRates:
     """Update rates of sensors between two samples."""
 
     def __init__(self) -> None:
         self._before: dict[SensorLife, tuple[int, int]] = {}  # count, time of the last reading [ns]
 
-    def look(self, sensors: Iterable[SensorLife], passed: float) -> list[SensorPerformanceMetric]:
+    def update(self, sensors: Iterable[SensorLife], passed: float) -> list[SensorPerformanceMetric]:
         """Return the rates of sensors since the last sample, `passed` [s, wall] ago."""
         now = {sensor: (sensor.count, sensor.last_ns) for sensor in sensors}
         before, self._before = self._before, now
@@ -61,14 +61,14 @@ def advertise_performance(server: Server) -> None:
     publisher = rospy.Publisher('~performance_metrics', PerformanceMetrics, queue_size=10)
     clock = server.world.clock
     begin = time.monotonic()
-    pace, paces = Pace(clock.now, begin), SensorPaces()
+    factor, rates = RealTimeFactor(clock.now, begin), SensorRates()
 
     def publish() -> None:
         nonlocal begin
         now = time.monotonic()
-        message = PerformanceMetrics(real_time_factor=pace.look(clock.now, now))
+        message = PerformanceMetrics(real_time_factor=factor.update(clock.now, now))
         models = server.world.models.values()
-        message.sensors = paces.look(
+        message.sensors = rates.update(
             (sensor for model in models for sensor in model.sensors), now - begin)
         begin = now
         message.header.stamp = stamp(clock.now_ns)

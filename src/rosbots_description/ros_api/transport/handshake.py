@@ -17,13 +17,13 @@ from rospy.impl.tcpros_base import TCPServer
 
 logger = logging.getLogger(__name__)
 
-PATIENCE = 10.0  # how long a new connection may take to send its header [s, wall]
+TIMEOUT = 10.0  # how long a new connection may take to send its header [s, wall]
 # Limit of a header [bytes]. The whole header must fit in the socket's buffer; a client's header
 # contains a message definition at most. Text of other protocols decodes to a far greater length.
-LONGEST_HEADER = 1 << 15
+MAX_HEADER_SIZE = 1 << 15
 _LENGTH = struct.Struct('<I')  # length prefix [bytes]
 # Between polls of an incomplete header [s, wall]; each pause is twice the previous one.
-_FIRST_PAUSE, _LONGEST_PAUSE = 0.001, 0.1
+_FIRST_PAUSE, _MAX_PAUSE = 0.001, 0.1
 _WAITING = 128  # listen backlog; rospy's 5 are too few during a launch
 _SHORTAGE = 0.1  # pause without file descriptors [s, wall]
 
@@ -63,25 +63,25 @@ def _receive(server: TCPServer, connection: socket.socket, address: tuple) -> No
         connection.close()
 
 
-def speaks_tcpros(connection: socket.socket, patience: float = PATIENCE) -> bool:
-    """Tell whether a complete header arrives within `patience` [s, wall]; consumes nothing."""
-    deadline = time.monotonic() + patience
+def speaks_tcpros(connection: socket.socket, timeout: float = TIMEOUT) -> bool:
+    """Tell whether a complete header arrives within `timeout` [s, wall]; consumes nothing."""
+    deadline = time.monotonic() + timeout
     pause = _FIRST_PAUSE
     hangup = select.poll()
     hangup.register(connection, select.POLLRDHUP)
     while True:
         connection.settimeout(max(_FIRST_PAUSE, deadline - time.monotonic()))
         try:
-            there = connection.recv(_LENGTH.size + LONGEST_HEADER, socket.MSG_PEEK)
+            there = connection.recv(_LENGTH.size + MAX_HEADER_SIZE, socket.MSG_PEEK)
         except OSError:
             return False
         if len(there) >= _LENGTH.size:
             (length,) = _LENGTH.unpack_from(there)
-            if length > LONGEST_HEADER:
+            if length > MAX_HEADER_SIZE:
                 return False
             if len(there) >= _LENGTH.size + length:
                 connection.settimeout(None)
                 return True
         if not there or time.monotonic() >= deadline or hangup.poll(1000.0 * pause):
             return False
-        pause = min(2.0 * pause, _LONGEST_PAUSE)
+        pause = min(2.0 * pause, _MAX_PAUSE)

@@ -18,7 +18,7 @@ logger = logging.getLogger(__name__)
 
 # [bytes] rospy buffers a whole message in memory and accepts any length. The limit is far above any
 # description, so that too long ones are still received and rejected with a message.
-LONGEST_MESSAGE = 1 << 28
+MAX_MESSAGE_SIZE = 1 << 28
 _LENGTH = struct.Struct('<I')  # length prefix [bytes]
 _handle, _complain = ServiceImpl.handle, ServiceImpl.error_handler
 _answer = ServiceImpl._handle_request
@@ -49,8 +49,8 @@ def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
     if buffer.tell() >= _LENGTH.size:
         with buffer.getbuffer() as content:
             (length,) = _LENGTH.unpack_from(content)
-        if length > LONGEST_MESSAGE:
-            sentence = f'a message of {length} bytes is rejected; the limit is {LONGEST_MESSAGE}'
+        if length > MAX_MESSAGE_SIZE:
+            sentence = f'a message of {length} bytes is rejected; the limit is {MAX_MESSAGE_SIZE}'
             logger.warning('%s', sentence)
             raise TransportTerminated(sentence)
     return count
@@ -98,10 +98,10 @@ def caller_waits() -> bool:
         return False
 
 
-def wait_for_answers(patience: float) -> bool:
-    """Wait until all requests are answered; tell whether they were within `patience` [s]."""
+def wait_for_answers(timeout: float) -> bool:
+    """Wait until all requests are answered; tell whether they were within `timeout` [s]."""
     with _answered:
-        return _answered.wait_for(lambda: not _answering, patience)
+        return _answered.wait_for(lambda: not _answering, timeout)
 
 
 def complain(service: ServiceImpl, error: Exception, *details: object) -> None:

@@ -31,13 +31,13 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
 
     """
     ours, rosout = logging.getLogger(_ROOT), logging.getLogger('rosout')
-    for handler in (Preparation(now_ns), *_console_and_file(rosout)):
+    for handler in (RecordPreparation(now_ns), *_console_and_file(rosout)):
         ours.addHandler(handler)
     ours.setLevel(rosout.level)
     ours.propagate = False
     for name in tuple(logging.root.manager.loggerDict):
         if name.startswith(_PLUGINS):
-            logging.getLogger(name).addFilter(Unrepeated())
+            logging.getLogger(name).addFilter(DuplicateFilter())
 
 
 def set_level(name: str) -> None:
@@ -71,25 +71,25 @@ def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
     return handlers
 
 
-class Unrepeated(logging.Filter):
+class DuplicateFilter(logging.Filter):
     """Passes each message once: a robot that is spawned again causes the same warnings."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._said: set[str] = set()
+        self._seen: set[str] = set()
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Tell whether the message is new, or was forgotten since."""
         text = record.getMessage()
-        if text in self._said:
+        if text in self._seen:
             return False
-        if len(self._said) >= _REMEMBERED:
-            self._said.clear()
-        self._said.add(text)
+        if len(self._seen) >= _REMEMBERED:
+            self._seen.clear()
+        self._seen.add(text)
         return True
 
 
-class Preparation(logging.Handler):
+class RecordPreparation(logging.Handler):
     """Prepares each message for the handlers after it: one printable line, with simulated time.
 
     The simulator does not subscribe to its own /clock, which at 1000 messages per second would cost

@@ -27,7 +27,7 @@ def log_file(name: str, arguments: Sequence[str]) -> Path:
     return Path(rospkg.get_log_dir(), given.get('__log', f'{name}.log')).absolute()
 
 
-def obstacle(path: Path) -> str | None:
+def write_error(path: Path) -> str | None:
     """Return why the log file cannot be written, or None; creates its folder."""
     try:
         if not path.parent.is_dir():
@@ -42,14 +42,14 @@ def obstacle(path: Path) -> str | None:
     return None
 
 
-def log_to_nowhere() -> list[str]:
+def disable_log_file() -> list[str]:
     """Return additional arguments for a node without a log file."""
     # rospy requires a file. Were it outside ROS_LOG_DIR, rospy would create a link /latest.
     os.environ['ROS_LOG_DIR'] = os.path.dirname(os.devnull)
     return [f'__log{REMAP}{os.devnull}']
 
 
-def outlive_full_disk() -> None:
+def tolerate_full_disk() -> None:
     """Let the log file accept all text, and warn once when it cannot be written any more.
 
     Call it after `init_node`. Python's logging would print a traceback for each message.
@@ -59,23 +59,23 @@ def outlive_full_disk() -> None:
             handler.encoding, handler.errors = 'utf-8', 'backslashreplace'  # for rotated files
             if handler.stream is not None:
                 handler.stream.reconfigure(encoding=handler.encoding, errors=handler.errors)
-            handler.handleError = _Complaint(handler)  # type: ignore[method-assign]  # the only way
+            handler.handleError = _WriteErrorReporter(handler)  # type: ignore[method-assign]  # the only way
 
 
-class _Complaint:
+class _WriteErrorReporter:
     """Warns once that a log file cannot be written; passes other errors to Python's handler."""
 
     def __init__(self, handler: logging.FileHandler) -> None:
         self._path = handler.baseFilename
         self._show = handler.handleError
-        self._said = False
+        self._seen = False
 
     def __call__(self, record: logging.LogRecord) -> None:
         error = sys.exc_info()[1]
         if not isinstance(error, OSError):
             self._show(record)
-        elif not self._said:
-            self._said = True
+        elif not self._seen:
+            self._seen = True
             # Logging it would recurse.
             sys.stderr.write(f'[WARN] [{time.time():f}]: log file {self._path} cannot be written '
                              f'({error.strerror}); messages may be missing, free some space\n')

@@ -36,7 +36,7 @@ def require_address() -> None:
         ) from None
 
 
-def is_master_there(name: str) -> bool:
+def is_master_running(name: str) -> bool:
     """Tell whether a master answers the node `name`, which need not be registered."""
     try:
         rosgraph.Master(name).getPid()
@@ -71,15 +71,15 @@ def has_service(name: str) -> bool:
     return True
 
 
-def once_there(ask: Callable[[], Answer]) -> Answer:
-    """Return `ask()`, a call to the master; retry while it is unavailable, as rospy does.
+def retry_call(call: Callable[[], Answer]) -> Answer:
+    """Return `call()`, a call to the master; retry while it is unavailable, as rospy does.
 
     Raises:
         rospy.ROSInterruptException: the node is shutting down.
     """
     while not rospy.is_shutdown():
         try:
-            return ask()
+            return call()
         except NO_MASTER:
             time.sleep(_PERIOD)
     raise rospy.ROSInterruptException('the node is shutting down')
@@ -91,7 +91,7 @@ def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
     Args:
         publishing: another topic, whose publishers are returned as the second set.
     """
-    publishers, readers, _ = once_there(
+    publishers, readers, _ = retry_call(
         lambda: rosgraph.Master(rospy.get_name()).getSystemState())
     return _nodes(readers, topic), _nodes(publishers, publishing)
 

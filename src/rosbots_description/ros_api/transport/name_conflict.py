@@ -18,7 +18,7 @@ from rosgraph.names import get_ros_namespace, load_mappings, ns_join
 from ...sim.core import SimError
 from .master import NO_MASTER
 
-PATIENCE = 2.0  # time for a node to answer [s, wall]
+TIMEOUT = 2.0  # time for a node to answer [s, wall]
 
 
 class NameTakenError(SimError):
@@ -26,7 +26,7 @@ class NameTakenError(SimError):
 
 
 @dataclass(frozen=True)
-class Holder:
+class RunningNode:
     """The running node that has a name."""
 
     uri: str
@@ -44,7 +44,7 @@ def node_name(name: str, arguments: Sequence[str]) -> str:
         get_ros_namespace(argv=arguments), load_mappings(arguments).get('__name', name).strip('/'))
 
 
-def holder(name: str) -> Holder | None:
+def running_node(name: str) -> RunningNode | None:
     """Return the running node of that name; None if there is none, or a stale entry.
 
     Raises:
@@ -56,21 +56,21 @@ def holder(name: str) -> Holder | None:
         return None
     where = urlsplit(uri)
     try:
-        socket.create_connection((where.hostname, where.port), PATIENCE).close()
+        socket.create_connection((where.hostname, where.port), TIMEOUT).close()
     except OSError:
         return None  # stale entry of a killed node
     try:
-        node: Any = ServerProxy(uri, transport=_Impatient())
-        return Holder(uri, node.getPid(name)[2])
+        node: Any = ServerProxy(uri, transport=_TimeoutTransport())
+        return RunningNode(uri, node.getPid(name)[2])
     except TimeoutError:
-        return Holder(uri, None)
+        return RunningNode(uri, None)
     except (*NO_MASTER, XmlRpcError):  # another program has its port now
         return None
 
 
 def require_free(name: str) -> None:
     """Raise `NameTakenError` if a running node has that name."""
-    other = holder(name)
+    other = running_node(name)
     if other:
         raise NameTakenError(
             f'a simulator is already running on this ROS master: the node {name}, {other}. Stop it '
@@ -78,19 +78,19 @@ def require_free(name: str) -> None:
         )
 
 
-def successor(name: str, uri: str) -> Holder | None:
+def replacing_node(name: str, uri: str) -> RunningNode | None:
     """Return the running node that has taken the name of the node at `uri`, or None."""
     try:
-        other = holder(name)
+        other = running_node(name)
     except NO_MASTER:
         return None
     return other if other and other.uri != uri else None
 
 
-class _Impatient(Transport):
-    """A transport with the timeout `PATIENCE`."""
+class _TimeoutTransport(Transport):
+    """A transport with the timeout `TIMEOUT`."""
 
     def make_connection(self, host: tuple[str, dict[str, str]] | str) -> HTTPConnection:
         connection = super().make_connection(host)
-        connection.timeout = PATIENCE
+        connection.timeout = TIMEOUT
         return connection

@@ -7,7 +7,7 @@ import rospy
 from rosgraph.names import resolve_name
 
 from ...sim.core import PluginError
-from .master import once_there
+from .master import retry_call
 
 # Global names that rospy and the master accept. roscpp rejects hyphens and dots.
 _GLOBAL_NAME = re.compile('(/[a-zA-Z0-9_.-]+)+')
@@ -53,7 +53,7 @@ def find_tf_prefix(namespace: str) -> str:
     namespace = rospy.resolve_name(namespace).rstrip('/')
     try:
         # The master searches upward from the caller's name.
-        name = once_there(lambda: rosgraph.Master(f'{namespace}/plugin').searchParam('tf_prefix'))
+        name = retry_call(lambda: rosgraph.Master(f'{namespace}/plugin').searchParam('tf_prefix'))
     except rosgraph.MasterError:
         return ''
-    return str(once_there(lambda: rospy.get_param(name, '')))
+    return str(retry_call(lambda: rospy.get_param(name, '')))

@@ -11,9 +11,9 @@ import rospy.impl.init
 from rosgraph.network import get_address_override
 from rospy.impl.registration import get_registration_listeners
 
-from .log_file import log_file, log_to_nowhere, obstacle, outlive_full_disk
+from .log_file import disable_log_file, log_file, tolerate_full_disk, write_error
 
-_LOOK = 0.001  # between polls of the node's registration [s, wall]
+_POLL_PERIOD = 0.001  # between polls of the node's registration [s, wall]
 
 
 def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
@@ -26,11 +26,11 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     """
     lost_name = _address_without_name()
     path = log_file(name, arguments)
-    reason = obstacle(path)
+    reason = write_error(path)
     _begin_at_once()
-    rospy.init_node(name, [name, *arguments, *(log_to_nowhere() if reason else ())], **options)
+    rospy.init_node(name, [name, *arguments, *(disable_log_file() if reason else ())], **options)
     _end_at_once()
-    outlive_full_disk()
+    tolerate_full_disk()
     if reason:
         rospy.logwarn('log file %s cannot be written (%s), so there is none; set ROS_LOG_DIR to a '
                       'writable folder', path, reason)
@@ -70,7 +70,7 @@ def _begin_at_once() -> None:
     rospy polls the node's registration at that period, and the first poll is always too early.
     There is no public API for this.
     """
-    rospy.impl.init.time = SimpleNamespace(sleep=lambda _seconds: time.sleep(_LOOK))
+    rospy.impl.init.time = SimpleNamespace(sleep=lambda _seconds: time.sleep(_POLL_PERIOD))
 
 
 def _end_at_once() -> None:

@@ -24,7 +24,7 @@ from .registrar import Registrar
 logger = logging.getLogger(__name__)
 
 PERIOD = 1.0  # between checks of the master [s, wall]
-PATIENCE = 30.0  # time for a registration before it is retried [s, wall]
+TIMEOUT = 30.0  # time for a registration before it is retried [s, wall]
 
 
 def published_types() -> dict[str, str]:
@@ -60,8 +60,8 @@ def _watch(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> No
         if known is None and not gone:
             logger.warning('the ROS master is gone; the simulation goes on and waits for it')
         if known is False:
-            registrar.post(lambda: _introduce(parameters))
-            registrar.wait(PATIENCE)
+            registrar.post(lambda: _register_again(parameters))
+            registrar.wait(TIMEOUT)
         gone = known is None
         if ended.wait(PERIOD):
             return
@@ -78,7 +78,7 @@ def _is_known(master: rosgraph.Master) -> bool | None:
     return True
 
 
-def _introduce(parameters: Iterable[Callable[[], None]]) -> None:
+def _register_again(parameters: Iterable[Callable[[], None]]) -> None:
     """Register everything with a new master; rospy has no public API for this."""
     listeners, topics = get_registration_listeners(), get_topic_manager()
     services = dict(get_service_manager().get_services())
@@ -97,7 +97,7 @@ def _introduce(parameters: Iterable[Callable[[], None]]) -> None:
 
 
 def _first_service() -> str:
-    """Return the service that is registered first with a master, and only by `_introduce`.
+    """Return the service that is registered first with a master, and only by `_register_again`.
 
     A master that knows it has the other registrations, too, or is about to get them. Other topics
     may have been registered by a model spawned before the new master was noticed.

@@ -19,49 +19,51 @@ from rospy.impl.tcpros_base import TCPROSTransport
 
 logger = logging.getLogger(__name__)
 
-_LARGEST_NUMBER = 0xFFFFFFFF  # of `seq`, which then wraps to 0
+_MAX_SEQ = 0xFFFFFFFF  # of `seq`, which then wraps to 0
 
 
-class Outlets:
+class BatchedPublishing:
     """The connections to all readers of this process."""
 
     def __init__(self) -> None:
         self.lock = threading.RLock()  # closing a connection may log, and so publish
-        self.gathering = False
-        self.filled: list[Outlet] = []  # those with gathered messages
+        self.batching = False
+        self.filled: list[BatchedConnection] = []  # those with collected messages
 
     def serve_publishers(self) -> None:
-        """Use `Outlet` for all publishers of this process; call once before `init_node`.
+        """Use `BatchedConnection` for all publishers of this process; call once before `init_node`.
 
         rospy has no public API for this.
         """
-        rospy.topics.QueuedConnection = lambda *arguments: Outlet(self, *arguments)
+        rospy.topics.QueuedConnection = lambda *arguments: BatchedConnection(self, *arguments)
 
     @contextlib.contextmanager
-    def gathered(self) -> Iterator[None]:
-        """Gather published messages, and send them at the end in one call for each reader."""
-        self.gathering = True
+    def batched(self) -> Iterator[None]:
+        """Collect published messages, and send them at the end in one call for each subscriber."""
+        self.batching = True
         try:
             yield
         finally:
             with self.lock:
-                self.gathering = False
-                for outlet in self.filled:
-                    outlet.flush()
+                self.batching = False
+                for connection in self.filled:
+                    connection.flush()
                 self.filled.clear()
 
 
-class Outlet:
-    """A reader's connection, in place of rospy's QueuedConnection.
+class BatchedConnection:
+    """A subscriber's connection, in place of rospy's QueuedConnection.
 
     If the socket's buffer is full, a temporary thread sends the rest. Meanwhile the newest
     `queue_size` messages are queued; 0 means no limit.
     """
 
-    def __init__(self, outlets: Outlets, connection: TCPROSTransport, queue_size: int) -> None:
-        self._outlets = outlets
+    def __init__(
+        self, publishing: BatchedPublishing, connection: TCPROSTransport, queue_size: int
+    ) -> None:
+        self._publishing = publishing
         self._connection = connection
-        self._gathered: list[bytes] = []
+        self._batch: list[bytes] = []
         self._waiting: deque[bytes] = deque(maxlen=queue_size or None)
         self._draining = False
 
@@ -73,25 +75,25 @@ class Outlet:
         """Send a message now, at the end of a batch, or after those already queued.
 
         Raises:
-            TransportTerminated: the reader has disconnected.
+            TransportTerminated: the subscriber has disconnected.
         """
         if self._connection.done:
             raise TransportTerminated('connection closed')
-        with self._outlets.lock:
+        with self._publishing.lock:
             if self._draining:
                 self._waiting.append(data)
-            elif self._outlets.gathering:
-                if not self._gathered:
-                    self._outlets.filled.append(self)
-                self._gathered.append(data)
+            elif self._publishing.batching:
+                if not self._batch:
+                    self._publishing.filled.append(self)
+                self._batch.append(data)
             else:
                 self._send(data)
         return True
 
     def flush(self) -> None:
-        """Send the gathered messages; the caller holds the lock."""
-        data = b''.join(self._gathered)
-        self._gathered.clear()
+        """Send the collected messages; the caller holds the lock."""
+        data = b''.join(self._batch)
+        self._batch.clear()
         self._send(data)
 
     def _send(self, data: bytes) -> None:
@@ -111,7 +113,7 @@ class Outlet:
             threading.Thread(target=self._drain, args=(data[sent:],), daemon=True).start()
 
     def _drain(self, data: bytes) -> None:
-        """Send the rest and the queue, waiting for the reader."""
+        """Send the rest and the queue, waiting for the subscriber."""
         while True:
             try:
                 self._connection.write_data(data)
@@ -119,7 +121,7 @@ class Outlet:
                 logger.debug('%s stopped reading: %s', self._connection.endpoint_id, error)
                 self._connection.close()
                 return
-            with self._outlets.lock:
+            with self._publishing.lock:
                 if not self._waiting:
                     self._draining = False
                     return
@@ -127,22 +129,22 @@ class Outlet:
                 self._waiting.clear()
 
 
-class ReaderWatch(rospy.SubscribeListener):
-    """Calls `changed()` when a reader connects or disconnects, on any thread."""
+class SubscriberWatch(rospy.SubscribeListener):
+    """Calls `changed()` when a subscriber connects or disconnects, on any thread."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
 
     def peer_subscribe(self, _topic: str, _publish: object, _publish_to_one: object) -> None:
-        """Report a new reader."""
+        """Report a new subscriber."""
         self._changed()
 
     def peer_unsubscribe(self, _topic: str, _count: int) -> None:
-        """Report that a reader has disconnected."""
+        """Report that a subscriber has disconnected."""
         self._changed()
 
 
-def stop_publishing(publisher: rospy.Publisher, watch: ReaderWatch) -> None:
+def stop_publishing(publisher: rospy.Publisher, watch: SubscriberWatch) -> None:
     """Unregister a publisher and its watch; others of this node may share the topic.
 
     rospy would keep calling the watch.
@@ -154,8 +156,8 @@ def stop_publishing(publisher: rospy.Publisher, watch: ReaderWatch) -> None:
     publisher.unregister()
 
 
-def has_readers(publisher: rospy.Publisher | None) -> bool:
-    """Tell whether a topic has readers; None stands for a disabled topic.
+def has_subscribers(publisher: rospy.Publisher | None) -> bool:
+    """Tell whether a topic has subscribers; None stands for a disabled topic.
 
     rospy's get_num_connections takes a lock, which is slow if each robot calls it at 100 Hz.
     """
@@ -163,7 +165,7 @@ def has_readers(publisher: rospy.Publisher | None) -> bool:
     return topic is not None and bool(topic.connections)
 
 
-def reader_names(publisher: rospy.Publisher) -> set[str]:
+def subscriber_names(publisher: rospy.Publisher) -> set[str]:
     """Return the names of the subscribed nodes."""
     topic = publisher.impl
     return {connection.endpoint_id for connection in topic.connections} if topic else set()
@@ -174,7 +176,7 @@ def next_number(publisher: rospy.Publisher) -> int:
     topic = publisher.impl
     if topic is None:  # the node is shutting down
         return 0
-    topic.seq = (topic.seq + 1) & _LARGEST_NUMBER
+    topic.seq = (topic.seq + 1) & _MAX_SEQ
     return topic.seq
 
 

@@ -25,11 +25,11 @@ class ShownFrames:
         self._world = world
         self._shown: dict[str, Pose] = {}
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Publish all frames next time."""
         self._shown.clear()
 
-    def look(self) -> list[TransformStamped]:
+    def changes(self) -> list[TransformStamped]:
         """Return the frames of the models that moved since the last call."""
         poses = {name: model.pose for name, model in self._world.models.items()}
         moved = [_transform(name, pose) for name, pose in poses.items()
@@ -53,7 +53,7 @@ def advertise_frames(server: Server) -> None:
     def show() -> None:
         if publisher.get_num_connections() == 0:
             return
-        moved = shown.look()
+        moved = shown.changes()
         if moved:
             publisher.publish(TFMessage(moved))
 

@@ -41,7 +41,7 @@ class LinkView:
             if file is not None:
                 use_sunlit(marker, file)
 
-    def forget(self) -> None:
+    def invalidate(self) -> None:
         """Publish again at the next update."""
         self._shown = None
 
@@ -62,18 +62,18 @@ class ShownMarkers:
     def __init__(self, world: World) -> None:
         self._world = world
         self._models: dict[str, tuple[Model, list[LinkView]]] = {}
-        self._looks = 0
+        self._updates = 0
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Publish all at the next update, for a subscriber that may show another world."""
         self._models.clear()
-        self._looks = 0
+        self._updates = 0
 
-    def look(self) -> list[Marker]:
+    def changes(self) -> list[Marker]:
         """Return the markers that changed since the last update."""
-        markers = [] if self._looks else [clearance()]
-        refresh = self._looks % REFRESH == 0
-        self._looks += 1
+        markers = [] if self._updates else [clearance()]
+        refresh = self._updates % REFRESH == 0
+        self._updates += 1
         models = self._world.models
         for name, (model, links) in list(self._models.items()):
             if models.get(name) is not model:
@@ -87,7 +87,7 @@ class ShownMarkers:
                 self._models[name] = model, views
             for link in self._models[name][1]:
                 if refresh:
-                    link.forget()
+                    link.invalidate()
                 markers += link.moved()
         return markers
 
@@ -102,26 +102,26 @@ class SunlitMarkers(ShownMarkers):
     def __init__(self, world: World, meshes: SunlitMeshes, thread: Executor) -> None:
         super().__init__(world)
         self._meshes, self._thread = meshes, thread
-        self._coming: dict[str, tuple[Model, Future[list[LinkView]]]] = {}
+        self._pending: dict[str, tuple[Model, Future[list[LinkView]]]] = {}
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Publish all models as soon as their files are written."""
-        super().begin()
-        self._coming.clear()
+        super().reset()
+        self._pending.clear()
 
-    def look(self) -> list[Marker]:
+    def changes(self) -> list[Marker]:
         """Return the changed markers of the models whose files are written."""
-        markers, models = super().look(), self._world.models
-        self._coming = {name: coming for name, coming in self._coming.items() if name in models}
+        markers, models = super().changes(), self._world.models
+        self._pending = {name: pending for name, pending in self._pending.items() if name in models}
         return markers
 
     def _views(self, name: str, model: Model) -> list[LinkView] | None:
-        if self._coming.get(name, (None,))[0] is not model:
-            self._coming[name] = model, self._thread.submit(self._make_views, model)
-        future = self._coming[name][1]
+        if self._pending.get(name, (None,))[0] is not model:
+            self._pending[name] = model, self._thread.submit(self._make_views, model)
+        future = self._pending[name][1]
         if not future.done():
             return None
-        del self._coming[name]
+        del self._pending[name]
         return future.result()
 
     def _make_views(self, model: Model) -> list[LinkView]:
@@ -133,23 +133,23 @@ def _shown_links(model: Model) -> list[Link]:
     return [link for link in model.links.values() if link.spec.visuals]
 
 
-class Shown(Protocol):
+class IncrementalView(Protocol):
     """A view that publishes changes only."""
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Publish everything at the next update."""
 
 
 class Viewers(rospy.SubscribeListener):
     """Lets a view publish everything for a new subscriber."""
 
-    def __init__(self, server: Server, view: Shown) -> None:
+    def __init__(self, server: Server, view: IncrementalView) -> None:
         self._server = server
         self._view = view
 
     def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
         """Handle a new subscriber."""
-        self._server.loop.post(self._view.begin)
+        self._server.loop.post(self._view.reset)
 
 
 def advertise_visuals(server: Server) -> None:
@@ -167,7 +167,7 @@ def _advertise(server: Server, topic: str, view: ShownMarkers) -> None:
     def show() -> None:
         if publisher.get_num_connections() == 0:
             return
-        markers = view.look()
+        markers = view.changes()
         if markers:
             publisher.publish(MarkerArray(markers))
 

@@ -57,11 +57,11 @@ def principal_axes(inertial: Inertial) -> tuple[Vector, Quaternion]:
     axes = axes * np.where(np.diag(axes) < 0.0, -1.0, 1.0)
     if np.linalg.det(axes) < 0.0:
         axes[:, np.argmin(np.abs(np.diag(axes)))] *= -1.0
-    turned = compose(Pose(orientation=own), Pose(orientation=_quaternion(settle(axes))))
-    return as_vector(settle(moments)), normalise(turned.orientation)
+    turned = compose(Pose(orientation=own), Pose(orientation=_quaternion(rounded(axes))))
+    return as_vector(rounded(moments)), normalise(turned.orientation)
 
 
-def settle(values: FloatArray) -> FloatArray:
+def rounded(values: FloatArray) -> FloatArray:
     """Return `values` rounded to the digits on which all linear algebra libraries agree.
 
     They are then the same on every machine, and so is the simulated motion.
@@ -104,7 +104,7 @@ def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
         arm = np.array(pose.position) - centre
         total += turn @ tensor(inertial) @ turn.T
         total += inertial.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    mass, centre, total = round(mass, _DIGITS), settle(centre), settle(total)
+    mass, centre, total = round(mass, _DIGITS), rounded(centre), rounded(total)
     return Inertial(
         mass, Pose(as_vector(centre)),
         ixx=float(total[0, 0]), iyy=float(total[1, 1]), izz=float(total[2, 2]),
@@ -115,7 +115,7 @@ def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
 def in_link_axes(inertial: Inertial) -> Inertial:
     """Return the same mass properties with the tensor in the axes of the link."""
     turn = _matrix(inertial.pose.orientation)
-    total = settle(turn @ tensor(inertial) @ turn.T)
+    total = rounded(turn @ tensor(inertial) @ turn.T)
     return Inertial(
         inertial.mass, Pose(inertial.pose.position),
         ixx=float(total[0, 0]), iyy=float(total[1, 1]), izz=float(total[2, 2]),
@@ -136,7 +136,7 @@ def possible(inertial: Inertial) -> Inertial:
     negative = moments[0] < -_NEARLY_ZERO * greatest
     if not negative and 2.0 * greatest - sum(moments) <= ROUNDING * greatest:
         return inertial
-    nearest = settle(axes @ np.diag(_sums_of_two(moments)) @ axes.T)
+    nearest = rounded(axes @ np.diag(_sums_of_two(moments)) @ axes.T)
     return replace(
         inertial,
         ixx=float(nearest[0, 0]), iyy=float(nearest[1, 1]), izz=float(nearest[2, 2]),
@@ -174,7 +174,7 @@ def _sums_of_two(moments: FloatArray) -> FloatArray:
     return best
 
 
-def turnable(inertial: Inertial) -> Inertial:
+def regularised(inertial: Inertial) -> Inertial:
     """Return `inertial` with each zero principal moment replaced by that of a small solid sphere.
 
     2/5 m r^2 with r = STAND_IN_RADIUS. Other inertials are returned unchanged.

@@ -235,7 +235,7 @@ class ModelSpec:
     static: bool = False
     # Reduced link -> its parent after reduction, and its pose in that.
     reduced: Mapping[str, tuple[str, Pose]] = field(default_factory=dict)
-    inner: Mapping[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
+    nested: Mapping[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
     left_out: tuple[str, ...] = ()  # parts that were left out, each in a few words
     # Location of its description, e.g. 'robot_description, line 1', to begin messages with.
     location: str = field(default='', compare=False)

@@ -3,11 +3,11 @@
 import math
 from dataclasses import astuple, dataclass, fields
 
-from ..core import SLOWEST_RATE, SimError, Vector
+from ..core import MIN_UPDATE_RATE, SimError, Vector
 
-SHORTEST_STEP, LONGEST_STEP = 1e-9, 10.0  # [s]; the clock counts nanoseconds
-MOST_ITERATIONS = 10_000  # of the solver; more would only stall the simulation
-MOST_CONTACTS = 10_000_000
+MIN_STEP_SIZE, MAX_STEP_SIZE = 1e-9, 10.0  # [s]; the clock counts nanoseconds
+MAX_ITERATIONS = 10_000  # of the solver; more would only stall the simulation
+MAX_CONTACTS = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -46,18 +46,18 @@ def check_physics(physics: PhysicsSettings) -> None:
         if not all(map(math.isfinite, value if isinstance(value, tuple) else (value,))):
             raise SimError(f'{field.name} is {value}; it must be finite')
     for name, least, most, unit in (
-        ('step_size', SHORTEST_STEP, LONGEST_STEP, '[s]'),
+        ('step_size', MIN_STEP_SIZE, MAX_STEP_SIZE, '[s]'),
         ('max_update_rate', 0.0, math.inf, '[Hz], where 0 is as fast as possible'),
-        ('sor_pgs_iters', 0, MOST_ITERATIONS, ''),
-        ('sor_pgs_precon_iters', 0, MOST_ITERATIONS, ''),
-        ('max_contacts', 0, MOST_CONTACTS, ''),
+        ('sor_pgs_iters', 0, MAX_ITERATIONS, ''),
+        ('sor_pgs_precon_iters', 0, MAX_ITERATIONS, ''),
+        ('max_contacts', 0, MAX_CONTACTS, ''),
     ):
         value = getattr(physics, name)
         if not least <= value <= most:
             words = f'from {least:g} to {most:g} {unit}'.rstrip()
             raise SimError(f'{name} is {value:g}; it must be {words}')
-    if 0.0 < physics.max_update_rate < SLOWEST_RATE:
+    if 0.0 < physics.max_update_rate < MIN_UPDATE_RATE:
         raise SimError(
             f'max_update_rate is {physics.max_update_rate:g}; it must be at least '
-            f'{SLOWEST_RATE:g} [Hz], or 0 for as fast as possible'
+            f'{MIN_UPDATE_RATE:g} [Hz], or 0 for as fast as possible'
         )

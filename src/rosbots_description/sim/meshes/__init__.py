@@ -1,6 +1,6 @@
 """Read mesh files as validated triangles, and write the files for a physics engine."""
 
-from ..resources import HeldFile
+from ..resources import SharedFile
 from .engine_files import EngineFiles
 from .loader import MeshPart, check_mesh, load_readers, read_mesh, visual_parts
 from .stl import read_stl
@@ -8,6 +8,14 @@ from .submesh import submesh_file
 from .support_points import support_points
 
 __all__ = [
-    'EngineFiles', 'HeldFile', 'MeshPart', 'check_mesh', 'load_readers', 'read_mesh', 'read_stl',
-    'submesh_file', 'support_points', 'visual_parts',
+    'EngineFiles',
+    'MeshPart',
+    'SharedFile',
+    'check_mesh',
+    'load_readers',
+    'read_mesh',
+    'read_stl',
+    'submesh_file',
+    'support_points',
+    'visual_parts',
 ]

@@ -42,8 +42,8 @@ def safe_collada(content: bytes) -> bytes:
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
     root = etree.fromstring(document, parser)
     _refuse_unknown_positions(root, document)
-    _refuse_promises(root, len(document))
-    _Nodes(root).refuse_multitudes()
+    _refuse_declared_sizes(root, len(document))
+    _Nodes(root).refuse_excess()
     return document
 
 
@@ -76,7 +76,7 @@ def _refuse_unknown_positions(root: etree._Element, document: bytes) -> None:
             raise ColladaError('is broken: a coordinate is no finite number')
 
 
-def _refuse_promises(root: etree._Element, size: int) -> None:
+def _refuse_declared_sizes(root: etree._Element, size: int) -> None:
     """Reject polygons that declare more corners than a file of `size` bytes can hold.
 
     Negative indices are rejected too, since pycollada counts them from the end.
@@ -109,7 +109,7 @@ class _Nodes:
         self._known: dict[etree._Element, tuple[int, int]] = {}
         self._open: set[etree._Element] = set()
 
-    def refuse_multitudes(self) -> None:
+    def refuse_excess(self) -> None:
         """Reject a file with too many instances, or nodes that contain each other."""
         instances, corners = (0, 0) if self._scene is None else self._count(self._scene)
         if instances > MAX_INSTANCES or corners > MAX_CORNERS:

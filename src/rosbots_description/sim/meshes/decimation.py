@@ -5,7 +5,7 @@ import numpy as np
 from ..core.arrays import FloatArray, IntArray
 
 
-def thinned(
+def decimated(
     vertices: FloatArray, faces: IntArray, most: int
 ) -> tuple[FloatArray, IntArray, IntArray, float]:
     """Return at most `most` triangles that approximate a mesh.

@@ -14,8 +14,8 @@ import numpy as np
 from ..core import Vector
 from ..core.arrays import FloatArray, IntArray
 from ..description import Mesh
-from ..description.inertia import settle
-from ..resources import HeldFile, HeldFiles
+from ..description.inertia import rounded
+from ..resources import SharedFile, SharedFiles
 from .loader import MeshData, read_mesh
 from .stl import write_stl
 from .support_points import support_points
@@ -29,14 +29,14 @@ class EngineFiles:
     """Writes the engine's mesh files, each kept while it is held. Thread-safe."""
 
     def __init__(self) -> None:
-        self._files = HeldFiles('rosbots_meshes_')
+        self._files = SharedFiles('rosbots_meshes_')
 
-    def engine_file(self, mesh: Mesh, exact: bool) -> HeldFile:
+    def engine_file(self, mesh: Mesh, exact: bool) -> SharedFile:
         """Return the file of a mesh: its exact surface, or its hull."""
         make = self.collision_surface if exact else self.collision_hull
         return make(mesh.path, mesh.scale)
 
-    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> HeldFile:
+    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> SharedFile:
         """Return the .stl file of the convex hull of the whole mesh, for moving bodies.
 
         The file holds the points of which the engine computes the hull; its faces only ensure that
@@ -47,7 +47,7 @@ class EngineFiles:
         """
         return self._file('hull', path, scale)
 
-    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> HeldFile:
+    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> SharedFile:
         """Return the .obj file of the mesh's exact triangles, for static bodies.
 
         Raises:
@@ -59,7 +59,7 @@ class EngineFiles:
         """Remove all files."""
         self._files.close()
 
-    def _file(self, kind: str, path: str, scale: Vector) -> HeldFile:
+    def _file(self, kind: str, path: str, scale: Vector) -> SharedFile:
         mesh = read_mesh(path)
         key = hashlib.sha256(repr((kind, mesh.digest, *map(float, scale))).encode())
         # PyBullet loads an .obj as a compound with the hull in it, a .stl as the hull itself.
@@ -109,7 +109,7 @@ def _directions() -> FloatArray:
     angle = i * math.pi * (3.0 - math.sqrt(5.0))
     radius = np.sqrt(1.0 - height**2)
     spiral = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
-    return settle(np.concatenate([np.eye(3), -np.eye(3), spiral]))
+    return rounded(np.concatenate([np.eye(3), -np.eye(3), spiral]))
 
 
 def _obj(vertices: FloatArray, faces: IntArray) -> str:

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core import LONGEST, AbsentError, ModelError, shortened
+from ..core import MAX_LENGTH, AbsentError, ModelError, shortened
 from ..core.arrays import FloatArray, IntArray
 from ..description import Colour, Reflection
 from ..resources import read_file, regular_state, within
 from .collada_limits import ColladaError, safe_collada
-from .decimation import thinned
+from .decimation import decimated
 from .obj import ObjPart, read_obj
 from .stl import read_stl
 
@@ -32,7 +32,7 @@ logger = logging.getLogger(__name__)
 
 MAX_MESH_BYTES = 120_000_000
 MAX_TRIANGLES = 3_000_000  # in the file; a binary STL of 120 MB has 2.4 million
-FINEST = 400_000  # triangles that are simulated and shown; larger meshes are decimated
+MAX_SIMULATED_TRIANGLES = 400_000  # a mesh with more is decimated
 MAX_LIBRARY_BYTES = 1_000_000
 FORMATS = ('.dae', '.stl', '.obj')
 
@@ -89,8 +89,8 @@ def check_mesh(path: str, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -
         ModelError: the message names the file and its fault.
     """
     reach = _check(str(path), *_state(path)) * max(map(abs, scale))
-    if reach > LONGEST:
-        raise _fault(path, f'reaches {reach:g} m far; at most {LONGEST:g} m are accepted')
+    if reach > MAX_LENGTH:
+        raise _fault(path, f'reaches {reach:g} m far; at most {MAX_LENGTH:g} m are accepted')
 
 
 def read_mesh(path: str) -> MeshData:
@@ -141,7 +141,7 @@ def _read(path: str, mtime_ns: int, size: int) -> MeshData:
         raise _fault(path, f"format '{extension}' is not read; convert it to {', '.join(FORMATS)}")
     content = read_file(path, MAX_MESH_BYTES, 'mesh file')
     parts = _check_parts(path, _parse(path, extension, content))
-    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_thin(path, parts)),
+    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_decimate(path, parts)),
                     any(part.textured for part in parts))
 
 
@@ -268,15 +268,15 @@ def _check_parts(path: str, parts: list[MeshPart]) -> list[MeshPart]:
     return parts
 
 
-def _thin(path: str, parts: list[MeshPart]) -> list[MeshPart]:
+def _decimate(path: str, parts: list[MeshPart]) -> list[MeshPart]:
     """Return the parts, decimated to the number of triangles that is simulated and shown."""
     count = sum(len(part.faces) for part in parts)
-    if count <= FINEST:
+    if count <= MAX_SIMULATED_TRIANGLES:
         return parts
     thin, widest = [], 0.0
     for part in parts:
-        most = max(1, FINEST * len(part.faces) // count)
-        vertices, faces, kept, cell = thinned(part.vertices, part.faces, most)
+        most = max(1, MAX_SIMULATED_TRIANGLES * len(part.faces) // count)
+        vertices, faces, kept, cell = decimated(part.vertices, part.faces, most)
         normals = None if part.normals is None else part.normals[kept]
         texcoords = None if part.texcoords is None else part.texcoords[kept]
         thin.append(replace(

@@ -18,7 +18,7 @@ MAX_LIBRARIES = 8  # .mtl files of one .obj
 MAX_MATERIALS = 1000  # each a part of its own; parts with further materials have no colour
 
 RGB = tuple[float, float, float]
-Look = tuple[RGB | None, bool]  # the colour of a material, and whether it has a texture
+ObjMaterial = tuple[RGB | None, bool]  # the colour of a material, and whether it has a texture
 ReadLibrary = Callable[[str], str]  # the name of a .mtl file -> its text, '' if there is none
 
 
@@ -85,11 +85,11 @@ def read_obj(content: bytes, read_library: ReadLibrary) -> list[ObjPart]:
         return []
     points = np.asarray(positions).reshape(-1, 3)
     directions = np.asarray(normals).reshape(-1, 3)
-    looks: dict[str, Look] = {}
+    materials: dict[str, ObjMaterial] = {}
     for name in libraries:
-        looks |= _read_looks(read_library(name))
+        materials |= _read_materials(read_library(name))
     return [
-        _part(faces, points, directions, looks.get(name, (None, False)))
+        _part(faces, points, directions, materials.get(name, (None, False)))
         for name, faces in groups.items()
     ]
 
@@ -105,17 +105,17 @@ def _from_start(number: int, count: int) -> int:
 
 
 def _part(
-    faces: _Faces, points: FloatArray, directions: FloatArray, look: Look
+    faces: _Faces, points: FloatArray, directions: FloatArray, material: ObjMaterial
 ) -> ObjPart:
     corners = _fans(np.asarray(faces.sizes))
     vertices = _checked(np.asarray(faces.vertices), len(points))[corners]
     normals = np.asarray(faces.normals)[corners]
     if not len(directions) or not normals.all():
         used, triangles = _renumbered(vertices)
-        return ObjPart(points[used - 1], triangles, None, *look)
+        return ObjPart(points[used - 1], triangles, None, *material)
     base = len(directions) + 1
     used, triangles = _renumbered(base * vertices + _checked(normals, len(directions)))
-    return ObjPart(points[used // base - 1], triangles, directions[used % base - 1], *look)
+    return ObjPart(points[used // base - 1], triangles, directions[used % base - 1], *material)
 
 
 def _renumbered(numbers: IntArray) -> tuple[IntArray, IntArray]:
@@ -141,9 +141,9 @@ def _fans(sizes: IntArray) -> IntArray:
     return np.stack([first, first + step + 1, first + step + 2], axis=1)
 
 
-def _read_looks(text: str) -> dict[str, Look]:
+def _read_materials(text: str) -> dict[str, ObjMaterial]:
     """Return the diffuse colour of each material of a .mtl file, and whether it has a texture."""
-    looks: dict[str, Look] = {}
+    materials: dict[str, ObjMaterial] = {}
     name = ''
     for line in text.splitlines():
         word, _, rest = line.strip().partition(' ')
@@ -154,7 +154,7 @@ def _read_looks(text: str) -> dict[str, Look]:
                 red, green, blue = map(float, rest.split()[:3])
             except ValueError:
                 continue  # a spectral curve or invalid text: the part is grey
-            looks[name] = (red, green, blue), looks.get(name, (None, False))[1]
+            materials[name] = (red, green, blue), materials.get(name, (None, False))[1]
         elif word == 'map_Kd':
-            looks[name] = looks.get(name, (None, False))[0], True
-    return looks
+            materials[name] = materials.get(name, (None, False))[0], True
+    return materials

@@ -10,15 +10,15 @@ from pathlib import Path
 from lxml import etree
 
 from ..core import ModelError, suggestion
-from ..resources import HeldFile, HeldFiles, read_file, regular_state
+from ..resources import SharedFile, SharedFiles, read_file, regular_state
 from .collada_limits import ColladaError, safe_collada
 from .loader import MAX_MESH_BYTES, read_mesh
 
 _SHOWN = ('instance_geometry', 'instance_controller', 'instance_node')
-_files = HeldFiles('rosbots_submeshes_')
+_files = SharedFiles('rosbots_submeshes_')
 
 
-def submesh_file(path: str, name: str, center: bool) -> HeldFile:
+def submesh_file(path: str, name: str, center: bool) -> SharedFile:
     """Return a file with only the part `name` of the mesh file `path`.
 
     The file exists as long as the returned object is held, e.g. by a model's spec.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from ..description import ModelSpec
-from ..meshes import HeldFile
+from ..meshes import SharedFile
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class CompiledModel:
     """
 
     spec: ModelSpec
-    files: tuple[HeldFile, ...]
+    files: tuple[SharedFile, ...]
     size: int  # bytes that the engine reads
 
     @property

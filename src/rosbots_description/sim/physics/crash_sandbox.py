@@ -22,7 +22,7 @@ from ..core import IDENTITY, ModelError, Pose, compose
 from ..description import GROUND_PLANE, ModelSpec, PhysicsSettings
 from .compiled_model import CompiledModel
 from .engine import PhysicsEngine
-from .fork_server import LOOK, MAX_ASLEEP, ForkServer, Killed, Unwanted, Work
+from .fork_server import MAX_SLEEPING_POLLS, POLL_PERIOD, Cancelled, ForkServer, Killed, Work
 
 logger = logging.getLogger(__name__)
 
@@ -94,7 +94,7 @@ class CrashSandbox:
             self._under_way.add(content)
         passed = False
         try:
-            passed = self._try(model.spec.name, bare, physics, is_wanted)
+            passed = self._test(model.spec.name, bare, physics, is_wanted)
         finally:
             with self._changed:
                 self._under_way.remove(content)
@@ -104,7 +104,7 @@ class CrashSandbox:
                         del self._passed[next(iter(self._passed))]
                 self._changed.notify_all()
 
-    def _try(
+    def _test(
         self, name: str, model: CompiledModel, physics: PhysicsSettings,
         is_wanted: Callable[[], bool],
     ) -> bool:
@@ -116,15 +116,15 @@ class CrashSandbox:
             logger.warning("model '%s' was not tested in the sandbox, since the operating system "
                            'failed (%s)', name, error.strerror)
             return False
-        except Unwanted:
+        except Cancelled:
             raise ModelError(
-                f"model '{name}' is rejected: the client that asked for it has gone") from None
+                f"model '{name}' is rejected: its client has disconnected") from None
         except Killed as killed:
             report = _exit_reason(killed.exit_code, allowance)
         if report.startswith(_SYSTEM):
             raise ModelError(
                 f"model '{name}' is rejected: it could not be tested before, since the "
-                f'operating system failed ({report.removeprefix(_SYSTEM)}); mend that and spawn '
+                f'operating system failed ({report.removeprefix(_SYSTEM)}); fix that and spawn '
                 'the model again'
             )
         if report != _PASSED:
@@ -145,10 +145,10 @@ def _exit_reason(exit_code: int, allowance: float) -> str:
     """Return the reason why a process ended, as a clause."""
     match -exit_code:
         case signal.SIGPROF:
-            return ('the physics engine was not done with it after '
-                    f'{allowance:.1f} s of processor time')
+            return ('the physics engine needed more than '
+                    f'{allowance:.1f} s of processor time for it')
         case signal.SIGALRM:
-            return f'the physics engine slept over it for {LOOK * MAX_ASLEEP:g} s'
+            return f'the physics engine hung for {POLL_PERIOD * MAX_SLEEPING_POLLS:g} s'
         case signal.SIGKILL:
             return f'{_SYSTEM}{_KILLED}'
         case number if number > 0:
@@ -169,7 +169,7 @@ def _report(engine: PhysicsEngine, payload: bytes) -> str:
         if unreadable:
             return f'{_SYSTEM}{unreadable}'
         engine.apply(physics)
-        _live(engine, model)
+        _simulate(engine, model)
     except ModelError as error:
         return str(error)
     except BaseException as error:
@@ -178,9 +178,9 @@ def _report(engine: PhysicsEngine, payload: bytes) -> str:
     return _PASSED
 
 
-def _live(engine: PhysicsEngine, model: CompiledModel) -> None:
+def _simulate(engine: PhysicsEngine, model: CompiledModel) -> None:
     """Use the model as a world does: add it, step, read, remove it."""
-    body = engine.add(model, _touching(model.spec))
+    body = engine.add(model, _touching_pose(model.spec))
     for _ in range(STEPS):
         engine.step(1)
         if time.process_time() > BUDGET:
@@ -190,11 +190,11 @@ def _live(engine: PhysicsEngine, model: CompiledModel) -> None:
     for joint in body.joints:
         engine.joint_state(body, joint)
     if engine.has_diverged(body):
-        raise ModelError(f'its pose or velocity was no finite number within {STEPS} steps')
+        raise ModelError(f'its pose or velocity was not finite within {STEPS} steps')
     engine.remove(body)
 
 
-def _touching(spec: ModelSpec) -> Pose:
+def _touching_pose(spec: ModelSpec) -> Pose:
     """Return a pose in which the model's lowest shape is half below the ground."""
     heights = [
         compose(link.pose, collision.pose).position[2]

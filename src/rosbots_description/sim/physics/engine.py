@@ -192,7 +192,7 @@ class PhysicsEngine(Protocol):
     ) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
 
-    def push(
+    def apply_wrench(
         self, body: EngineBody, link: str, force: Vector, torque: Vector,
         place: Vector | None = None,
     ) -> None:
@@ -202,7 +202,7 @@ class PhysicsEngine(Protocol):
             place: point at which the force acts [m], None for the centre of mass.
         """
 
-    def push_joint(self, body: EngineBody, joint: str, effort: float) -> None:
+    def apply_joint_effort(self, body: EngineBody, joint: str, effort: float) -> None:
         """Apply an effort [N m or N] to a joint during the next step, added to its motor's."""
 
     def can_slip(self, body: EngineBody, link: str, axis: Vector) -> bool:

@@ -23,13 +23,13 @@ from typing import NoReturn
 
 Work = Callable[[bytes], str]
 
-LOOK = 0.5  # [s, wall] period of checking a child and its caller
+POLL_PERIOD = 0.5  # [s, wall] period of checking a child and its caller
 # Consecutive checks at which a child may be asleep without having used any processor time. A
 # process that waits for a processor or a disk is not asleep, however busy the machine is.
-MAX_ASLEEP = 20
-LOOKS_UNASKED = 10  # after which the caller is asked whether it still waits for the report
+MAX_SLEEPING_POLLS = 20
+MIN_POLLS = 10  # after which the caller is asked whether it still waits for the report
 
-ROOM = 4096  # [bytes] for a report, allocated in advance in case memory runs out
+MAX_REPORT = 4096  # [bytes] for a report, allocated in advance in case memory runs out
 _REQUEST = struct.Struct('d')  # allowance
 _END = struct.Struct('?i')  # whether a child was created; its exit code, else errno
 _PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15  # of <sys/prctl.h>
@@ -46,7 +46,7 @@ class Killed(Exception):  # noqa: N818  not an error
         self.exit_code = exit_code
 
 
-class Unwanted(Exception):  # noqa: N818  as above
+class Cancelled(Exception):  # noqa: N818  as above
     """The caller no longer wants the report; the child was killed."""
 
 
@@ -64,7 +64,7 @@ class ForkServer:
         self._channel, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
         self._server = os.fork()
         if not self._server:
-            _be_the_server(prepare, theirs, name)
+            _run_server(prepare, theirs, name)
         theirs.close()
 
     def close(self) -> None:
@@ -77,7 +77,7 @@ class ForkServer:
     def run(
         self, payload: bytes, allowance: float, is_wanted: Callable[[], bool] = lambda: True
     ) -> str:
-        """Return a child's report on a payload, at most `ROOM` bytes.
+        """Return a child's report on a payload, at most `MAX_REPORT` bytes.
 
         Args:
             allowance: processor time [s] after which the child is killed by SIGPROF; one that
@@ -86,35 +86,35 @@ class ForkServer:
         Raises:
             OSError: no child could be created.
             Killed: it ended without a report.
-            Unwanted: `is_wanted` returned False.
+            Cancelled: `is_wanted` returned False.
         """
         caller, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
         with caller, open(os.memfd_create('report'), 'w+b', buffering=0) as report:
             with theirs:
-                os.posix_fallocate(report.fileno(), 0, ROOM + len(payload))
-                os.pwrite(report.fileno(), payload, ROOM)
+                os.posix_fallocate(report.fileno(), 0, MAX_REPORT + len(payload))
+                os.pwrite(report.fileno(), payload, MAX_REPORT)
                 try:
                     socket.send_fds(self._channel, [_REQUEST.pack(allowance)],
                                     [report.fileno(), theirs.fileno()])
                 except ConnectionError:
                     raise _no_answer() from None
-            caller.settimeout(LOOK)
+            caller.settimeout(POLL_PERIOD)
             exit_code = self._wait(caller, is_wanted)
-            text = os.pread(report.fileno(), ROOM, 0).rstrip(b'\0').decode(errors='replace')
+            text = os.pread(report.fileno(), MAX_REPORT, 0).rstrip(b'\0').decode(errors='replace')
         if exit_code or not text:
             raise Killed(exit_code)
         return text
 
     def _wait(self, caller: socket.socket, is_wanted: Callable[[], bool]) -> int:
         """Return the exit code of a child."""
-        answer, looks = None, 0
+        answer, polls = None, 0
         while answer is None:
             try:
                 answer = caller.recv(_END.size)
             except TimeoutError:
-                looks += 1
-                if looks >= LOOKS_UNASKED and not is_wanted():
-                    raise Unwanted from None
+                polls += 1
+                if polls >= MIN_POLLS and not is_wanted():
+                    raise Cancelled from None
         if not answer:
             raise _no_answer()
         made, number = _END.unpack(answer)
@@ -138,7 +138,7 @@ class _Child:
             life: a pipe that is closed when the process ends.
         """
         self._process, self.caller, self.life = process, caller, life
-        self._looks_asleep = 0  # in a row
+        self._sleeping_polls = 0  # in a row
         self._used = 0.0  # [s, processor] at the last look
 
     def kill(self, number: int = signal.SIGKILL) -> None:
@@ -151,15 +151,15 @@ class _Child:
         code = os.waitstatus_to_exitcode(os.waitpid(self._process, 0)[1])
         _answer(self.caller, True, code)
 
-    def look(self) -> None:
+    def check_asleep(self) -> None:
         """Kill it if it has been asleep for too long."""
         with open(f'/proc/{self._process}/stat', 'rb') as file:
             state, *fields = file.read().rpartition(b') ')[2].split()
         used = _TICK * (int(fields[10]) + int(fields[11]))  # in user mode and in the kernel
         asleep = state == _SLEEPING and used == self._used
-        self._looks_asleep = self._looks_asleep + 1 if asleep else 0
+        self._sleeping_polls = self._sleeping_polls + 1 if asleep else 0
         self._used = used
-        if self._looks_asleep > MAX_ASLEEP:
+        if self._sleeping_polls > MAX_SLEEPING_POLLS:
             self.kill(signal.SIGALRM)
 
 
@@ -168,10 +168,10 @@ def _answer(caller: socket.socket, made: bool, number: int) -> None:
         caller.send(_END.pack(made, number))
 
 
-def _be_the_server(prepare: Callable[[], Work], channel: socket.socket, name: str) -> NoReturn:
+def _run_server(prepare: Callable[[], Work], channel: socket.socket, name: str) -> NoReturn:
     """Serve requests until the channel is closed; the children die with this process."""
     try:
-        _leave_files(channel.fileno())
+        _close_files(channel.fileno())
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)  # it ends with its parent
         _prctl(_PR_SET_NAME, name.encode())
@@ -187,18 +187,18 @@ def _be_the_server(prepare: Callable[[], Work], channel: socket.socket, name: st
 
 def _serve(work: Work, channel: socket.socket) -> None:
     children: set[_Child] = set()
-    next_look = 0.0
+    next_poll = 0.0
     with selectors.DefaultSelector() as selector:
         selector.register(channel, selectors.EVENT_READ)
         while True:
-            for key, _ in selector.select(LOOK if children else None):
+            for key, _ in selector.select(POLL_PERIOD if children else None):
                 child = key.data
                 if child is None:
                     request, files, _, _ = socket.recv_fds(channel, _REQUEST.size, 2)
                     if not request:
                         return
                     (allowance,) = _REQUEST.unpack(request)
-                    child = _make_child(work, allowance, files)
+                    child = _fork_child(work, allowance, files)
                     if child is not None:
                         children.add(child)
                         selector.register(child.caller, selectors.EVENT_READ, child)
@@ -212,13 +212,13 @@ def _serve(work: Work, channel: socket.socket) -> None:
                 elif child in children:  # its caller has gone
                     selector.unregister(child.caller)
                     child.kill()
-            if time.monotonic() >= next_look:
-                next_look = time.monotonic() + LOOK
+            if time.monotonic() >= next_poll:
+                next_poll = time.monotonic() + POLL_PERIOD
                 for child in children:
-                    child.look()
+                    child.check_asleep()
 
 
-def _make_child(work: Work, allowance: float, files: list[int]) -> _Child | None:
+def _fork_child(work: Work, allowance: float, files: list[int]) -> _Child | None:
     """Return a child that works on a payload; None if none can be created.
 
     Args:
@@ -235,7 +235,7 @@ def _make_child(work: Work, allowance: float, files: list[int]) -> _Child | None
         life, death = os.pipe()
         process = os.fork()
         if not process:
-            _be_the_child(work, allowance, report, death, parent)
+            _run_child(work, allowance, report, death, parent)
         return _Child(process, caller, life)
     except OSError as error:
         if life is not None:
@@ -248,7 +248,7 @@ def _make_child(work: Work, allowance: float, files: list[int]) -> _Child | None
             os.close(death)
 
 
-def _be_the_child(
+def _run_child(
     work: Work, allowance: float, report: int, death: int, parent: int
 ) -> NoReturn:
     """Process the payload and write the report; the end of this process closes `death`."""
@@ -259,17 +259,17 @@ def _be_the_child(
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, allowance)
-        _leave_files(report, death)
+        _close_files(report, death)
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as file:
             file.write('1000')  # if memory runs out, this process is to be killed first
-        payload = os.pread(report, os.fstat(report).st_size - ROOM, ROOM)
-        os.pwrite(report, work(payload).encode()[:ROOM], 0)
+        payload = os.pread(report, os.fstat(report).st_size - MAX_REPORT, MAX_REPORT)
+        os.pwrite(report, work(payload).encode()[:MAX_REPORT], 0)
         os._exit(0)
     finally:
         os._exit(1)
 
 
-def _leave_files(*kept: int) -> None:
+def _close_files(*kept: int) -> None:
     """Discard all output, and close all inherited files, pipes and sockets but `kept`."""
     nowhere = os.open(os.devnull, os.O_RDWR)
     for number in range(3):

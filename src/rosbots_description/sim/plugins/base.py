@@ -65,11 +65,11 @@ class ModelPlugin(Plugin):
             PluginError: a tag is not valid, or something is missing.
         """
 
-    def output(self, name: str, asked_for: bool = True) -> Output[Any]:
+    def output(self, name: str, requested: bool = True) -> Output[Any]:
         """Return a new output; it is added to `outputs` if the description requests it."""
         made: Output[Any] = Output(self.count_readers)
         self._all_outputs.append(made)
-        if asked_for:
+        if requested:
             self.outputs[name] = made
         return made
 
@@ -117,7 +117,7 @@ class PeriodicPlugin(ModelPlugin):
 
     # True: due at the first step with t > t_last + period, as in most of Gazebo's plugins;
     # False: with t >= t_last + period.
-    later = True
+    strictly_after = True
     keeps_rate = True  # the mean rate is exact; False: a period starts where the last ended
     every_step = False  # also calls `before_each_step` and `after_each_step`
     _period_ns = 0
@@ -167,8 +167,8 @@ class PeriodicPlugin(ModelPlugin):
         if self.every_step:
             self.before_each_step(now_ns)
         elapsed_ns = now_ns - self._last_ns
-        self._reports = elapsed_ns >= self._period_ns + self.later
-        self.watches = self.every_step or (self._reports and self.is_read)
+        self._reports = elapsed_ns >= self._period_ns + self.strictly_after
+        self.runs_after_step = self.every_step or (self._reports and self.is_read)
         if self._reports:
             self.update(elapsed_ns / NANOSECONDS)
             keeps = self._period_ns and self.keeps_rate
@@ -185,7 +185,7 @@ class PeriodicPlugin(ModelPlugin):
     def readers_changed(self) -> None:
         """Suspend, or resume in the phase that it would have without the suspension."""
         if self.due == NEVER:
-            behind = self.world.clock.now_ns - self._last_ns - self.later
+            behind = self.world.clock.now_ns - self._last_ns - self.strictly_after
             if self._period_ns and self.keeps_rate:
                 self._last_ns += max(0, behind // self._period_ns) * self._period_ns
             self.wake()
@@ -198,5 +198,5 @@ class PeriodicPlugin(ModelPlugin):
         elif self.every_step:
             self.due = clock.steps + 1
         else:
-            end = clock.first_step_after(self._last_ns + self._period_ns + self.later - 1)
+            end = clock.first_step_after(self._last_ns + self._period_ns + self.strictly_after - 1)
             self.due = max(clock.steps + 1, end)

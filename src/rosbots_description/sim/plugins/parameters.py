@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..core import SLOWEST_RATE, PluginError, Vector
+from ..core import MIN_UPDATE_RATE, PluginError, Vector
 from ..description import Element
 
 logger = logging.getLogger(__name__)
@@ -102,13 +102,13 @@ class Params:
         """Return a rate [Hz], as `read` does; <= 0 means every step.
 
         Raises:
-            PluginError: it is positive but below SLOWEST_RATE.
+            PluginError: it is positive but below MIN_UPDATE_RATE.
         """
         value = self.read(tag, default)
-        if 0.0 < value < SLOWEST_RATE:
+        if 0.0 < value < MIN_UPDATE_RATE:
             raise PluginError(
                 f'{self.prefix}<{tag}> is {value:g} Hz; it must be at least '
-                f'{SLOWEST_RATE:g}, or 0 for every step'
+                f'{MIN_UPDATE_RATE:g}, or 0 for every step'
             )
         return value
 

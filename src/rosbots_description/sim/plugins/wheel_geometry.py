@@ -30,7 +30,7 @@ def drives_towards_x(joint: 'Joint') -> bool:
     return cross(axle_of(joint), UP)[0] >= 0.0
 
 
-def same_way(left: 'Joint', right: 'Joint') -> bool:
+def same_direction(left: 'Joint', right: 'Joint') -> bool:
     """Tell whether positive rotation of both wheels drives in the same direction."""
     return dot(axle_of(left), axle_of(right)) > 0.0
 

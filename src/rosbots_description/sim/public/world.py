@@ -225,7 +225,8 @@ class World(runtime.World):
             ValueError: a number is not finite, or `seconds` is negative.
         """
         _require_finite('force and torque', (*force, *torque))
-        self.external_forces.add(link, partial(link.push, force, torque), 0, _duration_ns(seconds))
+        self.external_forces.add(
+            link, partial(link.apply_wrench, force, torque), 0, _duration_ns(seconds))
 
     def apply_effort(self, joint: Joint, effort: float, *, seconds: float = math.inf) -> None:
         """Apply an effort to a joint from the next step on, added to its motor's; limits hold.
@@ -238,11 +239,12 @@ class World(runtime.World):
             ValueError: a number is not finite, or `seconds` is negative.
         """
         _require_finite('effort', (effort,))
-        self.external_forces.add(joint, partial(joint.push, effort), 0, _duration_ns(seconds))
+        self.external_forces.add(
+            joint, partial(joint.apply_effort, effort), 0, _duration_ns(seconds))
 
-    def clear_forces(self, pushed: Link | Joint) -> None:
+    def clear_forces(self, target: Link | Joint) -> None:
         """End all forces of `apply_wrench` or `apply_effort` on a link or joint."""
-        self.external_forces.cancel(lambda target: target is pushed)
+        self.external_forces.cancel(lambda one: one is target)
 
     def _require_open(self) -> None:
         if self._closed:
@@ -257,5 +259,5 @@ def _require_finite(what: str, numbers: tuple[float, ...]) -> None:
 def _duration_ns(seconds: float) -> int:
     """Return a duration [ns], negative for an infinite one."""
     if math.isnan(seconds) or seconds < 0.0:
-        raise ValueError(f'seconds is {seconds}; a push takes at least 0 s')
+        raise ValueError(f'seconds is {seconds}; a force is applied for at least 0 s')
     return -1 if math.isinf(seconds) else round(seconds * NANOSECONDS)

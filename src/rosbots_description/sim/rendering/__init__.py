@@ -2,11 +2,19 @@
 
 from .camera import EYE, TARGET, View
 from .gl import BYTES, Lens
+from .image_capture import ImageCapture, Picture
 from .render_process import NoRendererError, RenderError
-from .studio import Picture, Shutter
 from .sunlit_meshes import SunlitMeshes
 
 __all__ = [
-    'BYTES', 'EYE', 'TARGET', 'Lens', 'NoRendererError', 'Picture', 'RenderError', 'Shutter',
-    'SunlitMeshes', 'View',
+    'BYTES',
+    'EYE',
+    'TARGET',
+    'ImageCapture',
+    'Lens',
+    'NoRendererError',
+    'Picture',
+    'RenderError',
+    'SunlitMeshes',
+    'View',
 ]

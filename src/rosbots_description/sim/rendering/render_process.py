@@ -23,8 +23,8 @@ from .gl import Lens, Scene
 
 logger = logging.getLogger(__name__)
 
-UNDER_WAY = 3  # pending pictures of one camera
-MOST_DEATHS = 3  # in a row without a picture; then it is not restarted
+MAX_PENDING = 3  # pending pictures of one camera
+MAX_CRASHES = 3  # in a row without a picture; then it is not restarted
 _FOLDER = str(Path(__file__).parent)
 # It imports one package by its bare name, so that nothing of the simulator is loaded.
 _PROGRAM = """
@@ -35,7 +35,7 @@ from gl.process import main
 main(int(sys.argv[2]))
 """
 # A picture may take long on shared processors; a hung process is killed after this time.
-PATIENCE = 60.0  # [s, wall]
+TIMEOUT = 60.0  # [s, wall]
 
 
 class RenderError(Exception):
@@ -63,7 +63,7 @@ class RenderProcess:
         self._sent: set[str] = set()
         self._cameras: dict[int, RenderedCamera] = {}
         self._numbers = count()  # of cameras, never reused: answers to closed ones may still arrive
-        self._deaths = 0
+        self._crashes = 0
         self.fault = ''  # why drawing was given up
 
     def close(self) -> None:
@@ -113,7 +113,7 @@ class RenderProcess:
         if self._connection is None or self._process is None:
             return False
         try:
-            if not self._connection.poll(PATIENCE if wait else 0.0):
+            if not self._connection.poll(TIMEOUT if wait else 0.0):
                 if not wait:
                     return False
                 self._process.kill()
@@ -124,10 +124,10 @@ class RenderProcess:
         if not self._ready:
             self._begin(number, fault, *rest)
             return True
-        self._deaths = 0
+        self._crashes = 0
         camera = self._cameras.get(number)
         if camera is not None:
-            camera.answered(fault)
+            camera.complete(fault)
         return True
 
     def _start(self) -> None:
@@ -147,28 +147,28 @@ class RenderProcess:
         """Handle the first answer; `text` is the renderer's name, or why there is none."""
         if state == 'failed':
             self.close()
-            self._give_up(f'cameras see nothing: {text}')
+            self._fail(f'cameras cannot render images: {text}')
             return
-        logger.info('pictures are drawn by %s%s', text,
-                    ', in software: no graphics card can be used' if is_software else '')
+        logger.info('images are rendered by %s%s', text,
+                    ', in software: no GPU is available' if is_software else '')
         self._ready = True
         self._sent = set()
         self._send_scene()
         for camera in self._cameras.values():
             self._send_camera(camera)
-            camera.ask_again()
+            camera.resend()
 
     def _send_scene(self) -> None:
         scene = self._scene
         used = {part.mesh for part in scene.parts}
         for key in sorted(used - self._sent):
             self._send(('mesh', key, self._meshes(key).astype('f4').tobytes()))
-        images = {part.look.texture for part in scene.parts} - {''}
+        images = {part.appearance.texture for part in scene.parts} - {''}
         for path in sorted(images - self._sent):
             self._send(('image', path))
         self._sent = used | images
         self._send((
-            'scene', [(*part[:3], tuple(part.look), *part[4:]) for part in scene.parts],
+            'scene', [(*part[:3], tuple(part.appearance), *part[4:]) for part in scene.parts],
             [tuple(light) for light in scene.lights], *scene[2:]))
 
     def _send_camera(self, camera: 'RenderedCamera') -> None:
@@ -191,21 +191,21 @@ class RenderProcess:
         """Handle the death of the process: restart it, or give up."""
         process = self._process
         self.close()
-        self._deaths += 1
+        self._crashes += 1
         code = process.returncode if process is not None else 0
         ended = f'killed by signal {-code}' if code < 0 else f'exit code {code}'
-        if self._deaths < MOST_DEATHS:
-            logger.error('the process that draws pictures has died (%s); another one begins', ended)
+        if self._crashes < MAX_CRASHES:
+            logger.error('the render process has died (%s); restarting it', ended)
             self._start()
         else:
-            self._give_up('cameras see nothing any more: the process that draws pictures has died '
-                          f'{self._deaths} times ({ended})')
+            self._fail(f'cameras stop: the render process has died {self._crashes} times '
+                       f'in a row ({ended})')
 
-    def _give_up(self, fault: str) -> None:
+    def _fail(self, fault: str) -> None:
         logger.error('%s', fault)
         self.fault = fault
         for camera in self._cameras.values():
-            camera.give_up(fault)
+            camera.fail(fault)
 
 
 class RenderedCamera:
@@ -217,9 +217,9 @@ class RenderedCamera:
         self._process = process
         self._size = lens.colour_bytes + lens.depth_bytes
         self.file = os.memfd_create('picture')
-        os.truncate(self.file, UNDER_WAY * self._size)
-        self.memory = mmap.mmap(self.file, UNDER_WAY * self._size)
-        self._asked: deque[tuple[Any, ...]] = deque()  # requests without an answer
+        os.truncate(self.file, MAX_PENDING * self._size)
+        self.memory = mmap.mmap(self.file, MAX_PENDING * self._size)
+        self._requested: deque[tuple[Any, ...]] = deque()  # requests without an answer
         # Answered requests, each with a fault or ''.
         self._done: deque[tuple[tuple[Any, ...], str]] = deque()
         self._next = 0
@@ -231,9 +231,9 @@ class RenderedCamera:
         os.close(self.file)
 
     @property
-    def under_way(self) -> int:
-        """Return the number of pictures requested and not yet taken; at most UNDER_WAY."""
-        return len(self._asked) + len(self._done)
+    def pending(self) -> int:
+        """Return the number of pictures requested and not yet taken; at most MAX_PENDING."""
+        return len(self._requested) + len(self._done)
 
     def request(
         self, eye: NDArray[Any], poses: NDArray[Any], seed: int = 0,
@@ -253,11 +253,11 @@ class RenderedCamera:
                    poses.tobytes())
         if self._process.fault:
             raise NoRendererError(self._process.fault)
-        self._next = (self._next + 1) % UNDER_WAY
-        self._asked.append(message)
+        self._next = (self._next + 1) % MAX_PENDING
+        self._requested.append(message)
         self._process.request(message)
 
-    def take(self, wait: bool) -> tuple[NDArray[Any] | None, NDArray[Any] | None] | None:
+    def receive_image(self, wait: bool) -> tuple[NDArray[Any] | None, NDArray[Any] | None] | None:
         """Return colours and depths of the oldest requested picture, or None if it is pending.
 
         Colours are (height, width, channels), depths (height, width) float32 [m], inf for the
@@ -268,33 +268,33 @@ class RenderedCamera:
         Raises:
             RenderError: the picture could not be drawn, or the process died.
         """
-        if not self.has_picture(wait):
+        if not self.has_image(wait):
             return None
         message, fault = self._done.popleft()
         if fault:
             raise (NoRendererError if self._process.fault else RenderError)(fault)
         return self._content(*message[2:5])
 
-    def has_picture(self, wait: bool) -> bool:
+    def has_image(self, wait: bool) -> bool:
         """Tell whether a picture is finished; with `wait`, wait for a pending one."""
-        while not self._done and self._asked:
+        while not self._done and self._requested:
             if not self._process.receive(wait) and not wait:
                 return False
         return bool(self._done)
 
-    def answered(self, fault: str) -> None:
+    def complete(self, fault: str) -> None:
         """Record that the oldest picture is finished, or its fault."""
-        self._done.append((self._asked.popleft(), fault))
+        self._done.append((self._requested.popleft(), fault))
 
-    def ask_again(self) -> None:
+    def resend(self) -> None:
         """Repeat pending requests to a new process."""
-        for message in tuple(self._asked):
+        for message in tuple(self._requested):
             self._process.request(message)
 
-    def give_up(self, fault: str) -> None:
+    def fail(self, fault: str) -> None:
         """Fail all pending requests."""
-        while self._asked:
-            self.answered(fault)
+        while self._requested:
+            self.complete(fault)
 
     def _content(
         self, place: int, has_colour: bool, has_depth: bool

@@ -26,7 +26,7 @@ from ..description import (
 )
 from ..meshes import MeshPart, read_mesh
 from ..runtime import Link, World
-from .gl import Light, Look, Scene, ScenePart
+from .gl import Appearance, Light, Scene, ScenePart
 from .shapes import mesh_corners, unit_box, unit_cylinder, unit_sphere, unit_square
 
 _LIGHT_TYPES = {DIRECTIONAL: 0, POINT: 1, SPOT: 2}
@@ -81,39 +81,39 @@ class SceneMirror:
                          for pose in (link.pose for link in self._links)])
 
     def _parts(self, visual: Visual, body: int, still: bool) -> Iterator[ScenePart]:
-        for key, triangles, size, look in _surfaces(visual):
+        for key, triangles, size, appearance in _surfaces(visual):
             self.meshes[key] = triangles
-            yield ScenePart(key, body, _matrix(visual, size).tobytes(), look,
+            yield ScenePart(key, body, _matrix(visual, size).tobytes(), appearance,
                        not isinstance(visual.geometry, Plane), still)
 
 
-def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Look]]:
+def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Appearance]]:
     """Yield the surfaces of a visual: key and triangles, size, look."""
     material = visual.material or Material()
-    look = _look(material.reflection, material.rgba[3])
+    appearance = _appearance(material.reflection, material.rgba[3])
     match visual.geometry:
         case Box(size):
-            yield 'box', unit_box, size, look
+            yield 'box', unit_box, size, appearance
         case Sphere(radius):
-            yield 'sphere', unit_sphere, (radius, radius, radius), look
+            yield 'sphere', unit_sphere, (radius, radius, radius), appearance
         case Cylinder(radius, length):
-            yield 'cylinder', unit_cylinder, (radius, radius, length), look
+            yield 'cylinder', unit_cylinder, (radius, radius, length), appearance
         case Plane(normal, (width, depth)):
-            yield f'plane {normal}', lambda: unit_square(normal), (width, depth, 1.0), look
+            yield f'plane {normal}', lambda: unit_square(normal), (width, depth, 1.0), appearance
         case Mesh(path, scale):
             key = f'{path} {os.stat(path).st_mtime_ns}'
             for number, part in enumerate(read_mesh(path).parts):
-                own = _look(part.reflection, part.rgba[3])._replace(texture=part.image)
+                own = _appearance(part.reflection, part.rgba[3])._replace(texture=part.image)
                 yield (f'{key} {number}', partial(_mesh_corners, part), scale,
-                       look if visual.material else own)
+                       appearance if visual.material else own)
 
 
 def _mesh_corners(part: MeshPart) -> NDArray[Any]:
     return mesh_corners(part.vertices, part.faces, part.normals, part.texcoords)
 
 
-def _look(own: Reflection, alpha: float) -> Look:
-    return Look(own.ambient, own.diffuse, own.specular, own.shininess, own.emissive, alpha,
+def _appearance(own: Reflection, alpha: float) -> Appearance:
+    return Appearance(own.ambient, own.diffuse, own.specular, own.shininess, own.emissive, alpha,
                 own.lit, own.both_sides)
 
 

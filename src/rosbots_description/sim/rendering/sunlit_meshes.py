@@ -19,7 +19,7 @@ from ..core import ModelError
 from ..core.arrays import FloatArray, IntArray
 from ..description import Box, Colour, Cylinder, Material, Mesh, Sphere, Visual
 from ..meshes import read_mesh
-from ..resources import HeldFile, HeldFiles
+from ..resources import SharedFile, SharedFiles
 
 logger = logging.getLogger(__name__)
 
@@ -36,10 +36,10 @@ class SunlitMeshes:
     """Writes the mesh files; each exists as long as it is referenced. Thread-safe."""
 
     def __init__(self) -> None:
-        self._files = HeldFiles('rosbots_sunlit_')
-        self._recent: deque[HeldFile] = deque(maxlen=RECENT)
+        self._files = SharedFiles('rosbots_sunlit_')
+        self._recent: deque[SharedFile] = deque(maxlen=RECENT)
 
-    def file(self, visual: Visual) -> HeldFile | None:
+    def file(self, visual: Visual) -> SharedFile | None:
         """Return the file of a visual, of unit size except for meshes, or None.
 
         There are no files for planes, which need no light, and for textures, which need RViz's own

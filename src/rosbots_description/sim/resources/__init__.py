@@ -2,7 +2,7 @@
 
 from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within
-from .scratch import HeldFile, HeldFiles
+from .scratch import SharedFile, SharedFiles
 from .search_path import (
     BUILT_IN_MODELS,
     FindModel,
@@ -17,16 +17,35 @@ from .uris import (
     FindPackage,
     UnknownPackage,
     file_path,
-    refuse_climbing,
+    refuse_parent_folders,
     substitute_in_tree,
     substitute_packages,
 )
 from .xml_parser import MAX_XML_BYTES, check_xml_bounds, parse_xml, root_tag
 
 __all__ = [
-    'BUILT_IN_MODELS', 'MAX_XML_BYTES', 'FindModel', 'FindPackage', 'HeldFile', 'HeldFiles',
-    'ModelSearch', 'PackageSearch', 'UnknownPackage', 'below_model_path', 'check_xml_bounds',
-    'description_file', 'file_path', 'find_world', 'in_models', 'parse_xml', 'path_directories',
-    'read_file', 'refuse_climbing', 'regular_state', 'root_tag', 'substitute_in_tree',
-    'substitute_packages', 'within',
+    'BUILT_IN_MODELS',
+    'MAX_XML_BYTES',
+    'FindModel',
+    'FindPackage',
+    'ModelSearch',
+    'PackageSearch',
+    'SharedFile',
+    'SharedFiles',
+    'UnknownPackage',
+    'below_model_path',
+    'check_xml_bounds',
+    'description_file',
+    'file_path',
+    'find_world',
+    'in_models',
+    'parse_xml',
+    'path_directories',
+    'read_file',
+    'refuse_parent_folders',
+    'regular_state',
+    'root_tag',
+    'substitute_in_tree',
+    'substitute_packages',
+    'within',
 ]

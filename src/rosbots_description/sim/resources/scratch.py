@@ -70,34 +70,34 @@ class ScratchFolder:
         )
 
 
-class HeldFile(str):
+class SharedFile(str):
     """The path of a temporary file, which exists as long as this object is referenced.
 
     Caches therefore store it as a plain string.
     """
 
 
-class HeldFiles:
-    """Files in a private folder, each kept while its `HeldFile` is referenced. Thread-safe."""
+class SharedFiles:
+    """Files in a private folder, each kept while its `SharedFile` is referenced. Thread-safe."""
 
     def __init__(self, prefix: str) -> None:
         """Begin the folder's name with `prefix`."""
         self._scratch = ScratchFolder(prefix)
-        self._files: weakref.WeakValueDictionary[str, HeldFile] = weakref.WeakValueDictionary()
+        self._files: weakref.WeakValueDictionary[str, SharedFile] = weakref.WeakValueDictionary()
         self._uses: Counter[str] = Counter()  # objects that hold the file of a name
         self._lock = threading.RLock()  # reentrant: garbage collection may drop a file meanwhile
 
-    def get(self, name: str) -> HeldFile | None:
+    def get(self, name: str) -> SharedFile | None:
         """Return the file of that name; None if it is not held or was deleted."""
         file = self._files.get(name)
         return file if file is not None and os.path.isfile(file) else None
 
-    def write(self, name: str, content: bytes, source: str) -> HeldFile:
+    def write(self, name: str, content: bytes, source: str) -> SharedFile:
         """Write a file and return it; arguments and errors as of `ScratchFolder.write`."""
         with self._lock:
             self._uses[name] += 1
             try:
-                file = HeldFile(self._scratch.write(name, content, source))
+                file = SharedFile(self._scratch.write(name, content, source))
             except BaseException:
                 self._uses[name] -= 1
                 raise

@@ -64,7 +64,7 @@ class ModelSearch:
 
     def __call__(self, inner: str) -> str | None:
         """Return the absolute path of a model's folder, or of a file in one; None if unknown."""
-        if climbs(inner):
+        if leaves_folder(inner):
             return None
         for directory in self.directories():
             path = os.path.join(directory, inner)
@@ -90,7 +90,7 @@ def path_directories(value: str) -> list[str]:
     return [part for part in value.split(os.pathsep) if part]
 
 
-def climbs(inner: str) -> bool:
+def leaves_folder(inner: str) -> bool:
     """Tell whether a relative path would leave its search directory, or is absolute."""
     return not inner.strip('/') or os.path.isabs(inner) or '..' in inner.split('/')
 
@@ -112,7 +112,7 @@ def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
     inner = below_model_path(uri)
     if not inner:
         raise fault(element, f"'{uri}' names no model; write model://MODEL/FILE")
-    if climbs(inner):
+    if leaves_folder(inner):
         raise fault(element, f"'{uri}' leaves the model path; '..' is not accepted there")
     found = find_model(inner)
     if found is None:
@@ -154,7 +154,7 @@ def _chosen(manifest: str, element: etree._Element) -> str:
         (_version(entry.get('version', '')), (entry.text or '').strip())
         for entry in root.iterfind('sdf')
     ]
-    offers = [offer for offer in offers if offer[1] and not climbs(offer[1])]
+    offers = [offer for offer in offers if offer[1] and not leaves_folder(offer[1])]
     if not offers:
         raise fault(element, f"'{manifest}' names no description; add <sdf>model.sdf</sdf>")
     # If all are too new, the oldest has the best chance.

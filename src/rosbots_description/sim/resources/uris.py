@@ -73,7 +73,7 @@ def substitute_in_tree(root: etree._Element, find_package: FindPackage) -> None:
             raise UnknownPackage(error.package, location(element)) from None
 
 
-def refuse_climbing(element: etree._Element, uri: str) -> None:
+def refuse_parent_folders(element: etree._Element, uri: str) -> None:
     """Reject a package:// address that leads out of its package, also if `.` is written %2e.
 
     Raises:

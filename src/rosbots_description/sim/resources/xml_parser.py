@@ -17,7 +17,7 @@ MAX_XML_ELEMENTS = 100_000
 MAX_XML_ATTRIBUTES = 200  # of one element; libxml2 compares all pairs
 
 _UNDEFINED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
-_FARTHEST = 65535  # libxml2 cannot store greater line numbers; it then reports where the tag ends
+_MAX_LINE = 65535  # libxml2 cannot store greater line numbers; it then reports where the tag ends
 
 
 def parse_xml(text: str | bytes, source: str) -> etree._Element:
@@ -37,7 +37,7 @@ def parse_xml(text: str | bytes, source: str) -> etree._Element:
         raise ModelError(_syntax_sentence(document, source, fault))
     root = _parse_document(document, source)
     for element, line in zip(root.iter(etree.Element), lines, strict=False):
-        if line < _FARTHEST:
+        if line < _MAX_LINE:
             element.sourceline = line  # type: ignore[assignment]  # untyped in the stubs
     if b'xmlns=' in document:
         _drop_default_namespace(root)

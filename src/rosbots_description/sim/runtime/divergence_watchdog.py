@@ -21,7 +21,7 @@ class DivergenceWatchdog(Hook):
 
     def __init__(self, world: 'World') -> None:
         self._world = world
-        self.look_soon()
+        self.check_soon()
 
     def before_step(self) -> None:
         """Rebuild the world if a model has diverged."""
@@ -30,6 +30,6 @@ class DivergenceWatchdog(Hook):
             self._world.rebuild(diverged)
         self.due = self._world.clock.steps + PERIOD
 
-    def look_soon(self) -> None:
+    def check_soon(self) -> None:
         """Check in the next step; time or step size has jumped."""
         self.due = self._world.clock.steps + 1

@@ -10,10 +10,10 @@ from .scheduler import NEVER, Hook
 
 @dataclass(frozen=True)
 class ExternalForce:
-    """Calls `push()` in each step from `start_ns` to `end_ns` [ns, simulated]; None: no end."""
+    """Calls `apply()` in each step from `start_ns` to `end_ns` [ns, simulated]; None: no end."""
 
     target: Link | Joint
-    push: Callable[[], None]
+    apply: Callable[[], None]
     start_ns: int
     end_ns: int | None
 
@@ -28,22 +28,22 @@ class ExternalForces(Hook):
     def add(
         self,
         target: Link | Joint,
-        push: Callable[[], None],
+        apply: Callable[[], None],
         start_ns: int,
         duration_ns: int,
     ) -> None:
-        """Call `push()` in each step from `start_ns`, or now, for `duration_ns`.
+        """Call `apply()` in each step from `start_ns`, or now, for `duration_ns`.
 
         Args:
             target: the link or joint on which the force acts.
-            push: called once per step.
+            apply: called once per step.
             start_ns: start time [ns, simulated]; a past time means now.
             duration_ns: duration [ns], both ends included; negative: no end. A force that starts
                 now acts from the next step on, so zero means not at all, as in Gazebo.
         """
         start_ns = max(start_ns, self._clock.now_ns)
         end_ns = None if duration_ns < 0 else start_ns + duration_ns
-        self._forces.append(ExternalForce(target, push, start_ns, end_ns))
+        self._forces.append(ExternalForce(target, apply, start_ns, end_ns))
         self._set_due()
 
     def cancel(self, chosen: Callable[[Link | Joint], bool]) -> None:
@@ -57,7 +57,7 @@ class ExternalForces(Hook):
         self._forces = [one for one in self._forces if one.end_ns is None or now_ns <= one.end_ns]
         for force in self._forces:
             if force.start_ns <= now_ns:
-                force.push()
+                force.apply()
         self._set_due()
 
     def _set_due(self) -> None:

@@ -56,9 +56,9 @@ class Link:
         arm = rotate(pose.orientation, offset.position)
         return compose(pose, offset), Twist(add(linear, cross(angular, arm)), angular)
 
-    def push(self, force: Vector, torque: Vector) -> None:
+    def apply_wrench(self, force: Vector, torque: Vector) -> None:
         """Apply a force [N] at the centre of mass and a torque [N m] (world axes) for one step."""
-        self.model.engine.push(self.model.body, self.name, force, torque)
+        self.model.engine.apply_wrench(self.model.body, self.name, force, torque)
 
     def can_slip(self, axis: Vector) -> bool:
         """Tell whether it can have a slip compliance along `axis`, a unit vector in its frame."""
@@ -123,7 +123,7 @@ class Joint:
         """Return the motor's target velocity [rad/s or m/s] and its greatest effort [N m or N]."""
         return self.model.engine.motor(self.model.body, self.name)
 
-    def push(self, effort: float) -> None:
+    def apply_effort(self, effort: float) -> None:
         """Apply `effort` [N m or N] for one step, added to the motor's.
 
         Each call is clamped to the joint's effort limit, as in Gazebo.
@@ -131,7 +131,7 @@ class Joint:
         limit = self.spec.effort
         if limit is not None and limit >= 0.0:
             effort = max(-limit, min(limit, effort))
-        self.model.engine.push_joint(self.model.body, self.name, effort)
+        self.model.engine.apply_joint_effort(self.model.body, self.name, effort)
 
     def set_motor(self, velocity: float, effort: float) -> None:
         """Drive towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
@@ -162,7 +162,7 @@ class Model:
         self.static = spec.static
         self.engine = engine
         self.initial_pose = pose
-        self.enter()
+        self.add_to_engine()
         self.links = {link.name: Link(self, link) for link in spec.links}
         self.joints = {
             joint.name: Joint(self, joint)
@@ -224,13 +224,13 @@ class Model:
         linear = add(twist.linear, cross(twist.angular, arm))
         self.set_twist(Twist(linear, twist.angular))
 
-    def enter(self) -> None:
+    def add_to_engine(self) -> None:
         """Add the model to the engine, which is new or was reset, at its spawn pose."""
         if not self._compiled.has_files:
             self._compiled = self.engine.compile(self.spec)
         self.body: EngineBody = self.engine.add(self._compiled, self.initial_pose)
 
-    def leave(self) -> None:
+    def remove_from_engine(self) -> None:
         """Remove the model from the engine for good, with its mesh files."""
         self.engine.remove(self.body)
         del self._compiled

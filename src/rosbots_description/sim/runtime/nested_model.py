@@ -10,7 +10,7 @@ from .model import Joint, Link, Model
 _LEVEL = '::'
 
 
-class InnerModel:
+class NestedModel:
     """A view of the outer model with the interface of `Model`.
 
     Its frame moves with its first link.
@@ -36,14 +36,14 @@ class InnerModel:
                 if joint.name.startswith(prefix)
             ),
             static=outer.static,
-            inner={
+            nested={
                 name.removeprefix(prefix): pose
-                for name, pose in outer.spec.inner.items()
+                for name, pose in outer.spec.nested.items()
                 if name.startswith(prefix)
             },
         )
         self._first = next(iter(self.links.values()))
-        self._in_first = relative(outer.spec.inner[path], self._first.spec.pose)
+        self._in_first = relative(outer.spec.nested[path], self._first.spec.pose)
 
     def state(self) -> tuple[Pose, Twist]:
         """Return the pose of the model's frame and the twist of its first link, in the world."""
@@ -69,10 +69,10 @@ def _within(prefix: str, parts: dict[str, Part]) -> dict[str, Part]:
     }
 
 
-def inner_models(outer: Model) -> list[InnerModel]:
+def nested_models(outer: Model) -> list[NestedModel]:
     """Return the nested models with links, in the order of the description."""
     return [
-        InnerModel(outer, path)
-        for path in outer.spec.inner
+        NestedModel(outer, path)
+        for path in outer.spec.nested
         if any(name.startswith(path + _LEVEL) for name in outer.links)
     ]

@@ -43,7 +43,7 @@ class Output(Generic[Reading]):
         """Call `changed()` when the first reader connects, and when the last one disconnects."""
         self._changed = changed
         self._readers: tuple[Callable[[Reading], object], ...] = ()
-        self.kept: Reading | None = None  # see `newest`
+        self.latched: Reading | None = None  # see `newest`
         self.wanted = False
 
     @property
@@ -59,26 +59,26 @@ class Output(Generic[Reading]):
         """Disconnect `read`; no effect if it is not connected."""
         self._set_readers(tuple(other for other in self._readers if other != read))
 
-    def keep(self) -> None:
+    def latch(self) -> None:
         """Keep the newest reading from now on, for `newest`."""
-        if self._keep not in self._readers:
-            self.connect(self._keep)
+        if self._latch not in self._readers:
+            self.connect(self._latch)
 
     @property
     def newest(self) -> Reading:
-        """Return the newest reading since `keep`.
+        """Return the newest reading since `latch`.
 
         Raises:
             NotFoundError: there is none yet.
         """
-        if self.kept is not None:
-            return self.kept
-        if self._keep in self._readers:
+        if self.latched is not None:
+            return self.latched
+        if self._latch in self._readers:
             raise NotFoundError('this output has no reading yet; let the world run on')
-        raise NotFoundError('this output keeps no readings; call its keep() before the world runs')
+        raise NotFoundError('this output stores no reading; call its latch() before the world runs')
 
-    def _keep(self, reading: Reading) -> None:
-        self.kept = reading
+    def _latch(self, reading: Reading) -> None:
+        self.latched = reading
 
     def send(self, reading: Reading) -> None:
         """Pass a reading to all readers."""

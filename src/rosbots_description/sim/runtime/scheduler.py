@@ -8,26 +8,27 @@ from fractions import Fraction
 logger = logging.getLogger(__name__)
 
 NEVER = 1 << 62  # a step count that no simulation reaches
-LEFT_OUT = 1000  # steps for which a failed hook is suspended, so that it does not flood the log
+SUSPENSION = 1000  # steps for which a failed hook is suspended, so that it does not flood the log
 
 
 class Hook:
     """Code that runs at certain steps, before and after physics.
 
     `due` is the count of the step in which it runs next. Set it in `before_step`, or from outside
-    between two runs of the world, on the thread that owns the world. `watches`, set there too, is
-    whether `after_step` is to be called; else this step and those that follow may be made in one.
+    between two runs of the world, on the thread that owns the world. `runs_after_step`, set there
+    too, is whether `after_step` is to be called; otherwise this step and those that follow may be
+    combined.
     """
 
     due = NEVER
-    watches = False
+    runs_after_step = False
 
     def before_step(self) -> None:
         """Run before physics, after time has advanced, and set the next `due`."""
         raise NotImplementedError
 
     def after_step(self) -> None:
-        """Run after physics, if `watches` is set and `before_step` did not fail."""
+        """Run after physics, if `runs_after_step` is set and `before_step` did not fail."""
 
 
 class PreRunPublisher:
@@ -69,7 +70,7 @@ class Schedule:
                 try:
                     publisher.publish_ahead(last)
                 except Exception:
-                    _leave_out(publisher, last)
+                    _suspend(publisher, last)
 
     def next_wanted(self) -> int:
         """Return the earliest step count at which a hook or a pre-run publisher is due."""
@@ -90,12 +91,12 @@ class Schedule:
             the number of steps made.
         """
         due = [hook for hook in self._hooks if hook.due <= step]
-        done = [hook for hook in due if _tried(hook, hook.before_step, step)]
-        watching = [hook for hook in done if hook.watches]
-        steps = 1 if watching else max(1, min(self.next_due() - 1, last) - step + 1)
+        done = [hook for hook in due if _run_hook(hook, hook.before_step, step)]
+        after = [hook for hook in done if hook.runs_after_step]
+        steps = 1 if after else max(1, min(self.next_due() - 1, last) - step + 1)
         physics(steps)
-        for hook in watching:
-            _tried(hook, hook.after_step, step)
+        for hook in after:
+            _run_hook(hook, hook.after_step, step)
         return steps
 
     def change_step(self, now: int, ratio: Fraction) -> None:
@@ -109,21 +110,21 @@ class Schedule:
                 hook.due = now + max(1, math.ceil((hook.due - now) / ratio))
 
 
-def _tried(hook: Hook, work: Callable[[], None], step: int) -> bool:
+def _run_hook(hook: Hook, work: Callable[[], None], step: int) -> bool:
     """Run a hook; return whether it succeeded."""
     try:
         work()
     except Exception:
-        _leave_out(hook, step)
+        _suspend(hook, step)
         return False
     return True
 
 
-def _leave_out(failed: Hook | PreRunPublisher, step: int) -> None:
+def _suspend(failed: Hook | PreRunPublisher, step: int) -> None:
     """Log the exception that is being handled, and suspend the hook that raised it."""
     logger.exception(
         'internal fault of %s; the simulation goes on, without it for %d steps',
         type(failed).__name__,
-        LEFT_OUT,
+        SUSPENSION,
     )
-    failed.due = step + LEFT_OUT
+    failed.due = step + SUSPENSION

@@ -9,7 +9,7 @@ from typing import Protocol
 from ..core import (
     END,
     IDENTITY,
-    LARGEST,
+    MAX_COORDINATE,
     ModelError,
     NotFoundError,
     Pose,
@@ -40,7 +40,7 @@ from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
 from .model import CollisionFrame, Joint, Link, Model
 from .model_part import ModelPart
-from .nested_model import InnerModel, inner_models
+from .nested_model import NestedModel, nested_models
 from .plugin import Plugin
 from .scheduler import Schedule
 from .world_state import SavedState
@@ -48,7 +48,7 @@ from .world_state import SavedState
 logger = logging.getLogger(__name__)
 
 WORLD_FRAMES = ('', 'world', 'map', '/map')
-Entity = Model | InnerModel | Link | CollisionFrame
+Entity = Model | NestedModel | Link | CollisionFrame
 
 
 class Listener(Protocol):
@@ -95,7 +95,7 @@ class World:
         self.strict = False  # with the flaws of Gazebo that a client may rely on
         # Set by who runs it at the pace of the wall clock: then no step waits for what takes long,
         # such as pictures, and these are given out when they are there.
-        self.keeps_pace = False
+        self.is_paced = False
         self.seed = 0  # of the noise of sensors that come; set it before they do
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
@@ -140,7 +140,7 @@ class World:
         if self.clock.step_ns != step_ns:
             ratio = Fraction(self.clock.step_ns, step_ns)
             self.schedule.change_step(self.clock.steps, ratio)
-            self._watchdog.look_soon()
+            self._watchdog.check_soon()
         self.engine.apply(physics)
 
     def hold_physics(self, holder: object) -> None:
@@ -174,10 +174,10 @@ class World:
         """
         if not name:
             raise ModelError('a model needs a name; the one given is empty')
-        if not all(abs(x) < LARGEST for x in pose.position):
+        if not all(abs(x) < MAX_COORDINATE for x in pose.position):
             raise ModelError(
                 f"model '{name}' is to appear {max(pose.position, key=abs):g} m away; "
-                f'less than {LARGEST:g} m are accepted'
+                f'less than {MAX_COORDINATE:g} m are accepted'
             )
         if name in self.models:
             raise ModelError(f"a model named '{name}' is in the world already")
@@ -224,7 +224,7 @@ class World:
         for part in reversed(model.parts):
             self.schedule.remove(part)
             part.unload()
-        model.leave()
+        model.remove_from_engine()
         del self.models[model.name]
 
     def reset_world(self) -> None:
@@ -235,7 +235,7 @@ class World:
                 model.set_twist(Twist())
         for part in self._parts():
             part.reset()
-        self._tell_reset()
+        self._notify_reset()
 
     def reset_simulation(self) -> None:
         """Restart at time zero: every model at its spawn pose, with the same motion as then.
@@ -243,14 +243,14 @@ class World:
         Properties that were set meanwhile, such as masses and joint limits, stay.
         """
         self.clock.reset()
-        self._watchdog.look_soon()
+        self._watchdog.check_soon()
         self.external_forces.cancel(lambda target: True)
         self.engine.reset()
         for model in self.models.values():
-            model.enter()
+            model.add_to_engine()
         for part in self._parts():
             part.restart()
-        self._tell_reset()
+        self._notify_reset()
 
     def save_state(self) -> SavedState:
         """Return the state of the world at this moment, for `restore`.
@@ -269,8 +269,8 @@ class World:
             SimError: the state is of another world, or models were spawned, deleted or changed
                 since.
         """
-        state.put_back(self)
-        self._tell_reset()
+        state.restore(self)
+        self._notify_reset()
 
     def rebuild(self, diverged: list[Model]) -> None:
         """Rebuild the engine; `diverged` models restart at their spawn pose, others continue."""
@@ -281,7 +281,7 @@ class World:
         }
         self.engine.reset()
         for model in self.models.values():
-            model.enter()
+            model.add_to_engine()
             if model.name in motions:
                 self.engine.set_motion(model.body, motions[model.name])
         for model in diverged:
@@ -304,15 +304,15 @@ class World:
                 for collision in link.collisions.values():
                     if name in collision.names:
                         return collision
-            for inner in inner_models(model) if model.spec.inner else ():
+            for inner in nested_models(model) if model.spec.nested else ():
                 if name in inner.names:
                     return inner
         return None
 
-    def find_model(self, name: str) -> Model | InnerModel | None:
+    def find_model(self, name: str) -> Model | NestedModel | None:
         """Return the first entity of that name if it is a model, else None."""
         entity = self.find_entity(name)
-        return entity if isinstance(entity, Model | InnerModel) else None
+        return entity if isinstance(entity, Model | NestedModel) else None
 
     def find_joint(self, name: str) -> Joint | None:
         """Return the joint with that plain or scoped name in the first model that has it."""
@@ -388,6 +388,6 @@ class World:
         for model in self.models.values():
             yield from model.parts
 
-    def _tell_reset(self) -> None:
+    def _notify_reset(self) -> None:
         for listener in self.listeners:
             listener.world_reset()

@@ -25,9 +25,9 @@ class SavedState:
         self._snapshot = world.engine.snapshot()
         self._shared = tuple(self._find_shared())
         self._hooks = [(hook, self._copied(vars(hook))) for hook in hooks]
-        self._newest = [(output, output.kept) for output in self._outputs()]
+        self._newest = [(output, output.latched) for output in self._outputs()]
 
-    def put_back(self, world: 'World') -> None:
+    def restore(self, world: 'World') -> None:
         """Restore this state.
 
         Raises:
@@ -49,7 +49,7 @@ class SavedState:
             vars(hook).clear()
             vars(hook).update(self._copied(state))
         for output, reading in self._newest:
-            output.kept = reading
+            output.latched = reading
         for part in self._parts():
             part.count_readers()  # the current ones
 

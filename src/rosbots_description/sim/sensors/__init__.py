@@ -13,7 +13,7 @@ from .camera_plugins import (
     StampedInfo,
 )
 from .contact import BumperPlugin, ContactPair, ContactPoint
-from .imu import ImuSensorPlugin, Inertia
+from .imu import ImuReading, ImuSensorPlugin
 from .joint_wrench import JointWrench, JointWrenchPlugin
 from .laser import LaserPlugin
 from .link_imu import LinkImu
@@ -21,8 +21,28 @@ from .range import Distance, RangePlugin
 from .ray import Scan
 
 __all__ = [
-    'BlockLaserPlugin', 'BumperPlugin', 'CameraInfo', 'CameraPlugin', 'Cloud', 'ContactPair',
-    'ContactPoint', 'DepthCameraPlugin', 'Distance', 'Image', 'ImuSensorPlugin', 'Inertia',
-    'JointWrench', 'JointWrenchPlugin', 'LaserPlugin', 'LinkImu', 'MultiCameraPlugin',
-    'OpenniKinectPlugin', 'Points', 'RangePlugin', 'Scan', 'Sensor', 'SensorPlugin', 'StampedInfo',
+    'BlockLaserPlugin',
+    'BumperPlugin',
+    'CameraInfo',
+    'CameraPlugin',
+    'Cloud',
+    'ContactPair',
+    'ContactPoint',
+    'DepthCameraPlugin',
+    'Distance',
+    'Image',
+    'ImuReading',
+    'ImuSensorPlugin',
+    'JointWrench',
+    'JointWrenchPlugin',
+    'LaserPlugin',
+    'LinkImu',
+    'MultiCameraPlugin',
+    'OpenniKinectPlugin',
+    'Points',
+    'RangePlugin',
+    'Scan',
+    'Sensor',
+    'SensorPlugin',
+    'StampedInfo',
 ]

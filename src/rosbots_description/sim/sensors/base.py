@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ..core import NANOSECONDS, SLOWEST_RATE, PluginError, Pose, compose
+from ..core import MIN_UPDATE_RATE, NANOSECONDS, PluginError, Pose, compose
 from ..description import PluginSpec, SensorSpec
 from ..plugin_registry import register_sensor
 from ..plugins import ModelPlugin
@@ -27,9 +27,9 @@ class DueTimes:
         Raises:
             PluginError: the rate is too low; the message names `what`, e.g. '<updateRate>'.
         """
-        if 0.0 < rate < SLOWEST_RATE:
-            raise PluginError(f'{what} is {rate:g} Hz; it must be at least {SLOWEST_RATE:g}, or 0 '
-                              'for every step')
+        if 0.0 < rate < MIN_UPDATE_RATE:
+            raise PluginError(f'{what} is {rate:g} Hz; it must be at least {MIN_UPDATE_RATE:g}, '
+                              'or 0 for every step')
         self._period_ns = NANOSECONDS / rate if rate > 0.0 else 0.0
 
     def begin(self, now_ns: int) -> None:
@@ -109,14 +109,14 @@ class Sensor(SensorLife):
 
     def before_step(self) -> None:
         """Request a reading after physics, so that it matches the stamp of the step."""
-        self.watches = self.readings.wanted
+        self.runs_after_step = self.readings.wanted
         self.count_readers()
 
     def after_step(self) -> None:
         """Send a reading to the readers."""
-        self.give(self.measure())
+        self.send(self.measure())
 
-    def give(self, reading: object) -> None:
+    def send(self, reading: object) -> None:
         """Send a reading, and count it."""
         self.count += 1
         self.last_ns = self.world.clock.now_ns
@@ -133,7 +133,7 @@ class Sensor(SensorLife):
 
 
 @register_sensor('')
-class KeptSensor(Sensor):
+class UnsupportedSensor(Sensor):
     """A sensor of a type that is not simulated."""
 
     measures = False
@@ -143,8 +143,8 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
     """A plugin in a <sensor>: it takes the sensor's readings while its outputs have readers.
 
     A subclass is registered by `register_in_sensor(library)`, sets `sensor_class` to the sensors
-    that it supports, reads its tags and makes its outputs in `load`, and sends to them in `take`.
-    `rate` limits the rate of its readings [Hz]; 0 means no limit.
+    that it supports, reads its tags and makes its outputs in `load`, and sends to them in
+    `process`. `rate` limits the rate of its readings [Hz]; 0 means no limit.
     """
 
     sensor_class: type[Sensor] = Sensor
@@ -154,7 +154,7 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
     def __init__(self, sensor: Sensor, spec: PluginSpec) -> None:
         super().__init__(sensor.world, sensor.model, spec)
         self.sensor = sensor
-        self._taking = False
+        self._receiving = False
         self.random = RandomSteps(self.world.seed, f'{sensor.scoped_name}::{spec.name}')
 
     def start(self) -> None:
@@ -179,28 +179,28 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         """Return the random numbers, too."""
         return (*super().shared(), self.random)
 
-    def take(self, reading: Reading) -> None:
+    def process(self, reading: Reading) -> None:
         """Send the outputs for a reading of the sensor."""
         raise NotImplementedError
 
     def readers_changed(self) -> None:
         """Take readings while any output has readers."""
-        self.sensor.readings.disconnect(self._take)
+        self.sensor.readings.disconnect(self._receive)
         if self.is_read:
-            self.sensor.readings.connect(self._take)
-            if not self._taking:
+            self.sensor.readings.connect(self._receive)
+            if not self._receiving:
                 self._wake()
-        self._taking = self.is_read
+        self._receiving = self.is_read
 
     def _wake(self) -> None:
         """Resume on the original schedule, as if readings had never stopped."""
         self._next_ns = self._times.after(self.world.clock.now_ns)
 
-    def _take(self, reading: Reading) -> None:
+    def _receive(self, reading: Reading) -> None:
         stamp_ns = self.stamp_of(reading)
         if stamp_ns >= self._next_ns:
             self._next_ns = self._times.after(stamp_ns)
-            self.take(reading)
+            self.process(reading)
 
     def stamp_of(self, _reading: Reading) -> int:
         """Return the time of a reading [ns]."""

@@ -44,7 +44,7 @@ class BlockLaserPlugin(SensorPlugin[Scan]):
         ways = np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
         self._ways = np.stack(ways, axis=-1).reshape(-1, 3)
 
-    def take(self, _reading: Scan) -> None:
+    def process(self, _reading: Scan) -> None:
         """Send the points of a sweep."""
         cast, retro = self.sensor.rays
         ranges = self.sensor.blend.ranges(cast)[:, None]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..core import PluginError, Pose, compose, from_rpy
 from ..description import Element
 from ..plugin_registry import register_sensor
-from ..rendering import Lens, NoRendererError, Picture, RenderError, Shutter
+from ..rendering import ImageCapture, Lens, NoRendererError, Picture, RenderError
 from ..runtime import NEVER
 from .base import DueTimes, Sensor
 from .noise import read_noise
@@ -15,7 +15,7 @@ from .numbers import child_at, count, number
 
 logger = logging.getLogger(__name__)
 
-LARGEST = 8192  # [pixels] along an edge
+MAX_IMAGE_SIZE = 8192  # [pixels] along an edge
 POLL = 4  # steps between two polls for a pending picture
 _ENCODINGS = {
     'L8': 'mono8', 'L_INT8': 'mono8', 'L16': 'mono16', 'L_INT16': 'mono16',
@@ -56,7 +56,7 @@ class CameraSensor(Sensor):
         elements = elements or [Element('camera')]  # with all defaults
         self.cameras = tuple(self._camera(one) for one in self._chosen(elements))
         self._wanted: dict[object, tuple[bool, bool]] = {}  # by plugin: pixels, depths
-        self._shutter = Shutter(self.world)
+        self._capture = ImageCapture(self.world)
         self._picture_step = NEVER
         self._complaint = ''
 
@@ -69,7 +69,7 @@ class CameraSensor(Sensor):
 
     def shared(self) -> tuple[object, ...]:
         """Return what is not part of the state."""
-        return (*super().shared(), self.cameras, self._shutter)
+        return (*super().shared(), self.cameras, self._capture)
 
     def want(self, plugin: object, what: tuple[bool, bool] | None) -> None:
         """Set whether a plugin wants (pixels, depths), None: neither; other readers get both."""
@@ -92,7 +92,7 @@ class CameraSensor(Sensor):
 
     def unload(self) -> None:
         """Close the shutter."""
-        self._shutter.close()
+        self._capture.close()
 
     def measure(self) -> object:
         """Return a reading of the current scene.
@@ -101,10 +101,10 @@ class CameraSensor(Sensor):
             PluginError: the picture cannot be drawn.
         """
         try:
-            self._press((True, self.has_depth))
+            self._request((True, self.has_depth))
             taken: tuple[Picture, ...] = ()
-            while self._shutter.under_way:  # earlier requests are answered first
-                taken = self._shutter.take(wait=True) or taken
+            while self._capture.pending:  # earlier requests are answered first
+                taken = self._capture.receive_image(wait=True) or taken
         except RenderError as error:
             raise PluginError(f'{self.called}: {error}') from None
         return self.reading(taken)
@@ -116,12 +116,12 @@ class CameraSensor(Sensor):
 
     def after_step(self) -> None:
         """Request a picture if due, and send the finished ones."""
-        waits = not self.world.keeps_pace
+        waits = not self.world.is_paced
         try:
-            self._give(waits)
-            if self._takes and self._shutter.is_free:
-                self._press(self._wants())
-                self._give(waits)
+            self._send_finished(waits)
+            if self._takes and self._capture.is_free:
+                self._request(self._wants())
+                self._send_finished(waits)
         except NoRendererError:
             pass
         except RenderError as error:
@@ -134,7 +134,7 @@ class CameraSensor(Sensor):
         """Set the next due step: the next picture, or an earlier poll for a pending one."""
         super().count_readers()
         self._picture_step = self.due
-        if self.due != NEVER and self._shutter.under_way:
+        if self.due != NEVER and self._capture.pending:
             self.due = min(self.due, self.world.clock.steps + POLL)
 
     def _wants(self) -> tuple[bool, bool]:
@@ -143,23 +143,23 @@ class CameraSensor(Sensor):
         wanted = self._wanted.values()
         return any(pixels for pixels, _ in wanted), any(depths for _, depths in wanted)
 
-    def _press(self, wants: tuple[bool, bool]) -> None:
-        while not self._shutter.is_free:
-            self._shutter.take(wait=True)
+    def _request(self, wants: tuple[bool, bool]) -> None:
+        while not self._capture.is_free:
+            self._capture.receive_image(wait=True)
         here = self.pose
         seed = int(self.random.at(self.world.clock.steps).integers(1 << 63))
-        self._shutter.press(
+        self._capture.request(
             [(one.lens, compose(here, one.pose)) for one in self.cameras], seed, wants)
 
-    def _give(self, waits: bool) -> None:
+    def _send_finished(self, waits: bool) -> None:
         """Send finished pictures, except stale ones with future stamps from before a reset."""
-        while (taken := self._shutter.take(waits)) is not None:
+        while (taken := self._capture.receive_image(waits)) is not None:
             if taken[0].stamp_ns <= self.world.clock.now_ns:
-                self.give(self.reading(taken))
+                self.send(self.reading(taken))
 
     def _camera(self, element: Element) -> SensedCamera:
-        width = count(element, 'image/width', 320, LARGEST)
-        height = count(element, 'image/height', 240, LARGEST)
+        width = count(element, 'image/width', 320, MAX_IMAGE_SIZE)
+        height = count(element, 'image/height', 240, MAX_IMAGE_SIZE)
         field = number(element, 'horizontal_fov', 1.047)
         near, far = number(element, 'clip/near', 0.1), number(element, 'clip/far', 100.0)
         if not 0.001 <= field <= math.pi - 0.001:

@@ -174,7 +174,7 @@ class CameraPlugin(SensorPlugin[Pictures]):
         """Return the stamp of a picture [ns]."""
         return _first(reading).stamp_ns
 
-    def take(self, reading: Pictures) -> None:
+    def process(self, reading: Pictures) -> None:
         """Send a picture."""
         self.channels[0].send(_first(reading))
 
@@ -230,7 +230,7 @@ class MultiCameraPlugin(CameraPlugin):
         for side in ('left', 'right'):
             self.params.values[f'{side} {tag}'] = f'{self.camera_name}/{side}/{name}'.lstrip('/')
 
-    def take(self, reading: Pictures) -> None:
+    def process(self, reading: Pictures) -> None:
         """Send the pictures."""
         pictures = (reading,) if isinstance(reading, Picture) else reading
         for channel, number in zip(self.channels, self._numbers, strict=True):
@@ -277,7 +277,7 @@ class DepthCameraPlugin(CameraPlugin):
         return (channel.image.wanted or self.points.wanted,
                 self.depth.wanted or self.points.wanted)
 
-    def take(self, reading: Pictures) -> None:
+    def process(self, reading: Pictures) -> None:
         """Send a picture, its depth image and its point cloud."""
         channel, picture = self.channels[0], _first(reading)
         channel.send(picture)

@@ -52,12 +52,12 @@ class ContactSensor(Sensor):
                 else 'names no <collision>'
             logger.warning("model '%s', %s: it %s; the collisions of '%s' are: %s", self.model.name,
                            self.called, said, self.link.name, ', '.join(known) or 'none')
-        self._touches: list[ContactPair] = []
+        self._contacts: list[ContactPair] = []
         self._next_ns = 0
 
     def reset(self) -> None:
         """Discard recorded contacts."""
-        self._touches.clear()
+        self._contacts.clear()
         self._next_ns = self._times.after(self.world.clock.now_ns)
 
     def count_readers(self) -> None:
@@ -71,12 +71,12 @@ class ContactSensor(Sensor):
 
     def after_step(self) -> None:
         """Record contacts, and send a reading when one is due."""
-        self._touches += self.measure()
+        self._contacts += self.measure()
         now_ns = self.world.clock.now_ns
         if now_ns >= self._next_ns:
-            reading = tuple(self._touches)
+            reading = tuple(self._contacts)
             self.reset()
-            self.give(reading)
+            self.send(reading)
 
     def measure(self) -> tuple[ContactPair, ...]:
         """Return the contacts of the last step."""
@@ -132,6 +132,6 @@ class BumperPlugin(SensorPlugin[tuple[ContactPair, ...]]):
         self.params.read('frameName', 'world')
         self.contacts = self.output('contacts')
 
-    def take(self, reading: tuple[ContactPair, ...]) -> None:
+    def process(self, reading: tuple[ContactPair, ...]) -> None:
         """Send the contacts."""
         self.contacts.send(reading)

@@ -29,7 +29,7 @@ logger = logging.getLogger(__name__)
 _AXES = 'x', 'y', 'z'
 
 
-class Inertia(NamedTuple):
+class ImuReading(NamedTuple):
     """An IMU reading in the sensor's axes, with its nominal standard deviation."""
 
     orientation: Quaternion  # relative to the world, or to the initial orientation
@@ -77,7 +77,7 @@ class ImuSensor(Sensor):
         super().after_step()
         self._before = self.world.clock.now_ns, self._state()[1].linear
 
-    def measure(self) -> Inertia:
+    def measure(self) -> ImuReading:
         """Return a reading."""
         orientation, (linear, angular) = self._state()
         acceleration = mean_acceleration(self._before, self.world.clock.now_ns, linear)
@@ -87,7 +87,7 @@ class ImuSensor(Sensor):
         if any(self._noises):
             measured = noisy(measured, self._noises, self.random, self.world.clock.steps)
         wx, wy, wz, ax, ay, az = measured
-        return Inertia(orientation, (wx, wy, wz), (ax, ay, az))
+        return ImuReading(orientation, (wx, wy, wz), (ax, ay, az))
 
     def _state(self) -> tuple[Quaternion, Twist]:
         """Return orientation and twist of the sensor's frame in the world."""
@@ -107,7 +107,7 @@ def mean_acceleration(
 
 
 @register_in_sensor('libgazebo_ros_imu_sensor.so')
-class ImuSensorPlugin(SensorPlugin[Inertia]):
+class ImuSensorPlugin(SensorPlugin[ImuReading]):
     """Publishes readings at its own rate. Output: `imu`."""
 
     sensor_class = ImuSensor
@@ -132,7 +132,7 @@ class ImuSensorPlugin(SensorPlugin[Inertia]):
                            'deprecated as it does not comply with REP 145.', self.log_prefix)
         self.imu = self.output('imu')
 
-    def take(self, reading: Inertia) -> None:
+    def process(self, reading: ImuReading) -> None:
         """Send a reading."""
         orientation = reading.orientation
         if self._reference is not None:
@@ -143,4 +143,4 @@ class ImuSensorPlugin(SensorPlugin[Inertia]):
             numbers = noisy(numbers, [self._noise] * 10, self.random, self.world.clock.steps)
         x, y, z, w, wx, wy, wz, ax, ay, az = numbers
         self.imu.send(
-            Inertia((x, y, z, w), (wx, wy, wz), (ax, ay, az), self._noise.deviation))
+            ImuReading((x, y, z, w), (wx, wy, wz), (ax, ay, az), self._noise.deviation))

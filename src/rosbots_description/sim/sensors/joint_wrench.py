@@ -25,7 +25,7 @@ class JointWrenchPlugin(PeriodicPlugin):
     """Publishes the wrench in <jointName>. Output: `wrench`. `frame` is the child's name."""
 
     prefix = 'ft_sensor plugin '
-    later = False
+    strictly_after = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)
     _measured: object = None  # the body whose joint the engine measures
 

@@ -22,6 +22,6 @@ class LaserPlugin(SensorPlugin[Scan]):
         self.params.read('frameName', '/world')
         self.scan = self.output('scan', bool(self.params.read('topicName', '/world')))
 
-    def take(self, reading: Scan) -> None:
+    def process(self, reading: Scan) -> None:
         """Send a scan."""
         self.scan.send(reading)

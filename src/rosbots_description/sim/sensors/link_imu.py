@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from ..core import Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
 from ..plugin_registry import register
 from ..plugins import PeriodicPlugin
-from .imu import Inertia, mean_acceleration
+from .imu import ImuReading, mean_acceleration
 from .noise import RandomSteps, gaussian, noisy
 
 
@@ -19,7 +19,7 @@ class LinkImu(PeriodicPlugin):
     """Publishes orientation, angular velocity and acceleration of <bodyName>. Output: `imu`."""
 
     prefix = 'imu plugin '
-    later = False
+    strictly_after = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)
     missing_level = logging.INFO
     _before: tuple[int, Vector] | None = None  # time [ns] and velocity at the previous report
@@ -62,7 +62,7 @@ class LinkImu(PeriodicPlugin):
         if self._noise:
             numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
         wx, wy, wz, ax, ay, az = numbers
-        self.imu.send(Inertia(
+        self.imu.send(ImuReading(
             pose.orientation, (wx, wy, wz), (ax, ay, az), self._noise.deviation))
 
     def _state(self) -> tuple[Pose, Twist]:

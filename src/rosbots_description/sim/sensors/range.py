@@ -37,7 +37,7 @@ class RangePlugin(SensorPlugin[Scan]):
         self.rate = self.params.rate('updateRate', 0.0)
         self.range = self.output('range', bool(self.params.values['topicName']))
 
-    def take(self, _reading: Scan) -> None:
+    def process(self, _reading: Scan) -> None:
         """Send the minimum range, with noise if there is a hit."""
         least, most = float(self.sensor.rays[0].min()), self.sensor.range_max
         if least < most and self.noise:

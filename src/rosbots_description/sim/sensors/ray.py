@@ -20,7 +20,7 @@ from .numbers import child_at, count, number
 from .ray_fan import RayFan, Sweep
 from .ray_scene import RayScene
 
-MOST_SAMPLES = 1_000_000  # in all rows; such a scan takes a second
+MAX_SAMPLES = 1_000_000  # in all rows; such a scan takes a second
 
 Floats = NDArray[np.float64]
 
@@ -48,12 +48,12 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
     Raises:
         PluginError: a number is out of range.
     """
-    samples = count(element, 'samples', samples, MOST_SAMPLES)
+    samples = count(element, 'samples', samples, MAX_SAMPLES)
     resolution = number(element, 'resolution', 1.0)
-    if not 1.0 <= samples * resolution <= MOST_SAMPLES:
+    if not 1.0 <= samples * resolution <= MAX_SAMPLES:
         line = 0 if element is None else element.line
         raise PluginError(f'line {line}: <resolution> is {resolution:g}; with {samples} '
-                          f'<samples> it must give 1 to {MOST_SAMPLES} ranges')
+                          f'<samples> it must give 1 to {MAX_SAMPLES} ranges')
     return Sweep(samples, int(samples * resolution), number(element, 'min_angle', 0.0),
                  number(element, 'max_angle', 0.0))
 
@@ -84,8 +84,8 @@ class RaySensor(Sensor):
                               f'{self.range_max:g} m; it must begin at 0 or more and end beyond')
         for total in (self.horizontal.samples * self.vertical.samples,
                       self.horizontal.count * self.vertical.count):
-            if total > MOST_SAMPLES:
-                raise PluginError(f'line {ray.line}: {total} rays; at most {MOST_SAMPLES} are cast')
+            if total > MAX_SAMPLES:
+                raise PluginError(f'line {ray.line}: {total} rays; at most {MAX_SAMPLES} are cast')
         self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
         self._scene, self.fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
         self.blend = self.fan.blend()

@@ -64,7 +64,7 @@ class Patches(NamedTuple):
         columns: (m,) likewise for columns.
     """
 
-    balls: Indices
+    spheres: Indices
     rows: Indices
     rows_end: Indices
     columns: Indices
@@ -101,9 +101,9 @@ class RayFan:
         columns, columns_end = self.columns.within(
             low[:, None] + self._turns, high[:, None] + self._turns)
         there = (columns_end > columns) & (rows_end > rows)[:, None]
-        balls, turns = np.nonzero(there)
-        return Patches(balls, rows[balls], rows_end[balls],
-                       columns[balls, turns], columns_end[balls, turns])
+        spheres, turns = np.nonzero(there)
+        return Patches(spheres, rows[spheres], rows_end[spheres],
+                       columns[spheres, turns], columns_end[spheres, turns])
 
     def rays(self, patches: Patches) -> tuple[Indices, Indices, Indices]:
         """Return indices of patches and rays, and the counts of rays by patch.

@@ -93,17 +93,17 @@ class RayScene:
             np.einsum('ij,ijk->ki', -offsets, self._axes), self._halves,
             (turn.T @ self._axes).reshape(-1, 9).T))
         at_once = max(1, _MOST // len(distances))
-        for begin in range(0, len(patches.balls), at_once):
+        for begin in range(0, len(patches.spheres), at_once):
             batch = Patches(*(part[begin:begin + at_once] for part in patches))
             which, ray, counts = fan.rays(batch)
             # take keeps the pairs of a row contiguous in memory, unlike indexing.
-            pairs = laid_out.take(batch.balls[which], axis=1)
+            pairs = laid_out.take(batch.spheres[which], axis=1)
             along = fan.ways.take(ray, axis=1)[:, None]
             way = (along * pairs[6:].reshape(3, 3, -1)).sum(axis=0)
             met = np.full((len(counts), len(distances)), np.inf)
             met.ravel()[which * len(distances) + ray] = self._meet(
-                batch.balls, counts, least, pairs[:3], way, pairs[3:6])
-            self._keep_nearest(distances, retro, met, self._retro[batch.balls])
+                batch.spheres, counts, least, pairs[:3], way, pairs[3:6])
+            self._keep_nearest(distances, retro, met, self._retro[batch.spheres])
 
     def _meet(
         self, shapes: Indices, counts: Indices, least: float, start: Floats, way: Floats,

@@ -195,13 +195,13 @@ def test_a_model_that_crashes_the_engine_is_refused(number):
 
 def test_a_model_that_is_never_done_with_is_refused(monkeypatch):
     allow(monkeypatch, SHORT)
-    assert f'was not done with it after {SHORT} s of processor time;' in fault_of(
+    assert f'needed more than {SHORT} s of processor time for it;' in fault_of(
         lambda: burn(math.inf))
 
 
 def test_a_model_that_sleeps_for_ever_is_refused(monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.02)
-    assert 'the physics engine slept over it for 10 s;' in fault_of(signal.pause)
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
+    assert 'the physics engine hung for 10 s;' in fault_of(signal.pause)
 
 
 @pytest.mark.parametrize('share', ['PER_PART', 'PER_BYTE'])
@@ -273,8 +273,8 @@ def test_who_asks_for_what_is_being_tried_waits_for_that():
 
 
 def test_a_trial_that_nobody_waits_for_is_given_up(monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.02)
-    monkeypatch.setattr(fork_server, 'MAX_ASLEEP', 10**6)
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
+    monkeypatch.setattr(fork_server, 'MAX_SLEEPING_POLLS', 10**6)
     with Sandbox(does=signal.pause) as sandbox:
         for _ in range(2):
             with pytest.raises(ModelError, match="'crate' is rejected: the client that asked"):
@@ -331,7 +331,7 @@ def test_a_failure_of_the_system_is_blamed_on_nobody_else(fault):
     reason = getattr(fault, 'strerror', None) or 'Cannot allocate memory'
     assert fault_of(fail) == (
         "model 'crate' is rejected: it could not be tested before, since the operating "
-        f'system failed ({reason}); mend that and spawn the model again')
+        f'system failed ({reason}); fix that and spawn the model again')
 
 
 def test_a_trial_that_the_system_kills_for_want_of_memory_is_blamed_on_nobody_else():

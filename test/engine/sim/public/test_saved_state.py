@@ -38,7 +38,7 @@ def driving_robot(world):
     robot = world.spawn(XACRO, z=0.5)
     drive = robot.plugin('diff_drive')
     for output in drive.outputs.values():
-        output.keep()
+        output.latch()
     world.run(seconds=0.7)
     drive.command(0.6, 0.4)
     world.run(337)
@@ -68,7 +68,7 @@ def test_encoders_go_on_from_where_they_were():
         '<legacyMode>', '<odometrySource>encoder</odometrySource><legacyMode>')
     with World.empty() as world:
         drive = world.spawn(text, z=0.5).plugin('diff_drive')
-        drive.odometry.keep()
+        drive.odometry.latch()
         drive.command(0.5, 0.3)
         world.run(seconds=1.0)
         assert drive.every_step

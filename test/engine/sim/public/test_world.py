@@ -173,13 +173,13 @@ def test_an_output_keeps_its_newest_reading_once_it_is_told_to(world):
     odometry = world.spawn(XACRO, z=0.5).plugin('diff_drive').odometry
     with pytest.raises(NotFoundError, match='call its keep'):
         _ = odometry.newest
-    odometry.keep()
+    odometry.latch()
     with pytest.raises(NotFoundError, match='no reading yet'):
         _ = odometry.newest
     seen = []
     odometry.connect(seen.append)
     world.run(seconds=0.1)
-    odometry.keep()  # again, which changes nothing
+    odometry.latch()  # again, which changes nothing
     assert odometry.newest is seen[-1]
     assert len(seen) == 9  # 100 Hz, from the first step after 10 ms
 

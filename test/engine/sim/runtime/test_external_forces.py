@@ -23,7 +23,7 @@ def free_body(com=IDENTITY):
 def push(world, link, force, torque, start=0.0, duration=1.0):
     world.external_forces.add(
         link,
-        lambda: link.push(force, torque),
+        lambda: link.apply_wrench(force, torque),
         round(start * SECOND_NS),
         round(duration * SECOND_NS),
     )
@@ -50,7 +50,8 @@ def test_a_force_at_a_place_of_its_own_turns_by_its_arm():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
         x, y, z = HIGH.position
-        world.engine.push(model.body, 'link', (0.0, 5.0, 0.0), (0.0, 0.0, 0.0), (x + 2.0, y, z))
+        world.engine.apply_wrench(
+            model.body, 'link', (0.0, 5.0, 0.0), (0.0, 0.0, 0.0), (x + 2.0, y, z))
         world.run(1)
         assert model.twist.linear == pytest.approx((0.0, 0.005, 0.0), abs=1e-6)
         assert model.twist.angular == pytest.approx((0.0, 0.0, 0.01 / MOMENTS[2]), rel=1e-3)
@@ -108,8 +109,8 @@ def test_steps_made_together_are_the_same_to_the_bit_as_single_ones(together):
         with empty_world() as world:
             robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
             for _ in range(5):
-                next(iter(robot.links.values())).push((30.0, 0.0, 5.0), (0.0, 0.0, 1.0))
-                robot.joint('wheel_left_joint').push(0.5)
+                next(iter(robot.links.values())).apply_wrench((30.0, 0.0, 5.0), (0.0, 0.0, 1.0))
+                robot.joint('wheel_left_joint').apply_effort(0.5)
                 for _ in range(120 // run):
                     world.run(run)
             parts = [*robot.links.values(), *robot.joints.values()]
@@ -127,7 +128,7 @@ def test_steps_of_a_damped_joint_are_the_same_however_many_are_made_at_once():
     for run in (1, 3, 93):
         with empty_world() as world:
             joint = world.spawn(spec, 'bar', Pose()).joints['j']
-            joint.push(500.0)
+            joint.apply_effort(500.0)
             for _ in range(93 // run):
                 world.run(run)
             seen.append(joint.state())
@@ -171,7 +172,7 @@ def test_an_effort_turns_a_joint_by_its_inertia():
     with empty_world() as world:
         model = world.spawn(pendulum(), 'pendulum', HIGH)
         joint = model.joint('hinge')
-        world.external_forces.add(joint, lambda: joint.push(0.1), 0, SECOND_NS)
+        world.external_forces.add(joint, lambda: joint.apply_effort(0.1), 0, SECOND_NS)
         world.run(1500)
         assert joint.velocity == pytest.approx(0.1 / MOMENTS[2], rel=0.01)
 

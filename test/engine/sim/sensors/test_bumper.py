@@ -24,10 +24,10 @@ def world():
         yield made
 
 
-def spawn(world, robot='bumper', settle=500, **place):
+def spawn(world, robot='bumper', rounded=500, **place):
     """Return the model, and a list that takes times [ms] and readings, once it stands."""
     model = world.spawn(ROBOTS / f'{robot}.urdf', 'bbot', **place)
-    world.run(settle)
+    world.run(rounded)
     found = []
     model.plugin('bumper').outputs['contacts'].connect(
         lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
@@ -78,7 +78,7 @@ def test_without_a_rate_each_step_is_a_message(world):
 
 
 def test_what_does_not_touch_is_sent_too(world):
-    _, found = spawn(world, settle=0, z=0.3)
+    _, found = spawn(world, rounded=0, z=0.3)
     world.run(400)
     counts = [len(touches) for _, touches in found]
     assert counts[:12] == [0] * 12

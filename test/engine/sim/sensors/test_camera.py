@@ -19,7 +19,7 @@ from support.sensing import recordings
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.public.world import World
-from rosbots_description.sim.rendering.studio import studio_of
+from rosbots_description.sim.rendering.image_capture import renderer_of
 from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
 
 LEVELS = 3  # of 255 that a face may differ
@@ -65,7 +65,7 @@ def stamps(sensor):
 
 
 def process_of(world):
-    return studio_of(world).process.process_id
+    return renderer_of(world).process.process_id
 
 
 @pytest.mark.parametrize('name', SCENES)
@@ -107,8 +107,8 @@ def test_without_opengl_one_line_says_what_would_help(scene, caplog, monkeypatch
     scene.run(seconds=0.5)
     assert taken == []
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
-        'cameras see nothing: there is no OpenGL 3.3 (requested device index 0, but found 0 '
-        'devices); install libegl-mesa0 and libgl1-mesa-dri, which draw in software']
+        'cameras cannot render images: there is no OpenGL 3.3 (requested device index 0, but found '
+        '0 devices); install libegl-mesa0 and libgl1-mesa-dri, which draw in software']
 
 
 def test_both_eyes_of_a_multicamera_see_from_where_they_are(scene):
@@ -160,7 +160,7 @@ def test_depths_are_the_recorded_ones(scene):
     images, clouds = [], []
     plugin.depth.connect(images.append)
     plugin.points.connect(clouds.append)
-    plugin.take(camera.read())
+    plugin.process(camera.read())
     depths = np.frombuffer(images[0].pixels, '<f4').reshape(240, 320)
     with np.load(FILES / 'openni_kinect.npz') as file:
         recorded = file[file.files[0]]
@@ -181,7 +181,7 @@ def test_the_depth_camera_gives_the_far_clip_for_the_sky_and_clouds_without_rows
     plugin = plugin_of(camera)
     clouds = []
     plugin.points.connect(clouds.append)
-    plugin.take(camera.read())
+    plugin.process(camera.read())
     assert clouds[0].points.shape == (1, 76800, 8)
     assert clouds[0].is_dense
     assert clouds[0].points[0, 0, 2] == 10.0
@@ -221,7 +221,7 @@ def test_at_the_pace_of_the_wall_clock_no_step_waits_for_a_picture(scene):
     _, camera = spawn_robot(scene, 'camera_320')
     camera.read()
     taken = stamps(camera)
-    scene.keeps_pace = True
+    scene.is_paced = True
     os.kill(process_of(scene), signal.SIGSTOP)
     begin = time.monotonic()
     scene.run(seconds=0.2)
@@ -249,7 +249,7 @@ def test_another_process_begins_where_one_has_died(scene, caplog):
     # The robot has settled by some micrometres.
     assert (np.abs(camera.read().pixels.astype(int) - before) > LEVELS).mean() < EDGES
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
-        'the process that draws pictures has died (killed by signal 9); another one begins']
+        'the render process has died (killed by signal 9); restarting it']
 
 
 def test_meshes_reach_it_whatever_timeout_sockets_have_by_default(scene, caplog):
@@ -270,10 +270,10 @@ def test_it_ends_with_the_process_that_it_draws_for():
 import os, sys
 sys.path[:0] = {sys.path!r}
 from support.pictures import recorded_world, spawn_robot
-from rosbots_description.sim.rendering.studio import studio_of
+from rosbots_description.sim.rendering.image_capture import renderer_of
 world = recorded_world()
 spawn_robot(world, 'camera_320')[1].read()
-print(studio_of(world).process.process_id, flush=True)
+print(renderer_of(world).process.process_id, flush=True)
 os.kill(os.getpid(), 9)
 """
     run = subprocess.run([sys.executable, '-c', text], capture_output=True, text=True, check=False)
@@ -324,7 +324,7 @@ def test_the_smallest_and_the_largest_picture_are_drawn():
 def test_a_robot_may_go_while_its_picture_is_under_way(scene):
     model, camera = spawn_robot(scene, 'camera_320')
     stamps(camera)
-    scene.keeps_pace = True
+    scene.is_paced = True
     scene.run(seconds=0.1)
     scene.delete(model.name)
     _, camera = spawn_robot(scene, 'camera_640')  # what comes for the other one is not for it

@@ -19,8 +19,8 @@ WALL = ('<sdf version="1.6"><model name="wall"><static>1</static><link name="l">
 def reading_of(robot, library, output):
     """Return what a plugin makes of a reading where the robot stands, before physics moves it."""
     plugin = robot.plugin(library)
-    plugin.outputs[output].keep()
-    plugin.take(plugin.sensor.read())
+    plugin.outputs[output].latch()
+    plugin.process(plugin.sensor.read())
     return plugin.outputs[output].newest
 
 

@@ -83,7 +83,7 @@ class Sonar(PeriodicPlugin):
     def load(self):
         self.params.read('frameName', 'sonar')
         self.set_rate(100.0)
-        self.range, self.raw = self.output('range'), self.output('raw', asked_for=False)
+        self.range, self.raw = self.output('range'), self.output('raw', requested=False)
 
     def report(self):
         self.range.send(0.5)
@@ -124,7 +124,7 @@ def test_an_output_has_a_reader_while_its_topic_has_one(sonar):
         assert not plugin.range.wanted
         topic.read()
         assert plugin.range.wanted
-        topic.leave()
+        topic.remove_from_engine()
     topic.read()
     adapter.disconnect()
     assert not plugin.range.wanted

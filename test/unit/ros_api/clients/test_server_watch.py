@@ -34,8 +34,8 @@ def simulator(place):
 def test_before_there_is_a_simulator_nothing_is_told(place):
     told = []
     watch = ServerWatch(told.append)
-    watch.look()
-    watch.look()
+    watch.poll()
+    watch.poll()
     assert told == []
 
 
@@ -43,18 +43,18 @@ def test_the_end_of_the_simulator_and_the_next_one_are_told_once(place, simulato
     told = []
     watch = ServerWatch(told.append)
     first = simulator()
-    watch.look()
-    watch.look()
+    watch.poll()
+    watch.poll()
     assert told == []
     first.close()  # killed: the master still names its address
-    watch.look()
-    watch.look()
+    watch.poll()
+    watch.poll()
     assert told == [False]
     place['address'] = None  # the master has forgotten it
-    watch.look()
+    watch.poll()
     simulator()
-    watch.look()
-    watch.look()
+    watch.poll()
+    watch.poll()
     assert told == [False, True]
 
 
@@ -62,14 +62,14 @@ def test_a_simulator_that_is_replaced_has_not_gone(place, simulator):
     told = []
     watch = ServerWatch(told.append)
     first = simulator()
-    watch.look()
+    watch.poll()
     simulator()
     first.close()
-    watch.look()
+    watch.poll()
     assert told == []
 
 
 def test_without_a_master_there_is_no_simulator(monkeypatch):
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
-    ServerWatch(pytest.fail).look()
+    ServerWatch(pytest.fail).poll()
     assert server_watch.NOTICE == 'the simulator has gone'

@@ -25,7 +25,7 @@ from rosbots_description.ros_api.messages.layouts import (
 from rosbots_description.ros_api.transport.sending import next_number
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.runtime.outputs import JointStates, Odometry
-from rosbots_description.sim.sensors import Inertia
+from rosbots_description.sim.sensors import ImuReading
 
 SEQ, NOW_NS = 258, 12_000_000_345
 STAMP = Time(12, 345)
@@ -92,7 +92,7 @@ def test_an_imu():
         for axis, value in zip('xyzw', values, strict=False):
             setattr(getattr(message, field), axis, value)
         getattr(message, f'{field}_covariance')[::4] = [0.25] * 3
-    reading = Inertia(POSE.orientation, TWIST.angular, TWIST.linear, 0.5)
+    reading = ImuReading(POSE.orientation, TWIST.angular, TWIST.linear, 0.5)
     assert ImuLayout('imu_link').pack(SEQ, NOW_NS, reading) == on_the_wire(message)
 
 

@@ -86,7 +86,7 @@ def test_a_busy_simulator_changes_nothing_that_is_shown(server, connect):
     settings = connect(server)
     before = Config(dict(settings.config))
     server.busy = True
-    settings.follow()
+    settings.publish_changes()
     assert settings.config == before
     assert _ask(settings, time_step=0.002) == before
 

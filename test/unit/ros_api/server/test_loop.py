@@ -286,10 +286,10 @@ def test_stops_at_once_and_then_refuses(paused):
 def test_work_beside_the_steps_gives_its_result_or_its_fault(start):
     world = CountingWorld(rate=1000.0)
     loop = start(world)
-    threads = loop.beside(threading.get_ident), loop.call(threading.get_ident)
+    threads = loop.run_in_thread(threading.get_ident), loop.call(threading.get_ident)
     assert len({*threads, threading.get_ident()}) == 3
     with pytest.raises(NotFoundError, match='no such model'):
-        loop.beside(_fail)
+        loop.run_in_thread(_fail)
 
 
 def _fail():
@@ -312,9 +312,9 @@ def test_nobody_waits_for_work_beside_when_the_loop_has_ended():
     threading.Thread(target=stop).start()
     begin = time.monotonic()
     with pytest.raises(LoopError, match='the simulator is shutting down'):
-        loop.beside(work)
+        loop.run_in_thread(work)
     assert time.monotonic() - begin < JOIN
     with pytest.raises(LoopError):  # nor does one that comes later
-        loop.beside(lambda: end.wait(JOIN))
+        loop.run_in_thread(lambda: end.wait(JOIN))
     end.set()
     thread.join(JOIN)

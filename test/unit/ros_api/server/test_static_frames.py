@@ -64,7 +64,7 @@ def test_an_edge_stays_where_others_hold_its_child_in_its_parent_or_in_a_circle(
 def test_who_has_gone_holds_nothing(frames):
     frames.add('/rsp', message(('base_footprint', 'base_link', HELD)))
     frames.add('/camera', message(('base_link', 'camera', HELD)))
-    frames.keep({'/camera'})
+    frames.retain({'/camera'})
     assert frames.nodes == {'/camera'}
     assert set(frames.parents) == {'camera'}
 
@@ -120,5 +120,5 @@ def test_a_node_counts_before_anything_has_come_from_it_if_anything_is_listened_
     frames.expect({'/rsp'})
     assert frames.nodes == ({'/rsp'} if watching else frozenset())
     assert frames.parents == {}
-    frames.keep(set())
+    frames.retain(set())
     assert frames.nodes == frozenset()

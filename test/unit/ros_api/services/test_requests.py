@@ -1,4 +1,4 @@
-"""What services compute from requests: refusals, wrenches, limits, pace."""
+"""What services compute from requests: refusals, wrenches, limits, factor."""
 
 import math
 
@@ -18,7 +18,7 @@ from rosbots_description.ros_api.server.server import Server
 from rosbots_description.ros_api.services.joints import changed_spec, set_joint_properties
 from rosbots_description.ros_api.services.links import world_wrench
 from rosbots_description.ros_api.services.physics import get_physics_properties
-from rosbots_description.ros_api.topics.performance import Pace
+from rosbots_description.ros_api.topics.performance import RealTimeFactor
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description.model_spec import (
@@ -123,12 +123,12 @@ def test_a_refused_change_of_a_joint_changes_nothing(fields, words):
 
 
 def test_pace_is_simulated_per_wall_time_and_survives_a_reset():
-    pace = Pace(10.0, 100.0)
-    assert pace.look(11.0, 102.0) == 0.5
-    assert pace.look(11.0, 103.0) == 0.0
-    assert pace.look(0.1, 104.0) == 0.0
-    assert pace.look(2.1, 105.0) == 2.0
-    assert pace.look(2.2, 105.0) == 0.0
+    factor = RealTimeFactor(10.0, 100.0)
+    assert factor.update(11.0, 102.0) == 0.5
+    assert factor.update(11.0, 103.0) == 0.0
+    assert factor.update(0.1, 104.0) == 0.0
+    assert factor.update(2.1, 105.0) == 2.0
+    assert factor.update(2.2, 105.0) == 0.0
 
 
 @pytest.mark.parametrize(

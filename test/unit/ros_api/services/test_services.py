@@ -27,7 +27,7 @@ from rosbots_description.sim.plugin_registry.registry import (
 )
 
 SERVER = SimpleNamespace(loop=SimpleNamespace(
-    **dict.fromkeys(('call', 'beside'), lambda command: command())))
+    **dict.fromkeys(('call', 'run_in_thread'), lambda command: command())))
 DONE = DeleteModelResponse(True, 'done')
 
 

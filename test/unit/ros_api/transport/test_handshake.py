@@ -11,12 +11,12 @@ import time
 import pytest
 
 from rosbots_description.ros_api.transport.handshake import (
-    LONGEST_HEADER,
+    MAX_HEADER_SIZE,
     accept_connections,
     speaks_tcpros,
 )
 
-PATIENCE = 0.05  # [s]
+TIMEOUT = 0.05  # [s]
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def test_a_header_is_recognised_and_left_to_be_read(ends):
     ours, theirs = ends
     header = struct.pack('<II', 7, 3) + b'a=b'
     theirs.sendall(header)
-    assert speaks_tcpros(ours, PATIENCE)
+    assert speaks_tcpros(ours, TIMEOUT)
     assert ours.gettimeout() is None
     assert ours.recv(100) == header
 
@@ -46,28 +46,28 @@ def test_a_header_that_is_there_is_taken_without_a_pause(ends, monkeypatch):
 
     monkeypatch.setattr(select, 'poll', Poll)
     ends[1].sendall(struct.pack('<I', 3) + b'a=b')
-    assert speaks_tcpros(ends[0], PATIENCE)
+    assert speaks_tcpros(ends[0], TIMEOUT)
 
 
 def test_silence_is_not_waited_for(ends):
-    assert not speaks_tcpros(ends[0], PATIENCE)
+    assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
 def test_http_is_not_tcpros(ends):
     ends[1].sendall(b'POST /RPC2 HTTP/1.1\r\n')
-    assert not speaks_tcpros(ends[0], PATIENCE)
+    assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
 def test_a_connection_that_ends_at_once_is_not_tcpros(ends):
     ends[1].close()
-    assert not speaks_tcpros(ends[0], PATIENCE)
+    assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
 def test_a_header_that_does_not_come_is_not_waited_for(ends):
     ends[1].sendall(struct.pack('<I', 7) + b'a=')
     begin = time.monotonic()
-    assert not speaks_tcpros(ends[0], PATIENCE)
-    assert time.monotonic() - begin >= PATIENCE
+    assert not speaks_tcpros(ends[0], TIMEOUT)
+    assert time.monotonic() - begin >= TIMEOUT
 
 
 def test_the_rest_of_a_header_is_not_waited_for_from_one_who_has_gone(ends):
@@ -83,21 +83,22 @@ def test_a_header_in_pieces_is_recognised_when_it_is_whole(ends):
     header = struct.pack('<I', 7) + b'abc=def'
     begin = time.monotonic()
     theirs.sendall(header[:2])
-    timers = [threading.Timer(PATIENCE * i, theirs.sendall, [header[2 * i : 2 * i + 2]])
+    timers = [threading.Timer(TIMEOUT * i, theirs.sendall, [header[2 * i : 2 * i + 2]])
               for i in range(1, 5)]
-    timers.append(threading.Timer(PATIENCE * 5, theirs.sendall, [header[10:]]))
+    timers.append(threading.Timer(TIMEOUT * 5, theirs.sendall, [header[10:]]))
     for timer in timers:
         timer.start()
-    assert speaks_tcpros(ours, 100 * PATIENCE)
-    assert time.monotonic() - begin >= 5 * PATIENCE
+    assert speaks_tcpros(ours, 100 * TIMEOUT)
+    assert time.monotonic() - begin >= 5 * TIMEOUT
     assert ours.recv(100) == header
 
 
-@pytest.mark.parametrize(('length', 'taken'), [(LONGEST_HEADER, True), (LONGEST_HEADER + 1, False)])
+@pytest.mark.parametrize(
+    ('length', 'taken'), [(MAX_HEADER_SIZE, True), (MAX_HEADER_SIZE + 1, False)])
 def test_a_header_has_a_greatest_length(ends, length, taken):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', length) + b'x' * length)
-    assert speaks_tcpros(ours, 100 * PATIENCE) == taken
+    assert speaks_tcpros(ours, 100 * TIMEOUT) == taken
 
 
 class Listener:

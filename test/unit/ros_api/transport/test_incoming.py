@@ -12,7 +12,7 @@ from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_service import ServiceImpl
 
 from rosbots_description.ros_api.transport.incoming import (
-    LONGEST_MESSAGE,
+    MAX_MESSAGE_SIZE,
     answer,
     complain,
     receive,
@@ -52,7 +52,7 @@ def request(name):
 
 def test_a_message_of_bearable_length_is_received(ends):
     ours, theirs = ends
-    theirs.sendall(struct.pack('<I', LONGEST_MESSAGE) + b'beginning')
+    theirs.sendall(struct.pack('<I', MAX_MESSAGE_SIZE) + b'beginning')
     buffer = BytesIO()
     assert receive(ours, buffer, BUFFER) == 13
     assert buffer.getvalue().endswith(b'beginning')
@@ -60,10 +60,10 @@ def test_a_message_of_bearable_length_is_received(ends):
 
 def test_an_endless_message_ends_the_connection(ends, caplog):
     ours, theirs = ends
-    theirs.sendall(struct.pack('<I', LONGEST_MESSAGE + 1))
+    theirs.sendall(struct.pack('<I', MAX_MESSAGE_SIZE + 1))
     with pytest.raises(TransportTerminated):
         receive(ours, BytesIO(), BUFFER)
-    assert f'a message of {LONGEST_MESSAGE + 1} bytes is rejected' in caplog.text
+    assert f'a message of {MAX_MESSAGE_SIZE + 1} bytes is rejected' in caplog.text
 
 
 def test_a_length_that_comes_in_pieces_is_waited_for(ends):

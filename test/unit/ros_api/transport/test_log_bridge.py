@@ -4,13 +4,13 @@ import logging
 
 import pytest
 
-from rosbots_description.ros_api.transport.log_bridge import Preparation, Unrepeated
+from rosbots_description.ros_api.transport.log_bridge import DuplicateFilter, RecordPreparation
 
 
 @pytest.fixture
 def logger():
     made = logging.getLogger('test_log_bridge')
-    handler = Preparation(lambda: 2_500_000_000)
+    handler = RecordPreparation(lambda: 2_500_000_000)
     made.addHandler(handler)
     yield made
     made.removeHandler(handler)
@@ -27,7 +27,7 @@ def test_a_long_name_is_cut(logger, caplog):
 
 
 def test_what_was_said_is_not_said_again_until_it_may_be_forgotten(logger, caplog):
-    said = Unrepeated()
+    said = DuplicateFilter()
     logger.addFilter(said)
     try:
         for name in ['torque', 'torque', 'legacyMode', *map(str, range(1000)), 'torque']:

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from rosbots_description.ros_api.transport.log_file import (
+    disable_log_file,
     log_file,
-    log_to_nowhere,
-    obstacle,
-    outlive_full_disk,
+    tolerate_full_disk,
+    write_error,
 )
 
 
@@ -23,7 +23,7 @@ def log_to():
         handler = logging.FileHandler(path, encoding='ascii')
         logging.getLogger().addHandler(handler)
         added.append(handler)
-        outlive_full_disk()
+        tolerate_full_disk()
         return lambda text, *args: handler.handle(
             logging.makeLogRecord({'msg': text, 'args': args}))
 
@@ -43,7 +43,7 @@ def test_the_file_is_the_one_that_rospy_takes(monkeypatch, arguments, path):
 
 
 def test_a_file_that_can_be_written_has_a_folder_afterwards_and_is_not_touched(tmp_path):
-    assert obstacle(tmp_path / 'new' / 'a.log') is None
+    assert write_error(tmp_path / 'new' / 'a.log') is None
     assert list(tmp_path.iterdir()) == [tmp_path / 'new']
     assert list((tmp_path / 'new').iterdir()) == []
 
@@ -55,12 +55,12 @@ def test_a_file_that_can_be_written_has_a_folder_afterwards_and_is_not_touched(t
 def test_what_stands_in_the_way_is_named(tmp_path, path, reason):
     (tmp_path / 'file').write_text('')
     (tmp_path / 'folder').mkdir()
-    assert obstacle(tmp_path / path) == reason
+    assert write_error(tmp_path / path) == reason
 
 
 def test_nowhere_is_a_file_in_the_very_folder_of_logs(monkeypatch):
     monkeypatch.setenv('ROS_LOG_DIR', '/logs')
-    path = log_file('gazebo', log_to_nowhere())
+    path = log_file('gazebo', disable_log_file())
     assert (str(path), os.environ['ROS_LOG_DIR']) == ('/dev/null', '/dev')
 
 

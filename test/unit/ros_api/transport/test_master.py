@@ -11,8 +11,8 @@ from rosbots_description.ros_api.clients import spawn_model
 from rosbots_description.ros_api.transport import master, registrations
 from rosbots_description.ros_api.transport.master import (
     AddressError,
-    once_there,
     require_address,
+    retry_call,
     write_parameters,
 )
 
@@ -88,7 +88,7 @@ def test_a_question_is_asked_until_there_is_a_master():
             raise faults.pop()
         return 'prefix'
 
-    assert once_there(ask) == 'prefix'
+    assert retry_call(ask) == 'prefix'
     assert not faults
 
 
@@ -97,13 +97,13 @@ def test_what_a_master_answers_is_final():
         raise rosgraph.MasterError('no such parameter')
 
     with pytest.raises(rosgraph.MasterError):
-        once_there(ask)
+        retry_call(ask)
 
 
 def test_nobody_waits_for_a_master_while_the_node_shuts_down(monkeypatch):
     monkeypatch.setattr(rospy, 'is_shutdown', lambda: True)
     with pytest.raises(rospy.ROSInterruptException):
-        once_there(lambda: pytest.fail('asked'))
+        retry_call(lambda: pytest.fail('asked'))
 
 
 def test_a_master_that_was_told_of_one_model_only_does_not_know_us_yet(there):

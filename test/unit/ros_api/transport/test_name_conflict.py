@@ -13,12 +13,12 @@ import rosgraph
 from rosbots_description.ros_api.node import node
 from rosbots_description.ros_api.transport import name_conflict
 from rosbots_description.ros_api.transport.name_conflict import (
-    Holder,
     NameTakenError,
-    holder,
+    RunningNode,
     node_name,
+    replacing_node,
     require_free,
-    successor,
+    running_node,
 )
 
 NAME = '/gazebo'
@@ -61,7 +61,7 @@ def living(registered):
 
 
 def test_a_living_node_is_found_with_its_process_and_host(living):
-    assert holder(NAME) == Holder(living, os.getpid())
+    assert running_node(NAME) == RunningNode(living, os.getpid())
     with pytest.raises(NameTakenError) as caught:
         require_free(NAME)
     said = str(caught.value)
@@ -91,7 +91,7 @@ def test_a_port_that_another_program_has_by_now_stops_nobody(registered):
 
 
 def test_a_node_that_is_stopped_still_has_its_name(registered, monkeypatch):
-    monkeypatch.setattr(name_conflict, 'PATIENCE', 0.1)
+    monkeypatch.setattr(name_conflict, 'TIMEOUT', 0.1)
     with socket.create_server(('localhost', 0)) as stopped:
         registered[NAME] = f'http://localhost:{stopped.getsockname()[1]}/'
         with pytest.raises(NameTakenError, match='a process that does not answer on localhost'):
@@ -99,8 +99,8 @@ def test_a_node_that_is_stopped_still_has_its_name(registered, monkeypatch):
 
 
 def test_who_has_taken_the_name_is_the_node_elsewhere(living):
-    assert successor(NAME, 'http://localhost:1/') == Holder(living, os.getpid())
-    assert successor(NAME, living) is None
+    assert replacing_node(NAME, 'http://localhost:1/') == RunningNode(living, os.getpid())
+    assert replacing_node(NAME, living) is None
 
 
 @pytest.mark.parametrize(('arguments', 'namespace', 'name'), [

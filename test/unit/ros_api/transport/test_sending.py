@@ -7,7 +7,7 @@ import pytest
 from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
 
-from rosbots_description.ros_api.transport.sending import Outlet, Outlets
+from rosbots_description.ros_api.transport.sending import BatchedConnection, BatchedPublishing
 
 DEADLINE = 5.0  # [s] for what takes milliseconds; slow machines are no failure
 SIZE = 1000  # of a message [bytes]; each is one number again and again
@@ -21,7 +21,7 @@ def wire():
     theirs.settimeout(DEADLINE)
     transport = TCPROSTransport(TCPROSTransportProtocol('t', None), 't')
     transport.set_socket(ours, 'reader')
-    yield Outlets(), transport, theirs
+    yield BatchedPublishing(), transport, theirs
     transport.close()
     theirs.close()
 
@@ -45,15 +45,15 @@ def read(theirs, until):
 
 def test_a_message_is_there_when_the_publisher_goes_on(wire):
     outlets, transport, theirs = wire
-    Outlet(outlets, transport, 1).write_data(message(7))
+    BatchedConnection(outlets, transport, 1).write_data(message(7))
     theirs.setblocking(False)
     assert theirs.recv(2 * SIZE) == message(7)
 
 
 def test_what_is_published_during_a_batch_comes_at_its_end_in_order(wire):
     outlets, transport, theirs = wire
-    outlet = Outlet(outlets, transport, 1)
-    with outlets.gathered():
+    outlet = BatchedConnection(outlets, transport, 1)
+    with outlets.batched():
         for number in (1, 2, 3):
             outlet.write_data(message(number))
         theirs.setblocking(False)
@@ -66,10 +66,10 @@ def test_what_is_published_during_a_batch_comes_at_its_end_in_order(wire):
 @pytest.mark.parametrize('queue', [1, 4, 0])
 def test_a_reader_that_stops_keeps_nobody_waiting_and_loses_only_whole_messages(wire, queue, batch):
     outlets, transport, theirs = wire
-    outlet = Outlet(outlets, transport, queue)
+    outlet = BatchedConnection(outlets, transport, queue)
     begin = time.monotonic()
     for first in range(0, 200, batch):
-        with outlets.gathered():
+        with outlets.batched():
             for number in range(first, first + batch):
                 outlet.write_data(message(number))
     assert time.monotonic() - begin < DEADLINE
@@ -92,7 +92,7 @@ def _wait_until_drained(outlet, theirs, number):
 @pytest.mark.parametrize('queue', [1, 0])
 def test_a_reader_that_has_gone_is_reported_to_the_publisher(wire, queue):
     outlets, transport, theirs = wire
-    outlet, closed = Outlet(outlets, transport, queue), []
+    outlet, closed = BatchedConnection(outlets, transport, queue), []
     outlet.set_cleanup_callback(closed.append)
     theirs.close()
     outlet.write_data(message(1))

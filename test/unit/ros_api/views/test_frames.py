@@ -16,12 +16,12 @@ def test_each_model_is_shown_once_and_again_when_it_has_moved():
     world.spawn(BOX, 'crate', Pose())
     robot = world.spawn(BOX, 'robot', Pose())
     shown = ShownFrames(world)
-    assert [(frame.header.frame_id, frame.child_frame_id) for frame in shown.look()] == [
+    assert [(frame.header.frame_id, frame.child_frame_id) for frame in shown.changes()] == [
         ('world', 'crate'), ('world', 'robot')]
-    assert shown.look() == []
+    assert shown.changes() == []
     robot.set_pose(Pose((1.0, 2.0, 3.0)))
-    (moved,) = shown.look()
+    (moved,) = shown.changes()
     assert moved.child_frame_id == 'robot'
     assert moved.transform.translation.y == 2.0
-    shown.begin()
-    assert len(shown.look()) == 2
+    shown.reset()
+    assert len(shown.changes()) == 2

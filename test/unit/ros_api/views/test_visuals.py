@@ -65,49 +65,49 @@ def test_a_mesh_without_material_keeps_its_own_colours():
 
 def test_a_plane_has_a_colour_at_every_corner_and_lies_below_the_grid(empty):
     _spawn(empty, 'ground', Plane())
-    _, marker = ShownMarkers(empty).look()
+    _, marker = ShownMarkers(empty).changes()
     assert len(marker.colors) == len(marker.points) == 6
     assert marker.pose.position.z == -PLANE_DEPTH
 
 
 def test_the_first_look_shows_all_and_the_next_nothing(world):
     view = ShownMarkers(world)
-    assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
-    assert view.look() == []
+    assert [m.action for m in view.changes()] == [Marker.DELETEALL, Marker.ADD]
+    assert view.changes() == []
 
 
 def test_what_moved_is_shown_where_it_is(world):
     view = ShownMarkers(world)
-    view.look()
+    view.changes()
     world.models['box'].set_pose(Pose((1.0, 2.0, 3.0)))
-    (marker,) = view.look()
+    (marker,) = view.changes()
     assert (marker.pose.position.x, marker.pose.position.z) == (1.0, 3.0)
 
 
 def test_what_went_is_removed_and_what_came_is_added(world):
     view = ShownMarkers(world)
-    view.look()
+    view.changes()
     world.delete('box')
-    (gone,) = view.look()
+    (gone,) = view.changes()
     assert (gone.action, gone.ns, gone.id) == (Marker.DELETE, 'box::link', 0)
 
 
 def test_a_new_model_of_an_old_name_takes_its_place(world):
     view = ShownMarkers(world)
-    view.look()
+    view.changes()
     world.delete('box')
     _spawn(world, 'box', Sphere(1.0))
-    gone, came = view.look()
+    gone, came = view.changes()
     assert (gone.action, came.action) == (Marker.DELETE, Marker.ADD)
     assert came.type == Marker.SPHERE
 
 
 def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
     view = ShownMarkers(world)
-    shown = [len(view.look()) for _ in range(REFRESH + 1)]
+    shown = [len(view.changes()) for _ in range(REFRESH + 1)]
     assert shown == [2] + [0] * (REFRESH - 1) + [1]
-    view.begin()
-    assert [m.action for m in view.look()] == [Marker.DELETEALL, Marker.ADD]
+    view.reset()
+    assert [m.action for m in view.changes()] == [Marker.DELETEALL, Marker.ADD]
 
 
 class FakeThread:
@@ -136,11 +136,11 @@ def thread():
 
 def test_a_model_is_shown_to_the_window_once_its_files_are_made(world, thread):
     view = SunlitMarkers(world, FakeMeshes(), thread)
-    assert [m.action for m in view.look()] == [Marker.DELETEALL]
-    assert view.look() == []
+    assert [m.action for m in view.changes()] == [Marker.DELETEALL]
+    assert view.changes() == []
     (job,) = thread.jobs
     job()
-    (marker,) = view.look()
+    (marker,) = view.changes()
     assert (marker.type, marker.mesh_resource) == (Marker.MESH_RESOURCE, 'file:///made/v.mesh')
     assert (marker.scale.x, marker.scale.y, marker.scale.z) == (1.0, 2.0, 3.0)
     assert marker.mesh_use_embedded_materials
@@ -151,22 +151,22 @@ def test_what_has_no_file_is_shown_as_in_any_rviz(world, thread):
     world.delete('box')
     _spawn(world, 'box', Plane())
     view = SunlitMarkers(world, FakeMeshes(), thread)
-    view.look()
+    view.changes()
     thread.jobs.pop()()
-    (marker,) = view.look()
+    (marker,) = view.changes()
     assert marker.type == Marker.TRIANGLE_LIST
 
 
 def test_files_of_a_model_that_has_gone_meanwhile_are_not_shown(world, thread):
     view = SunlitMarkers(world, FakeMeshes(), thread)
-    view.look()
+    view.changes()
     first = thread.jobs.pop()
     world.delete('box')
     _spawn(world, 'box', Sphere(1.0), 'other')
     first()
-    assert view.look() == []
+    assert view.changes() == []
     thread.jobs.pop()()
-    (marker,) = view.look()
+    (marker,) = view.changes()
     assert marker.mesh_resource == 'file:///made/other.mesh'
     world.delete('box')
-    assert [m.action for m in view.look()] == [Marker.DELETE]
+    assert [m.action for m in view.changes()] == [Marker.DELETE]

@@ -14,8 +14,8 @@ from rosbots_description.sim.description.inertia import (
     merge,
     possible,
     principal_axes,
+    regularised,
     tensor,
-    turnable,
 )
 from rosbots_description.sim.description.model_spec import PRISMATIC, REVOLUTE, Inertial, JointSpec
 
@@ -82,13 +82,13 @@ def test_a_single_part_in_place_is_left_alone():
 
 def test_a_body_without_inertia_gets_that_of_a_ball():
     ball = 0.4 * 2.0 * STAND_IN_RADIUS**2
-    turned = turnable(Inertial(2.0))
+    turned = regularised(Inertial(2.0))
     assert (turned.ixx, turned.iyy, turned.izz) == (ball, ball, ball)
 
 
 def test_only_the_axis_without_inertia_gets_some():
     stick = merge([(IDENTITY, Inertial(1.0)), (Pose((0.0, 0.0, 1.0)), Inertial(1.0))])
-    turned = turnable(stick)
+    turned = regularised(stick)
     assert (turned.ixx, turned.iyy) == (0.5, 0.5)
     assert turned.izz == pytest.approx(0.4 * 2.0 * STAND_IN_RADIUS**2)
 

@@ -22,7 +22,7 @@ from rosbots_description.sim.meshes.loader import check_mesh
 from rosbots_description.sim.physics.bullet.compiler import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
 
-LONGEST = 2500  # characters of a sentence
+MAX_LENGTH = 2500  # characters of a sentence
 CASES = cases()
 
 
@@ -87,7 +87,7 @@ def test_a_case_ends_as_the_table_says(case, tmp_path, opened, caplog, capfd, mo
     for level, words in ((logging.WARNING, case.warns), (logging.ERROR, case.logs)):
         assert not words or any(level == at and words in text for at, text in logged), logged
     for sentence in (said, *(text for _, text in logged)):
-        assert len(sentence) < LONGEST
+        assert len(sentence) < MAX_LENGTH
         assert '\n' not in sentence
         assert not case.hides or case.hides not in sentence
     assert [path for path in opened.paths if not may_be_opened(path, case, tmp_path)] == []

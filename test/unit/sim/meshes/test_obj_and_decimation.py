@@ -5,7 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rosbots_description.sim.meshes.decimation import thinned
+from rosbots_description.sim.meshes.decimation import decimated
 from rosbots_description.sim.meshes.obj import read_obj
 
 CORNERS = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\nv -1 0.2 0\n'
@@ -73,7 +73,7 @@ def test_a_fine_sheet_is_thinned_and_stays_where_it_is():
     faces = np.concatenate([
         np.stack([i, i + count, i + 1], axis=1), np.stack([i + 1, i + count, i + count + 1], axis=1)
     ])
-    fewer, triangles, kept, cell = thinned(vertices, faces, 2000)
+    fewer, triangles, kept, cell = decimated(vertices, faces, 2000)
     assert 500 < len(triangles) <= 2000
     assert (fewer == vertices[kept]).all()
     assert fewer[np.unique(triangles)].max() == pytest.approx(1.0, abs=2 * cell)
@@ -82,5 +82,5 @@ def test_a_fine_sheet_is_thinned_and_stays_where_it_is():
 
 def test_a_mesh_as_small_as_a_point_is_thinned_too():
     faces = np.zeros((50, 3), dtype=int)
-    _, triangles, _, _ = thinned(np.zeros((3, 3)), faces, 10)
+    _, triangles, _, _ = decimated(np.zeros((3, 3)), faces, 10)
     assert len(triangles) == 1

@@ -15,7 +15,7 @@ import time
 import pytest
 
 from rosbots_description.sim.physics import fork_server
-from rosbots_description.sim.physics.fork_server import ROOM, ForkServer, Killed, Unwanted
+from rosbots_description.sim.physics.fork_server import MAX_REPORT, Cancelled, ForkServer, Killed
 
 ALLOWANCE = 20.0  # [s] never reached
 SHORT = 0.3  # [s]
@@ -84,7 +84,7 @@ def test_a_child_reports_of_its_payload():
 
 
 def test_a_payload_may_be_long_and_a_report_is_cut():
-    assert outcome(lambda payload: payload.decode(), b'x' * 10_000_000) == 'x' * ROOM
+    assert outcome(lambda payload: payload.decode(), b'x' * 10_000_000) == 'x' * MAX_REPORT
 
 
 def test_what_is_prepared_is_so_once_before_the_first_child():
@@ -117,12 +117,12 @@ def test_a_child_that_computes_for_ever_is_ended():
 
 
 def test_a_child_that_sleeps_for_ever_is_ended(monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.02)
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
     assert outcome(lambda _: signal.pause()) == -signal.SIGALRM
 
 
 def test_a_child_that_sleeps_for_a_while_is_not_ended(monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.05)  # 1 s then is too long
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.05)  # 1 s then is too long
 
     def work(_):
         for _ in range(3):
@@ -135,7 +135,7 @@ def test_a_child_that_sleeps_for_a_while_is_not_ended(monkeypatch):
 
 @pytest.mark.usefixtures('busy')
 def test_a_child_that_waits_for_a_processor_is_not_ended(monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.005)  # 0.1 s of sleep would be too long
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.005)  # 0.1 s of sleep would be too long
 
     def work(_):
         begin = time.monotonic()
@@ -155,7 +155,7 @@ def test_a_child_delays_nobody_elses():
         unwanted = threading.Event()
 
         def begin():
-            with contextlib.suppress(Unwanted):
+            with contextlib.suppress(Cancelled):
                 server.run(b'long', ALLOWANCE, lambda: not unwanted.is_set())
 
         others = [threading.Thread(target=begin) for _ in range(3)]
@@ -171,7 +171,7 @@ def test_a_child_delays_nobody_elses():
 
 
 def test_a_child_that_nobody_waits_for_is_ended(tmp_path, monkeypatch):
-    monkeypatch.setattr(fork_server, 'LOOK', 0.05)
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.05)
     note = tmp_path / 'note'
 
     def work(_):
@@ -179,7 +179,7 @@ def test_a_child_that_nobody_waits_for_is_ended(tmp_path, monkeypatch):
         signal.pause()
 
     with server_of(work) as server:
-        with pytest.raises(Unwanted):
+        with pytest.raises(Cancelled):
             server.run(b'', ALLOWANCE, lambda: not (note.exists() and note.read_text()))
         wait_until(lambda: not is_there(int(note.read_text())))
         assert server._channel.fileno() > 0  # it goes on without it

@@ -14,7 +14,7 @@ class Watcher(PeriodicPlugin):
 
     def load(self):
         self.set_rate(self.params.rate('rate', 0.0))
-        self.steps, self.woken = self.output('steps', asked_for=False), 0
+        self.steps, self.woken = self.output('steps', requested=False), 0
 
     def report(self):
         self.steps.send(self.world.clock.steps)
@@ -26,7 +26,7 @@ class Watcher(PeriodicPlugin):
 class Exact(Watcher):
     """Does not wait until a period is over."""
 
-    later = False
+    strictly_after = False
 
 
 class Rounded(Exact):

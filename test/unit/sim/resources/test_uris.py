@@ -7,7 +7,7 @@ from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.resources.uris import (
     UnknownPackage,
     file_path,
-    refuse_climbing,
+    refuse_parent_folders,
     substitute_in_tree,
     substitute_packages,
 )
@@ -78,9 +78,9 @@ def test_other_addresses_are_refused_with_a_cure(uri):
 ])
 def test_an_address_that_climbs_out_of_its_package_is_refused_however_it_is_written(uri):
     with pytest.raises(ModelError, match=r"leads out of package 'bot'; '..' is not accepted"):
-        refuse_climbing(parse_xml('<mesh/>', 's'), uri)
+        refuse_parent_folders(parse_xml('<mesh/>', 's'), uri)
 
 
 @pytest.mark.parametrize('uri', ['package://bot/a/%2e%2e/x.dae', 'package://bot/..x', '/../x.dae'])
 def test_an_address_that_stays_in_its_package_is_not_refused(uri):
-    refuse_climbing(parse_xml('<mesh/>', 's'), uri)
+    refuse_parent_folders(parse_xml('<mesh/>', 's'), uri)

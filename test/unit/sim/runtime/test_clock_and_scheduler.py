@@ -6,8 +6,8 @@ import pytest
 
 from rosbots_description.sim.core.clock import SimClock
 from rosbots_description.sim.runtime.scheduler import (
-    LEFT_OUT,
     NEVER,
+    SUSPENSION,
     Hook,
     PreRunPublisher,
     Schedule,
@@ -108,7 +108,7 @@ def test_a_hook_runs_before_and_after_the_physics_of_the_step_in_which_it_is_due
     log, schedule = [], Schedule()
 
     class Reporter(Every):
-        watches = True
+        runs_after_step = True
 
         def after_step(self):
             log.append('after')
@@ -124,12 +124,12 @@ def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):
     schedule, log, broken = Schedule(), [], Broken()
     schedule.add(broken)
     schedule.add(Every(1, log, 'a'))
-    for step in range(1, 2 + LEFT_OUT):
+    for step in range(1, 2 + SUSPENSION):
         schedule.run(step, step, lambda _: None)
-    assert len(log) == 1 + LEFT_OUT
+    assert len(log) == 1 + SUSPENSION
     assert broken.runs == 2
     assert [r.getMessage() for r in caplog.records] == [
-        f'internal fault of Broken; the simulation goes on, without it for {LEFT_OUT} steps'] * 2
+        f'internal fault of Broken; the simulation goes on, without it for {SUSPENSION} steps'] * 2
 
 
 class Crier(PreRunPublisher):
@@ -168,5 +168,5 @@ def test_a_herald_that_fails_is_left_out_for_a_while(caplog):
     crier.told = None
     schedule.add_pre_run_publisher(crier)
     schedule.publish_ahead(5)
-    assert crier.due == 5 + LEFT_OUT
+    assert crier.due == 5 + SUSPENSION
     assert 'internal fault of Crier' in caplog.text

@@ -87,7 +87,7 @@ def test_no_ray_that_meets_a_ball_is_left_out(rows, columns):
     centres, radii = random.uniform(-5.0, 5.0, (60, 3)), random.uniform(0.01, 3.0, 60)
     patches = fan.near(centres, radii, 4.0)
     which, rays, _ = fan.rays(patches)
-    kept = set(zip(patches.balls[which].tolist(), rays.tolist(), strict=True))
+    kept = set(zip(patches.spheres[which].tolist(), rays.tolist(), strict=True))
     along = centres @ fan.ways
     apart = (centres ** 2).sum(axis=1)[:, None] - along ** 2
     inside = (centres ** 2).sum(axis=1) < radii ** 2

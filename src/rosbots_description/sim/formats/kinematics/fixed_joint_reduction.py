@@ -59,7 +59,7 @@ def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
     poses = _poses_in_model(tree, order)
     kept = [name for name in order if name in members]
     joints = tuple(
-        _rehang(tree.joint_to[name], homes) for name in kept
+        _reattach(tree.joint_to[name], homes) for name in kept
         if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
     )
     return Reduction(
@@ -132,7 +132,7 @@ def _poses_in_model(tree: KinematicTree, order: Sequence[str]) -> dict[str, Pose
     return poses
 
 
-def _rehang(joint: TreeJoint, homes: Mapping[str, tuple[str, Pose]]) -> JointSpec:
+def _reattach(joint: TreeJoint, homes: Mapping[str, tuple[str, Pose]]) -> JointSpec:
     return replace(joint.spec, parent=homes[joint.spec.parent][0])
 
 

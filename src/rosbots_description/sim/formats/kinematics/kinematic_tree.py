@@ -106,7 +106,7 @@ def build_tree(
         {name: tuple(sorted(group, key=lambda joint: joint.spec.name))
          for name, group in below.items()},
     )
-    _refuse_rings(tree)
+    _refuse_loops(tree)
     return tree
 
 
@@ -144,7 +144,7 @@ def _find_root(
     )
 
 
-def _refuse_rings(tree: KinematicTree) -> None:
+def _refuse_loops(tree: KinematicTree) -> None:
     reached = set(tree.depth_first())
     lost = [name for name in tree.links if name not in reached]
     if lost:

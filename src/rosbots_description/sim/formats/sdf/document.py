@@ -18,7 +18,7 @@ from ...resources import (
     in_models,
     parse_xml,
     read_file,
-    refuse_climbing,
+    refuse_parent_folders,
     substitute_packages,
     within,
 )
@@ -89,7 +89,7 @@ class SdfDocument:
         if uri.startswith('model://'):
             return in_models(element, uri, self.library.find_model)
         if uri.startswith('package://'):
-            refuse_climbing(element, uri)
+            refuse_parent_folders(element, uri)
             if self.library.find_package is not None:
                 uri = substitute_packages(uri, self.library.find_package)
             return file_path(element, uri)

@@ -11,12 +11,12 @@ from ..xml import required_name, scalar
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
 from .values import (
+    boolean_of,
     limit_of,
     not_negative_of,
     number_of,
     numbers_of,
     text_of,
-    truth_of,
     unit_vector_of,
 )
 
@@ -143,7 +143,7 @@ def _axis(document: SdfDocument, axis: etree._Element, frame: Pose, frames: Fram
         if xyz is None or not (named := xyz.get('expressed_in')):
             return vector
         given_in = frames.pose_of(named, xyz)
-    elif version < _AXIS_IN_JOINT or truth_of(axis, 'use_parent_model_frame'):
+    elif version < _AXIS_IN_JOINT or boolean_of(axis, 'use_parent_model_frame'):
         given_in = frames.pose_of(MODEL_FRAME, axis)
     else:
         return vector
@@ -203,12 +203,12 @@ def _directed(links: Sequence[LinkSpec], joints: Sequence[JointSpec]) -> tuple[J
             reached.add(name)
             for i in at.get(name, ()):
                 if directed[i].child == name and directed[i].parent not in reached:
-                    directed[i] = _turned_round(directed[i], poses)
+                    directed[i] = _reversed(directed[i], poses)
                 waiting.append(directed[i].child)
     return tuple(directed)
 
 
-def _turned_round(joint: JointSpec, poses: dict[str, Pose]) -> JointSpec:
+def _reversed(joint: JointSpec, poses: dict[str, Pose]) -> JointSpec:
     frame = compose(poses[joint.child], joint.pose)
     x, y, z = joint.axis
     return replace(

@@ -6,7 +6,7 @@ from ...core import Pose, fault
 from ...description import DIRECTIONAL, POINT, SPOT, LightSpec
 from ..xml import required_name
 from .document import SdfDocument
-from .values import colour_of, number_of, truth_of, vector_of
+from .values import boolean_of, colour_of, number_of, vector_of
 
 _TYPES = (POINT, DIRECTIONAL, SPOT)
 
@@ -38,7 +38,7 @@ def read_light(document: SdfDocument, element: etree._Element, pose: Pose) -> Li
         attenuation_linear=number_of(element, 'attenuation/linear', 1.0),
         attenuation_quadratic=number_of(element, 'attenuation/quadratic', 0.0),
         direction=vector_of(element, 'direction', plain.direction),
-        cast_shadows=truth_of(element, 'cast_shadows'),
+        cast_shadows=boolean_of(element, 'cast_shadows'),
         spot_inner_angle=number_of(element, 'spot/inner_angle', 0.0),
         spot_outer_angle=number_of(element, 'spot/outer_angle', 0.0),
         spot_falloff=number_of(element, 'spot/falloff', 0.0),

@@ -12,7 +12,7 @@ from ..xml import read_sensor, require_mass, required_name, to_element
 from .document import SdfDocument
 from .frames import Frames
 from .shapes import read_collision, read_visual
-from .values import damping_of, number_of, pose_in, truth_of
+from .values import boolean_of, damping_of, number_of, pose_in
 
 _READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
          'velocity_decay', 'sensor', 'light', 'projector')
@@ -52,9 +52,9 @@ def read_link(
         _inertial(document, element, static),
         _shapes(document, element, frames, pose, 'collision', read_collision),
         _shapes(document, element, frames, pose, 'visual', read_visual),
-        gravity=truth_of(element, 'gravity', True),
-        self_collide=truth_of(element, 'self_collide', self_collide),
-        kinematic=truth_of(element, 'kinematic'),
+        gravity=boolean_of(element, 'gravity', True),
+        self_collide=boolean_of(element, 'self_collide', self_collide),
+        kinematic=boolean_of(element, 'kinematic'),
         linear_damping=damping_of(element, 'velocity_decay/linear'),
         angular_damping=damping_of(element, 'velocity_decay/angular'),
         sensors=_sensors(document, element, frames, pose),

@@ -21,13 +21,13 @@ from ...description import (
     PluginSpec,
     SensorSpec,
 )
-from ...description.inertia import impossible, possible, turnable
+from ...description.inertia import impossible, possible, regularised
 from ..xml import required_name, to_element
 from .document import SdfDocument
 from .frames import MODEL_FRAME, Frames
 from .joints import add_joint_frame, as_trees, read_sdf_joint
 from .links import UNIT_INERTIAL, read_link
-from .values import text_of, truth_of
+from .values import boolean_of, text_of
 
 _READ = ('pose', 'link', 'joint', 'frame', 'plugin', 'model', 'include', 'static', 'self_collide')
 _INCLUDE_READ = ('uri', 'name', 'pose', 'static', 'plugin')
@@ -48,7 +48,7 @@ class ModelParts:
     links: list[LinkSpec] = field(default_factory=list)
     joints: list[tuple[JointSpec, etree._Element]] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
-    inner: dict[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
+    nested: dict[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
     left_out: list[str] = field(default_factory=list)  # parts that were left out
 
 
@@ -64,22 +64,22 @@ def read_model(
     """
     document.notes.check(element, _READ, ('allow_auto_disable',))
     if static is None:
-        static = truth_of(element, 'static')
+        static = boolean_of(element, 'static')
     parts = ModelParts(
         document, element, element.get('name', ''), static, element.find('pose')
     )
     known = len(document.notes.left_out.parts)
-    inner = _inner_models(document, element, True if static else None)
-    frames = _frames(element, inner)
+    nested = _nested_models(document, element, True if static else None)
+    frames = _frames(element, nested)
     for child in element.iterfind('plugin'):
         _add_plugin(document, child, parts)
-    self_collide = truth_of(element, 'self_collide')
+    self_collide = boolean_of(element, 'self_collide')
     parts.links = [
         read_link(document, child, frames, parts.static, self_collide)
         for child in element.iterfind('link')
     ]
-    for model in inner:
-        _take_in(parts, model, frames.pose_of(model.name, model.element))
+    for model in nested:
+        _merge_nested(parts, model, frames.pose_of(model.name, model.element))
     for child in element.iterfind('joint'):
         _add_joint(document, child, frames, parts)
     parts.left_out += document.notes.left_out.parts[known:]
@@ -89,17 +89,17 @@ def read_model(
     return parts
 
 
-def _inner_models(
+def _nested_models(
     document: SdfDocument, element: etree._Element, static: bool | None
 ) -> list[ModelParts]:
     """Return the nested models of a model; those of a static model are static.
 
     As in Gazebo an included model that cannot be found is left out.
     """
-    inner = []
+    nested = []
     for child in element:
         if child.tag == 'model':
-            inner.append(read_model(document, child, static))
+            nested.append(read_model(document, child, static))
         elif child.tag == 'include':
             try:
                 document.included(child)
@@ -107,8 +107,8 @@ def _inner_models(
                 called = f"model '{shortened(text_of(child, 'uri'), 100)}'"
                 document.notes.left_out.part(called, error)
             else:
-                inner.append(read_include(document, child, static))
-    return inner
+                nested.append(read_include(document, child, static))
+    return nested
 
 
 def _add_joint(
@@ -142,7 +142,7 @@ def read_include(
             element, f"'{text_of(element, 'uri')}' contains no <model>; it cannot be included here"
         )
     if static is None and element.find('static') is not None:
-        static = truth_of(element, 'static')
+        static = boolean_of(element, 'static')
     parts = document.library.within(other, element, lambda: read_model(other, model, static))
     parts.element = element
     parts.name = text_of(element, 'name', parts.name)
@@ -168,17 +168,17 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     if not parts.static:
         links = _movable(parts, links, {joint.child for joint in joints})
     return ModelSpec(
-        name, tuple(links), joints, tuple(parts.plugins), parts.static, inner=parts.inner,
+        name, tuple(links), joints, tuple(parts.plugins), parts.static, nested=parts.nested,
         left_out=tuple(dict.fromkeys(parts.left_out)), location=location(parts.element),
     )
 
 
-def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:
+def _frames(element: etree._Element, nested: Sequence[ModelParts]) -> Frames:
     """Return the frames of a model; if a name occurs twice, links precede models, then others."""
     frames = Frames(MODEL_FRAME)
     for child in element.iterfind('link'):
         frames.add(required_name(child), child)
-    for model in inner:
+    for model in nested:
         if not model.name:
             raise fault(model.element, 'a <model> without name; add name="..."')
         first = f'{model.name}::{model.links[0].name}' if model.links else ''
@@ -193,14 +193,14 @@ def _frames(element: etree._Element, inner: Sequence[ModelParts]) -> Frames:
     return frames
 
 
-def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
+def _merge_nested(parts: ModelParts, nested: ModelParts, pose: Pose) -> None:
     """Add a nested model, whose frame is at `pose`, to the outer one."""
-    prefix = f'{inner.name}::'
-    parts.inner[inner.name] = pose
-    parts.left_out += inner.left_out
-    parts.inner |= {prefix + name: compose(pose, place) for name, place in inner.inner.items()}
-    names = {link.name for link in inner.links} | {joint.name for joint, _ in inner.joints}
-    bolted = inner.static and not parts.static
+    prefix = f'{nested.name}::'
+    parts.nested[nested.name] = pose
+    parts.left_out += nested.left_out
+    parts.nested |= {prefix + name: compose(pose, place) for name, place in nested.nested.items()}
+    names = {link.name for link in nested.links} | {joint.name for joint, _ in nested.joints}
+    bolted = nested.static and not parts.static
     parts.links += [
         replace(
             link,
@@ -209,7 +209,7 @@ def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
             kinematic=link.kinematic or bolted,
             sensors=tuple(_scoped_sensor(sensor, names, prefix) for sensor in link.sensors),
         )
-        for link in inner.links
+        for link in nested.links
     ]
     parts.joints += [
         (
@@ -221,9 +221,9 @@ def _take_in(parts: ModelParts, inner: ModelParts, pose: Pose) -> None:
             ),
             element,
         )
-        for joint, element in inner.joints
+        for joint, element in nested.joints
     ]
-    parts.plugins += _scoped_plugins(inner.plugins, names, prefix)
+    parts.plugins += _scoped_plugins(nested.plugins, names, prefix)
 
 
 def _scoped(element: Element, names: Collection[str], prefix: str) -> Element:
@@ -277,7 +277,7 @@ def _movable(
         real = possible(given)
         if real is not given:
             notes.warn(parts.element, impossible(link.name, given, real))
-        inertial = turnable(real)
+        inertial = regularised(real)
         if inertial is not real:
             notes.warn(
                 parts.element,

@@ -23,6 +23,7 @@ from ...meshes import check_mesh, submesh_file
 from ..xml import ENDLESS_FRICTION, is_endless, scalar, tag_of
 from .document import SdfDocument
 from .values import (
+    boolean_of,
     colour_of,
     limit_of,
     not_negative_of,
@@ -30,7 +31,6 @@ from .values import (
     numbers_of,
     sizes_of,
     text_of,
-    truth_of,
     unit_vector_of,
     vector_of,
 )
@@ -75,7 +75,7 @@ def read_visual(
         ('cast_shadows', 'laser_retro', 'meta', 'visibility_flags'),
     )
     geometry = _shape(document, element)
-    if geometry is None or not truth_of(element, 'visible', True):
+    if geometry is None or not boolean_of(element, 'visible', True):
         return None
     material = _material(document, element)
     if material is None and not isinstance(geometry, Mesh):
@@ -141,7 +141,7 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     submesh = text_of(element, 'submesh/name')
     try:
         if submesh:
-            path = submesh_file(path, submesh, truth_of(element, 'submesh/center'))
+            path = submesh_file(path, submesh, boolean_of(element, 'submesh/center'))
         check_mesh(path, scale)
     except ModelError as error:
         raise ShapeError(str(error), uri) from error

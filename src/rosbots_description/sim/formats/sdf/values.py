@@ -8,6 +8,7 @@ from ...core import IDENTITY, Pose, Vector, as_vector, fault, from_rpy
 from ...core import normalise as normalise_quaternion
 from ...description import Colour
 from ..xml import (
+    boolean,
     is_endless,
     require_damping,
     require_near,
@@ -15,7 +16,6 @@ from ..xml import (
     scalar,
     scalar_numbers,
     tag_of,
-    truth,
 )
 
 # SDF writes "no limit" as 1e16; simulated values stay far below this [rad, m, N, N m].
@@ -88,10 +88,10 @@ def limit_of(parent: etree._Element, path: str) -> float | None:
     return value if abs(value) < _ENDLESS else None
 
 
-def truth_of(parent: etree._Element, path: str, default: bool = False) -> bool:
+def boolean_of(parent: etree._Element, path: str, default: bool = False) -> bool:
     """Tell whether the text is true, yes or 1; `default` if it is empty."""
     element = parent.find(path)
-    return default if element is None or not scalar(element) else truth(element)
+    return default if element is None or not scalar(element) else boolean(element)
 
 
 def colour_of(parent: etree._Element, path: str) -> Colour | None:

@@ -19,7 +19,7 @@ from .lights import read_light
 from .models import ModelParts, model_spec, read_include, read_model, read_plugin
 from .physics import read_physics
 from .state import read_states
-from .values import colour_of, text_of, truth_of
+from .values import boolean_of, colour_of, text_of
 
 logger = logging.getLogger(__name__)
 
@@ -222,5 +222,5 @@ def _scene(document: SdfDocument, world: etree._Element) -> SceneSpec:
     return SceneSpec(
         colour_of(element, 'ambient') or plain.ambient,
         colour_of(element, 'background') or plain.background,
-        truth_of(element, 'shadows', plain.shadows),
+        boolean_of(element, 'shadows', plain.shadows),
     )

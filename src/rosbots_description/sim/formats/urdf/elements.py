@@ -35,7 +35,7 @@ from ...description import (
     Visual,
     gazebo_material,
 )
-from ...resources import FindModel, file_path, in_models, refuse_climbing
+from ...resources import FindModel, file_path, in_models, refuse_parent_folders
 from ..kinematics import FREE, TreeJoint, TreeLink
 from ..xml import (
     LeftOut,
@@ -188,7 +188,7 @@ class LinkReader:
         if 0.0 in scale:
             raise ShapeError(f'scale="{element.get("scale")}" of <mesh> reduces it to nothing')
         uri = element.get('uri', filename)
-        refuse_climbing(element, uri)
+        refuse_parent_folders(element, uri)
         try:
             path = self._path(element, filename)
         except AbsentError as error:

@@ -42,6 +42,7 @@ from ..kinematics import LinkFlags, TreeLink
 from ..xml import (
     ENDLESS_FRICTION,
     LeftOut,
+    boolean,
     is_endless,
     parse_numbers,
     read_sensor,
@@ -51,7 +52,6 @@ from ..xml import (
     scalar_numbers,
     tag_of,
     to_element,
-    truth,
 )
 
 SurfaceNumber = Literal['mu', 'mu2', 'kp', 'kd', 'max_vel', 'min_depth', 'laser_retro']
@@ -206,7 +206,7 @@ def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]
     for child in block:
         match child.tag:
             case 'static':
-                tags.static = truth(child)
+                tags.static = boolean(child)
             case 'plugin':
                 _read_plugin(child, tags)
             case _:
@@ -297,7 +297,7 @@ def _read_damping(element: etree._Element, link: LinkTags) -> None:
 
 
 def _read_self_collide(element: etree._Element, link: LinkTags) -> None:
-    link.flags['self_collide'] = truth(element)
+    link.flags['self_collide'] = boolean(element)
 
 
 def _read_gravity_off(element: etree._Element, link: LinkTags) -> None:
@@ -306,7 +306,7 @@ def _read_gravity_off(element: etree._Element, link: LinkTags) -> None:
 
 
 def _read_gravity(element: etree._Element, link: LinkTags) -> None:
-    link.flags['gravity'] = truth(element)
+    link.flags['gravity'] = boolean(element)
 
 
 def _read_collision(element: etree._Element, link: LinkTags) -> None:
@@ -370,10 +370,10 @@ def _read_joint_block(
     for child in block:
         match child.tag:
             case 'preserveFixedJoint':
-                if truth(child):
+                if boolean(child):
                     tags.kept_joints[joint] = FIXED
             case 'disableFixedJointLumping':
-                if truth(child):
+                if boolean(child):
                     # If both are given, preserveFixedJoint wins in either order.
                     tags.kept_joints.setdefault(joint, REVOLUTE)
             case tag if tag in _SPRING_TAGS:

@@ -7,7 +7,7 @@ from lxml import etree
 
 from ...core import IDENTITY, ModelError, Pose, fault, location, note, shortened
 from ...description import WORLD, LinkSpec, ModelSpec
-from ...description.inertia import impossible, possible, turnable
+from ...description.inertia import impossible, possible, regularised
 from ...meshes import check_mesh
 from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
 from ..kinematics import (
@@ -81,7 +81,7 @@ def load_urdf(
     require_links(tree, reduction)
     spec = ModelSpec(
         name,
-        _turnable_links(reduction.links, notes),
+        _regularised_links(reduction.links, notes),
         reduction.joints,
         tuple(tags.plugins),
         tags.static,
@@ -134,10 +134,10 @@ def _read(
     return tree, tags
 
 
-def _turnable_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
+def _regularised_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
     """Return the links, with zero principal moments replaced; `notes` names the changed ones."""
     links = tuple(_possible_link(link, notes) for link in links)
-    turned = tuple(replace(link, inertial=turnable(link.mass_properties)) for link in links)
+    turned = tuple(replace(link, inertial=regularised(link.mass_properties)) for link in links)
     changed = [new.name for old, new in zip(links, turned, strict=True)
                if new.inertial is not old.inertial]
     if changed:

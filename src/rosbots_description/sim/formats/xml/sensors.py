@@ -7,7 +7,7 @@ from lxml import etree
 
 from ...core import IDENTITY, Pose, from_rpy, location, shortened
 from ...description import PluginSpec, SensorSpec
-from .values import parse_numbers, scalar, to_element, truth
+from .values import boolean, parse_numbers, scalar, to_element
 
 Complain = Callable[[str], object]
 
@@ -73,7 +73,7 @@ def _rate(element: etree._Element, complain: Complain) -> float:
 
 def _says_true(element: etree._Element, tag: str) -> bool:
     child = element.find(tag)
-    return child is not None and truth(child)
+    return child is not None and boolean(child)
 
 
 def _text(element: etree._Element, tag: str) -> str:

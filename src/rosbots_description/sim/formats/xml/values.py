@@ -7,11 +7,11 @@ from collections.abc import Collection
 from lxml import etree
 
 from ...core import (
-    HEAVIEST,
     IDENTITY,
-    LIGHTEST,
-    LONGEST,
-    MOST_INERT,
+    MAX_INERTIA,
+    MAX_LENGTH,
+    MAX_MASS,
+    MIN_MASS,
     ZERO,
     ModelError,
     Pose,
@@ -27,7 +27,7 @@ XACRO_CURE = 'run it through xacro first, e.g. command="xacro FILE" in the launc
 
 MAX_NAME = 1000  # characters; the engine's own buffers end at 1024
 ENDLESS_FRICTION = 1e6  # the value of a negative or infinite mu, as in Gazebo
-MOST_DAMPED = 1000.0  # [1/s] with steps of 1 ms it stops a link in one step
+MAX_DAMPING = 1000.0  # [1/s] with steps of 1 ms it stops a link in one step
 
 _CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 _INFINITE = ('inf', 'infinity')
@@ -155,16 +155,16 @@ def require_size(element: etree._Element, written: str, values: Collection[float
 
 
 def require_near(element: etree._Element, what: str, values: Collection[float]) -> None:
-    """Reject lengths [m] beyond LONGEST, of an attribute or an element's text.
+    """Reject lengths [m] beyond MAX_LENGTH, of an attribute or an element's text.
 
     Raises:
-        ModelError: the absolute value of one is greater than LONGEST.
+        ModelError: the absolute value of one is greater than MAX_LENGTH.
     """
-    if max(map(abs, values)) > LONGEST:
+    if max(map(abs, values)) > MAX_LENGTH:
         raise fault(
             element,
             f'{what} of <{tag_of(element)}> has a length of {max(values, key=abs):g} m; '
-            f'at most {LONGEST:g} m are accepted',
+            f'at most {MAX_LENGTH:g} m are accepted',
         )
 
 
@@ -174,15 +174,15 @@ def require_mass(element: etree._Element, mass: float, moments: Collection[float
     Raises:
         ModelError: the engine could not distinguish them from zero or infinity.
     """
-    if mass > 0.0 and not LIGHTEST <= mass <= HEAVIEST:
+    if mass > 0.0 and not MIN_MASS <= mass <= MAX_MASS:
         raise fault(
-            element, f'mass {mass:g} kg is not valid; use {LIGHTEST:g} to {HEAVIEST:g} kg'
+            element, f'mass {mass:g} kg is not valid; use {MIN_MASS:g} to {MAX_MASS:g} kg'
         )
-    if max(map(abs, moments), default=0.0) > MOST_INERT:
+    if max(map(abs, moments), default=0.0) > MAX_INERTIA:
         raise fault(
             element,
             f'an inertia of {max(moments, key=abs):g} kg m^2 is not valid; '
-            f'at most {MOST_INERT:g} are accepted',
+            f'at most {MAX_INERTIA:g} are accepted',
         )
 
 
@@ -192,11 +192,11 @@ def require_damping(element: etree._Element, value: float) -> None:
     Raises:
         ModelError: it is negative, or would reverse the velocity within a step.
     """
-    if not 0.0 <= value <= MOST_DAMPED:
+    if not 0.0 <= value <= MAX_DAMPING:
         raise fault(
             element,
             f'<{tag_of(element)}> is {value:g}; damping must be 0 to '
-            f'{MOST_DAMPED:g}',
+            f'{MAX_DAMPING:g}',
         )
 
 
@@ -239,7 +239,7 @@ def scalar_numbers(element: etree._Element, count: int) -> tuple[float, ...]:
     return values
 
 
-def truth(element: etree._Element) -> bool:
+def boolean(element: etree._Element) -> bool:
     """Tell whether the text is true, yes or 1; everything else is false, as in Gazebo."""
     return scalar(element).lower() in _TRUE
 

@@ -141,7 +141,7 @@ class BodyMaker:
         for number in body.bodies:
             pybullet.removeBody(number, self._client)
         for number in body.bodies:
-            self._collision_filter.forget(number)
+            self._collision_filter.remove(number)
         for place in [place for place in self._sides if place.body in body.bodies]:
             del self._sides[place]
             self._soft.pop(place, None)

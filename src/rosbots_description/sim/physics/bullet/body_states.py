@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...core import LARGEST, Pose, Twist, Vector, add, compose, cross, rotate, subtract
+from ...core import MAX_COORDINATE, Pose, Twist, Vector, add, compose, cross, rotate, subtract
 from ..engine import JointState, Motion, Wrench
 from .body import Body, Part
 from .body_maker import ANY_SPEED
@@ -20,7 +20,7 @@ from .solver_iterations import Motor
 # through contacts to other bodies, first of all to the ground.
 _ANY_FORCE = 1e15  # [N or N m]
 
-Push = tuple[Callable[..., None], tuple[Any, ...]]  # method, arguments
+AppliedForce = tuple[Callable[..., None], tuple[Any, ...]]  # method, arguments
 
 
 class BodyStates:
@@ -32,7 +32,7 @@ class BodyStates:
         self._enabled = True
         self._fast = FastBodies(client)
         self._driven: dict[Body, None] = {}  # bodies with motors, in the order they were added
-        self._pushes: list[Push] = []  # since the last step
+        self._applied_forces: list[AppliedForce] = []  # since the last step
         # Joint states read since the last step, by PyBullet's body, in the order of Body.indices:
         # reading one joint costs as much as reading all joints of a body.
         self._joint_readings: dict[int, Sequence[tuple[Any, ...]]] = {}
@@ -59,7 +59,8 @@ class BodyStates:
         """Tell whether any coordinate or velocity of a model is not finite or out of range."""
         # Static models too: a hit at infinite speed gives them a velocity of NaN.
         return not all(
-            math.isfinite(number) and abs(number) < LARGEST for number in self._coordinates(body))
+            math.isfinite(number) and abs(number) < MAX_COORDINATE
+            for number in self._coordinates(body))
 
     def _coordinates(self, body: Body) -> Iterator[float]:
         """Yield all coordinates and velocities of the roots and joints of a model."""
@@ -126,13 +127,13 @@ class BodyStates:
         """
         for link, pose in poses.items():
             part = body.parts[link]
-            near = Pose(_at_most(pose.position, LARGEST), pose.orientation)
+            near = Pose(_at_most(pose.position, MAX_COORDINATE), pose.orientation)
             com = compose(near, part.com_in_origin)
             velocity = pybullet.getBaseVelocity(part.body, self._client)
             for number in (part.body, *part.also):
                 pybullet.resetBasePositionAndOrientation(number, *com, self._client)
                 pybullet.resetBaseVelocity(number, *velocity, physicsClientId=self._client)
-            self._fast.disturb(part.body)
+            self._fast.allow_external_work(part.body)
 
     def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
         """Set the twist of a root link at its origin, in world axes; joint velocities are kept.
@@ -183,7 +184,7 @@ class BodyStates:
         self._joint_readings.clear()
         number, index = body.joints[joint]
         pybullet.resetJointState(number, index, position, velocity, self._client)
-        self._fast.disturb(number)
+        self._fast.allow_external_work(number)
 
     def motor(self, body: Body, joint: str) -> tuple[float, float]:
         """Return the motor's target velocity and effort limit."""
@@ -212,7 +213,7 @@ class BodyStates:
                     _, velocity, _, effort = self._joint_reading(body, joint)
                     yield velocity, target, effort, limit
 
-    def push(
+    def apply_wrench(
         self, body: Body, link: str, force: Vector, torque: Vector, place: Vector | None = None
     ) -> None:
         """Apply a force [N] and a torque [N m] to a link in the next step, added to others.
@@ -229,10 +230,10 @@ class BodyStates:
         force, torque = _at_most(force, _ANY_FORCE), _at_most(torque, _ANY_FORCE)
         pybullet.applyExternalForce(part.body, part.index, force, place, world, client)
         pybullet.applyExternalTorque(part.body, part.index, torque, world, client)
-        self._pushes.append((self.push, (body, link, force, torque, place)))
-        self._fast.disturb(part.body)
+        self._applied_forces.append((self.apply_wrench, (body, link, force, torque, place)))
+        self._fast.allow_external_work(part.body)
 
-    def push_joint(self, body: Body, joint: str, effort: float) -> None:
+    def apply_joint_effort(self, body: Body, joint: str, effort: float) -> None:
         """Apply `effort` [N m or N] to a joint in the next step, added to its motor's."""
         if not self._enabled:
             return
@@ -240,8 +241,8 @@ class BodyStates:
         pybullet.setJointMotorControl2(
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
         )
-        self._pushes.append((self.push_joint, (body, joint, effort)))
-        self._fast.disturb(body.joints[joint][0])
+        self._applied_forces.append((self.apply_joint_effort, (body, joint, effort)))
+        self._fast.allow_external_work(body.joints[joint][0])
 
     def measure_reaction(self, body: Body, joint: str, wanted: bool = True) -> None:
         """Enable or disable the measurement of a joint's reaction."""

@@ -22,7 +22,7 @@ class CollisionFilter:
         for place in (one, other):
             self._pairs.setdefault(place.body, set()).add((one, other))
 
-    def forget(self, body: int) -> None:
+    def remove(self, body: int) -> None:
         """Drop the pairs of a removed body, whose number may be reused.
 
         Call this after the removal: for bodies that exist, PyBullet would search for collisions

@@ -12,7 +12,7 @@ from functools import partial
 from ...core import NO_ROTATION, ModelError, Pose, Quaternion, Vector
 from ...description import Collision, Inertial, JointSpec, LinkSpec, Mesh, ModelSpec, Surface
 from ...description.inertia import principal_axes
-from ...meshes import EngineFiles, HeldFile
+from ...meshes import EngineFiles, SharedFile
 from ..compiled_model import CompiledModel, bare
 from .body import FrictionAxes
 from .contact_parts import ContactPart, contact_parts, slab
@@ -91,7 +91,7 @@ def compile_model(spec: ModelSpec, meshes: EngineFiles) -> BulletModel:
     for tree in trees:
         groups.append([surface_groups(tree, i) for i in range(len(tree.links))])
         _require(spec, excess_of_joints(tree, groups[-1]))
-    files: dict[tuple[bool, Mesh], HeldFile] = {}
+    files: dict[tuple[bool, Mesh], SharedFile] = {}
 
     def mesh_file(exact: bool, mesh: Mesh) -> str:
         if (exact, mesh) not in files:

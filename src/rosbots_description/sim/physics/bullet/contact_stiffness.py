@@ -7,15 +7,15 @@ from ...description import FIXED, Surface
 from .generated_urdf import Tree
 
 _GRAVITY = 9.8  # [m/s^2]
-_STIFFEST = 1e12  # [N/m] SDF's default for kp
+_MAX_STIFFNESS = 1e12  # [N/m] SDF's default for kp
 
 # Deflection of one contact under the whole weight of a robot [m]. With more than three rigid
 # contacts the load distribution is statically indeterminate; this compliance determines it.
 _DEFLECTION = 1e-3
 _PARTING_SPEED = 1.0  # [m/s] for bodies that overlap by their whole size
-_LEAST_REACH = 5e-6  # [m] smaller bodies separate at the rate of this size
+_MIN_REACH = 5e-6  # [m] smaller bodies separate at the rate of this size
 _PARTS_FREELY = 1.0  # [m/s] least max_vel that allows a bounce
-_FASTEST_IMPACT = 100.0  # [m/s] a higher threshold means no bounce
+_MAX_IMPACT_SPEED = 100.0  # [m/s] a higher threshold means no bounce
 
 
 def restitution(surface: Surface) -> float:
@@ -24,7 +24,7 @@ def restitution(surface: Surface) -> float:
     Gazebo takes the lesser of a pair, and limits the rebound speed to `max_vel`, 0.01 m/s by
     default. The square root agrees with Gazebo if both are equal or one of them is 0.
     """
-    if surface.max_vel < _PARTS_FREELY or surface.threshold > _FASTEST_IMPACT:
+    if surface.max_vel < _PARTS_FREELY or surface.threshold > _MAX_IMPACT_SPEED:
         return 0.0
     return math.sqrt(min(1.0, max(0.0, surface.restitution)))
 
@@ -46,7 +46,7 @@ def parting_rate(reach: float, push_out: float) -> float:
         reach: size of the body [m], an upper bound of its penetration.
         push_out: the rate for small bodies [1/s].
     """
-    return min(push_out, _PARTING_SPEED / max(reach, _LEAST_REACH))
+    return min(push_out, _PARTING_SPEED / max(reach, _MIN_REACH))
 
 
 def jointed_mass(tree: Tree) -> float:
@@ -64,7 +64,7 @@ def compliant(surface: Surface, mass: float) -> Surface:
 
 def is_rigid(surface: Surface) -> bool:
     """Tell whether the stiffness of a surface is SDF's default, which counts as rigid."""
-    return surface.kp >= _STIFFEST
+    return surface.kp >= _MAX_STIFFNESS
 
 
 def contact_spring(surface: Surface, step_size: float, rate: float) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from .generated_urdf import MeshFile
 _MAX_RAYS = 8192  # in one call; PyBullet accepts 16384, but drops the last one
 
 
-class Surroundings:
+class ContactQueries:
     """Reports contacts and casts rays in a PyBullet world."""
 
     def __init__(
@@ -95,14 +95,14 @@ class Surroundings:
                  for hit in hits] if named else ()
         return RayHits(np.where(numbers >= 0, shares * lengths, math.inf), names)
 
-    def _name(self, place: Place, spot: Vector) -> CollisionName:
+    def _name(self, place: Place, position: Vector) -> CollisionName:
         """Return the collision of a part at a point of its surface, in the world."""
         body, link = self._owners[place]
         shapes = body.shapes[place]
         if len({shape.name for shape in shapes}) == 1:
             return CollisionName(body, link, shapes[0].name)
         pose = self._link_pose(body, link)
-        local = rotate(conjugate(pose.orientation), subtract(spot, pose.position))
+        local = rotate(conjugate(pose.orientation), subtract(position, pose.position))
         nearest = min(shapes, key=lambda shape: abs(self._distance(shape, local)))
         return CollisionName(body, link, nearest.name)
 

@@ -18,15 +18,15 @@ from .body_states import BodyStates
 from .client import pybullet
 from .compiler import BulletModel, compile_model
 from .contact_stiffness import overlap_share
-from .contacts import Surroundings
+from .contacts import ContactQueries
 from .friction_axes import can_slip
-from .friction_slip import Slipping
+from .friction_slip import SlippingLinks
 from .snapshot import BulletSnapshot, Snapshots
 from .solver_iterations import CHECK, SolverEffort
 from .springs import Springs
 from .tuning import Tuning
 
-_TOGETHER = 20  # steps in one call, which is faster than a call for each
+_MAX_BATCH = 20  # steps in one call, which is faster than a call for each
 # Convergence threshold of the solver: squared change of velocity [m^2/s^2] in an iteration. With
 # PyBullet's default, 1e-7, a robot parked on a slope creeps at 0.01 mm/s.
 _CONVERGED = 1e-8
@@ -50,12 +50,13 @@ class Engine(BodyStates):
         self._maker = BodyMaker(self._client, self._tuning)
         self._step = pybullet.stepSimulation
         self._effort = SolverEffort(self._set_iterations)
-        self._until_look = CHECK  # steps
+        self._until_check = CHECK  # steps
         self._bodies: dict[Body, None] = {}  # in the order they were added
         self._springs = Springs(self._client)
         self._weightless: list[Body] = []  # bodies with links without gravity
-        self._slipping = Slipping(self._client, self._maker.scale_friction, self._reach)
-        self._surroundings = Surroundings(self._client, self.link_pose,
+        self._slipping = SlippingLinks(
+            self._client, self._maker.scale_friction, self._friction_ratio)
+        self._queries = ContactQueries(self._client, self.link_pose,
                                           partial(self._meshes.engine_file, exact=False))
         self._snapshots = Snapshots(self._client)
         # Bytes that removed bodies were loaded from; PyBullet does not free all of its memory.
@@ -90,9 +91,9 @@ class Engine(BodyStates):
         )
         self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.iterations)))
         self._physics = physics
-        self._together = _divisible(physics.step_size, _TOGETHER)
+        self._batches = _exact_batches(physics.step_size, _MAX_BATCH)
 
-    def _reach(self, direction: Vector) -> float:
+    def _friction_ratio(self, direction: Vector) -> float:
         """Return the ratio of friction to mu N possible along a horizontal unit vector."""
         return 1.0 if self._cone else max(1.0, abs(direction[0]) + abs(direction[1]))
 
@@ -108,13 +109,13 @@ class Engine(BodyStates):
         pybullet.setPhysicsEngineParameter(
             deterministicOverlappingPairs=0, physicsClientId=self._client)
         self._bodies.clear()
-        self._pushes.clear()
-        self._surroundings.clear()
+        self._applied_forces.clear()
+        self._queries.clear()
         self._fast.clear()
         self._springs.clear()
         self._weightless.clear()
         self._driven.clear()
-        self._until_look = CHECK
+        self._until_check = CHECK
         self._slipping.clear()
         self._joint_readings.clear()
         self._leaked = 0
@@ -124,44 +125,44 @@ class Engine(BodyStates):
         """Advance physics by whole steps."""
         fast = self._fast
         while steps > 0 and self._enabled:
-            if not fast.rest:
-                fast.look()
-            run = min(steps, self._until_look, fast.rest)
+            if not fast.until_check:
+                fast.update()
+            run = min(steps, self._until_check, fast.until_check)
             self._step_uniform(run)
             self._joint_readings.clear()
             steps -= run
-            fast.rest -= run
-            self._until_look -= run
-            if not self._until_look:
-                self._until_look = CHECK
-                self._effort.look(self._motors())
+            fast.until_check -= run
+            self._until_check -= run
+            if not self._until_check:
+                self._until_check = CHECK
+                self._effort.update(self._motors())
 
     def _step_uniform(self, steps: int) -> None:
         """Advance by steps between two checks for fast bodies."""
         step, client, fast = self._step, self._client, self._fast
         is_sprung = bool(self._springs)
-        if self._pushes and steps > 1:  # a push lasts for one call of PyBullet
+        if self._applied_forces and steps > 1:  # a push lasts for one call of PyBullet
             self._step_uniform(1)
             steps -= 1
-        self._pushes.clear()
+        self._applied_forces.clear()
         one_by_one = is_sprung or self._springs.has_dampers or self._weightless
         if not (fast or one_by_one or self._slipping.links):
             while steps > 1:
-                together = self._together[min(steps, _TOGETHER)]
-                self._step_together(together)
-                steps -= together
+                batch = self._batches[min(steps, _MAX_BATCH)]
+                self._step_batch(batch)
+                steps -= batch
         for _ in repeat(None, steps):
             if self._weightless:
-                self._lift_weightless()
+                self._cancel_weight()
             if is_sprung:
-                self._springs.push()
+                self._springs.apply()
             for body, link, slip in self._slipping.links:
                 self._update_slip(body, link, *slip)
             step(client)
             if fast:
                 fast.after_step()
 
-    def _step_together(self, steps: int) -> None:
+    def _step_batch(self, steps: int) -> None:
         """Advance by several steps in one call; motors are set at the size of a single step."""
         size, client = self._physics.step_size, self._client
         resize = pybullet.setPhysicsEngineParameter
@@ -199,7 +200,7 @@ class Engine(BodyStates):
         self._fast.add(body.masses)
         self._springs.add(body.masses)
         self._slipping.add(body, spec)
-        self._surroundings.add(body)
+        self._queries.add(body)
         self._bodies[body] = None
         return body
 
@@ -209,11 +210,11 @@ class Engine(BodyStates):
         if body in self._weightless:
             self._weightless.remove(body)
         self._slipping.remove(body)
-        self._surroundings.remove(body)
+        self._queries.remove(body)
         self._bodies.pop(body, None)
         self._driven.pop(body, None)
-        self._fast.forget(body.bodies)
-        self._springs.forget(body.bodies)
+        self._fast.remove(body.bodies)
+        self._springs.remove(body.bodies)
         self._leaked += body.size
         self._maker.remove(body)
 
@@ -236,22 +237,22 @@ class Engine(BodyStates):
 
     def _update_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
         state = self.link_state(body, link)
-        self._slipping.weaken(body, link, state, axle, slips, self._physics.step_size)
+        self._slipping.update_friction(body, link, state, axle, slips, self._physics.step_size)
 
     def contacts(self, body: Body, link: str | None = None) -> list[Contact]:
         """Return the contacts of a model, or of one link, in the last step."""
-        return self._surroundings.contacts(body, link)
+        return self._queries.contacts(body, link)
 
     def cast_rays(self, starts: Points, ends: Points, named: bool = False) -> RayHits:
         """Return the first hits of rays."""
-        return self._surroundings.cast_rays(starts, ends, named)
+        return self._queries.cast_rays(starts, ends, named)
 
     def snapshot(self) -> BulletSnapshot:
         """Return a snapshot of the whole state, between two steps."""
         idle = [body.joints[joint] for body in self._driven
                 for joint, (_, effort) in body.motors.items() if not effort]
-        snapshot = self._snapshots.take([*self._bodies], self._moving(), idle, self._note)
-        self._recall(snapshot.notes)
+        snapshot = self._snapshots.take([*self._bodies], self._moving(), idle, self._save_state)
+        self._restore_state(snapshot.engine_state)
         return snapshot
 
     def restore(self, snapshot: BulletSnapshot) -> None:
@@ -260,47 +261,47 @@ class Engine(BodyStates):
         Raises:
             SimError: models were added, removed or changed since it was taken.
         """
-        self._recall(self._snapshots.put_back(snapshot, [*self._bodies], self._moving()))
+        self._restore_state(self._snapshots.restore(snapshot, [*self._bodies], self._moving()))
 
     def _moving(self) -> list[int]:
         """Return PyBullet's numbers of all moving bodies."""
         return [number for body in self._bodies for number in body.masses]
 
-    def _note(self) -> tuple[Any, ...]:
+    def _save_state(self) -> tuple[Any, ...]:
         """Return all state that PyBullet does not hold or does not restore."""
         for body in self._bodies:
             for joint in body.joints:
                 self._joint_reading(body, joint)  # PyBullet does not restore efforts
         return (
-            self._physics, self._until_look, self._effort.note(), self._fast.note(),
-            self._slipping.note(), list(self._pushes), dict(self._joint_readings),
+            self._physics, self._until_check, self._effort.save_state(), self._fast.save_state(),
+            self._slipping.save_state(), list(self._applied_forces), dict(self._joint_readings),
             [(body, dict(body.motors)) for body in self._driven],
         )
 
-    def _recall(self, notes: tuple[Any, ...]) -> None:
+    def _restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore noted state after PyBullet's own has been restored."""
-        physics, until_look, effort, fast, slipping, pushes, readings, motors = notes
+        physics, until_check, effort, fast, slipping, applied, readings, motors = saved
         if physics != self._physics:
             self.apply(physics)
         self._driven = dict.fromkeys(body for body, _ in motors)
         for body, targets in motors:
             for joint, target in targets.items():
                 self.set_joint_motor(body, joint, *target)
-        self._pushes.clear()
-        for call, arguments in pushes:
+        self._applied_forces.clear()
+        for call, arguments in applied:
             call(*arguments)
         self._joint_readings = dict(readings)
-        self._until_look = until_look
-        self._effort.recall(effort)
-        self._fast.recall(fast)
-        self._slipping.recall(slipping)
+        self._until_check = until_check
+        self._effort.restore_state(effort)
+        self._fast.restore_state(fast)
+        self._slipping.restore_state(slipping)
 
     def _set_iterations(self, count: int) -> None:
         pybullet.setPhysicsEngineParameter(
             numSolverIterations=count, physicsClientId=self._client
         )
 
-    def _lift_weightless(self) -> None:
+    def _cancel_weight(self) -> None:
         """Cancel the weight of links without gravity; PyBullet has one gravity for all links."""
         gx, gy, gz = self._gravity
         for body in self._weightless:
@@ -316,7 +317,7 @@ class Engine(BodyStates):
                 )
 
 
-def _divisible(step_size: float, most: int) -> list[int]:
+def _exact_batches(step_size: float, most: int) -> list[int]:
     """Return, for each number of steps up to `most`, how many PyBullet can make in one call.
 
     PyBullet computes size = duration / steps, then makes duration / size steps. Both quotients must

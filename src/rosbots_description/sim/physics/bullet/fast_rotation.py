@@ -16,12 +16,12 @@ from .body import Masses
 from .client import pybullet
 from .springs import followed_damping, followed_stiffness
 
-LOOK = 20  # steps between two checks of all bodies
+CHECK_STEPS = 20  # steps between two checks of all bodies
 # Thresholds of the correction: dt w^2 [1/s] for bodies of several links without contact, and the
 # relative energy gain per second for single links.
-_FAST, _GAINS = 0.01, 2e-4
+_FAST, _FAST_GROWTH = 0.01, 2e-4
 _CONTACT_FACTOR = 10.0  # factor on both for bodies in contact, such as a robot turning on the spot
-_MAX_CALM_CHECKS = 100  # slow checks in a row that end the correction of a body
+_MAX_SLOW_CHECKS = 100  # slow checks in a row that end the correction of a body
 # Allowed growth of energy, as a share of the peak kinetic energy. Velocities and positions are half
 # a step apart, which makes the computed energy of a body vary by less than this.
 _ALLOWED_GROWTH = 0.01
@@ -35,20 +35,20 @@ class FastBodies:
         self._client = client
         self._bodies: dict[int, Masses] = {}
         self._fast_bodies: dict[int, _FastBody] = {}
-        self.rest = 0  # steps until the next check
+        self.until_check = 0  # steps until the next check
         self.set(0.001, (0.0, 0.0, 0.0))
 
     def set(self, step_size: float, gravity: Vector) -> None:
         """Set step size [s] and gravity [m/s^2]."""
         self._step_size, self._gravity = step_size, gravity
         self._fast_bodies.clear()
-        self.rest = 0
+        self.until_check = 0
 
     def add(self, bodies: dict[int, Masses]) -> None:
         """Watch these bodies, given by PyBullet's numbers."""
         self._bodies.update(bodies)
 
-    def forget(self, numbers: Iterable[int]) -> None:
+    def remove(self, numbers: Iterable[int]) -> None:
         """Stop watching these bodies."""
         for number in numbers:
             self._bodies.pop(number, None)
@@ -56,41 +56,40 @@ class FastBodies:
 
     def clear(self) -> None:
         """Forget all bodies."""
-        self.forget(list(self._bodies))
-        self.rest = 0
+        self.remove(list(self._bodies))
+        self.until_check = 0
 
-    def disturb(self, number: int) -> None:
+    def allow_external_work(self, number: int) -> None:
         """Note that an external force may do work on a body in the next step."""
         body = self._fast_bodies.get(number)
         if body:
-            body.ceiling = None
+            body.energy_limit = None
 
     def set_in_motion(self, number: int) -> None:
         """Note that the velocity of a body has been set."""
-        self.disturb(number)
-        self.rest = 0
+        self.allow_external_work(number)
+        self.until_check = 0
 
-    def note(self) -> tuple[Any, ...]:
-        """Return the state for `recall`."""
-        return self.rest, {number: (one.calm, one.ceiling, one.flies, one.peak, one.total)
-                           for number, one in self._fast_bodies.items()}
+    def save_state(self) -> tuple[Any, ...]:
+        """Return the state for `restore_state`."""
+        return self.until_check, {number: one.state for number, one in self._fast_bodies.items()}
 
-    def recall(self, note: tuple[Any, ...]) -> None:
+    def restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore the state of a note; the bodies must be the same."""
-        self.rest, states = note
+        self.until_check, states = saved
         self._fast_bodies.clear()
         for number, state in states.items():
             one = _FastBody(self._client, number, self._bodies[number])
-            one.calm, one.ceiling, one.flies, one.peak, one.total = state
+            one.state = state
             self._fast_bodies[number] = one
 
     def __bool__(self) -> bool:
         """Tell whether any body is corrected in the next step."""
         return bool(self._fast_bodies)
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Find the fast rotating bodies."""
-        self.rest = LOOK
+        self.until_check = CHECK_STEPS
         velocity_of, client, step_size = pybullet.getBaseVelocity, self._client, self._step_size
         for number, masses in self._bodies.items():
             velocity = x, y, z = velocity_of(number, client)[1]
@@ -104,20 +103,20 @@ class FastBodies:
             if fast > 1.0 and len(masses.parts) == 1 and not masses.joints:
                 _, turn = pybullet.getBasePositionAndOrientation(number, client)
                 own = rotate(conjugate(turn), velocity)
-                fast = gained_share(masses.parts[0].moments, own, step_size) / _GAINS
-            self._note(number, masses, fast)
+                fast = energy_growth_rate(masses.parts[0].moments, own, step_size) / _FAST_GROWTH
+            self._update_body(number, masses, fast)
 
-    def _note(self, number: int, masses: Masses, fast: float) -> None:
+    def _update_body(self, number: int, masses: Masses, fast: float) -> None:
         """Record the speed of a body as a multiple of the threshold."""
         body = self._fast_bodies.get(number)
         if body is not None:
             # A free body may speed up again: rotation about the intermediate axis is unstable.
-            body.calm = 0 if fast > 1.0 or body.flies else body.calm + 1
-            if body.calm > _MAX_CALM_CHECKS:
+            body.slow_checks = 0 if fast > 1.0 or body.is_airborne else body.slow_checks + 1
+            if body.slow_checks > _MAX_SLOW_CHECKS:
                 del self._fast_bodies[number]
         elif fast > 1.0:
             body = _FastBody(self._client, number, masses)
-            if fast > _CONTACT_FACTOR or not body.touched():
+            if fast > _CONTACT_FACTOR or not body.bodies_in_contact():
                 self._fast_bodies[number] = body
 
     def after_step(self) -> None:
@@ -146,34 +145,45 @@ class _FastBody:
         self._mass = np.array([part.mass for part in parts])
         self._weight = np.array([part.mass * part.has_weight for part in parts])
         self._moments = np.array([part.moments for part in parts])
-        self.peak = 0.0  # greatest kinetic energy so far [J]
-        self.ceiling: float | None = None  # limit of the energy [J]; None: set after the next step
-        self.flies, self.total = False, 0.0  # after the last step
-        self.calm = 0
+        self.peak_kinetic = 0.0  # greatest kinetic energy so far [J]
+        self.energy_limit: float | None = None  # [J]; None: set after the next step
+        self.is_airborne, self.total_energy = False, 0.0  # after the last step
+        self.slow_checks = 0
+
+    @property
+    def state(self) -> tuple[Any, ...]:
+        """Return what changes from step to step."""
+        return (self.peak_kinetic, self.energy_limit, self.is_airborne, self.total_energy,
+                self.slow_checks)
+
+    @state.setter
+    def state(self, state: tuple[Any, ...]) -> None:
+        (self.peak_kinetic, self.energy_limit, self.is_airborne, self.total_energy,
+         self.slow_checks) = state
 
     def limit_energy(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
         """Remove energy that the last step added without work."""
-        touched = self.touched()
+        touched = self.bodies_in_contact()
         total, own, kinetic, drift = self._energy(step_size, gravity)
-        self.peak = max(self.peak, kinetic)
-        slack = _ALLOWED_GROWTH * self.peak
-        flew, self.flies = self.flies, not (touched or self._all.is_fixed)
-        flies_on = flew and self.flies
-        if self.ceiling is None or not touched.isdisjoint(moving):
-            self.ceiling = slack + (own if self.flies else total)
+        self.peak_kinetic = max(self.peak_kinetic, kinetic)
+        slack = _ALLOWED_GROWTH * self.peak_kinetic
+        was_airborne, self.is_airborne = self.is_airborne, not (touched or self._all.is_fixed)
+        stays_airborne = was_airborne and self.is_airborne
+        if self.energy_limit is None or not touched.isdisjoint(moving):
+            self.energy_limit = slack + (own if self.is_airborne else total)
         else:
-            if flew and touched:
-                self.ceiling = self.total
-            self.ceiling += self._work(step_size)
-            excess = min(kinetic, (own if flies_on else total) - self.ceiling)
+            if was_airborne and touched:
+                self.energy_limit = self.total_energy
+            self.energy_limit += self._work(step_size)
+            excess = min(kinetic, (own if stays_airborne else total) - self.energy_limit)
             if excess > 0.0:
-                self._slow_down((1.0 - excess / kinetic) ** 0.5, drift)
+                self._scale_velocities((1.0 - excess / kinetic) ** 0.5, drift)
                 total, own = total - excess, own - excess
             if touched:
-                self.ceiling = min(self.ceiling, total + slack)
-            elif self.flies and not flew:
-                self.ceiling = own
-        self.total = total
+                self.energy_limit = min(self.energy_limit, total + slack)
+            elif self.is_airborne and not was_airborne:
+                self.energy_limit = own
+        self.total_energy = total
 
     def _energy(
         self, step_size: float, gravity: Vector
@@ -190,7 +200,7 @@ class _FastBody:
             pose = pybullet.getBasePositionAndOrientation(self._number, self._client)
             rows.insert(0, (*pose, *pybullet.getBaseVelocity(self._number, self._client)))
         places, turns, linear, angular = (np.array(column) for column in zip(*rows, strict=True))
-        turning = _turned_back(turns, angular)
+        turning = _rotated_back(turns, angular)
         middle = places - 0.5 * step_size * linear
         energy = -float((self._weight[:, None] * middle * gravity).sum())
         drift = np.zeros(3)
@@ -201,10 +211,10 @@ class _FastBody:
         linear = linear - drift
         kinetic = 0.5 * float((self._mass[:, None] * linear * linear).sum()
                               + (self._moments * turning * turning).sum())
-        own = kinetic + self._strain(step_size)
+        own = kinetic + self._spring_energy(step_size)
         return energy + own, own, kinetic, drift
 
-    def _strain(self, step_size: float) -> float:
+    def _spring_energy(self, step_size: float) -> float:
         """Return the energy stored in joint springs [J]."""
         if not any(self._all.stiffness):
             return 0.0
@@ -224,12 +234,12 @@ class _FastBody:
         return step_size * float(sum(speed * (effort - damping * speed)
                                      for (_, speed, _, effort), damping in pairs))
 
-    def touched(self) -> set[int]:
+    def bodies_in_contact(self) -> set[int]:
         """Return the numbers of the bodies that touch this one."""
         points = pybullet.getContactPoints(self._number, physicsClientId=self._client)
         return {number for point in points for number in point[1:3]} - {self._number}
 
-    def _slow_down(self, share: float, drift: FloatArray) -> None:
+    def _scale_velocities(self, share: float, drift: FloatArray) -> None:
         """Scale all velocities relative to the centre of mass by `share`."""
         if self._base:
             linear, angular = pybullet.getBaseVelocity(self._number, self._client)
@@ -249,7 +259,7 @@ class _FastBody:
             )
 
 
-def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
+def energy_growth_rate(moments: Vector, velocity: Vector, step_size: float) -> float:
     """Return the relative energy gain of a free body by explicit Euler [1/s].
 
     With Euler's equations w' = -I^-1 (w x I w) it is dt (w' I w') / (w I w).
@@ -266,7 +276,7 @@ def gained_share(moments: Vector, velocity: Vector, step_size: float) -> float:
     return step_size * sum(t * t / i for t, i in zip(torque, moments, strict=True)) / energy
 
 
-def _turned_back(turns: FloatArray, vectors: FloatArray) -> FloatArray:
+def _rotated_back(turns: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return vectors (n, 3) rotated by the inverse of quaternions (n, 4)."""
     own, w = -turns[:, :3], turns[:, 3:]
     twice = 2.0 * np.cross(own, vectors)

@@ -9,19 +9,19 @@ from ...description import ModelSpec
 from .body import Body, Place
 from .client import pybullet
 from .friction_axes import ISOTROPIC, axes_along, can_slip, first_direction
-from .friction_slip_compliance import NONE_SLIPS, Touch, shares, velocity_at
+from .friction_slip_compliance import FULL_FRICTION, TyreContact, slip_scales, velocity_at
 
 Slip = tuple[Vector, tuple[float, float]]  # an axis of a link, and compliances [m/s per N]
 
 
-class Slipping:
+class SlippingLinks:
     """Links with slip compliance in one PyBullet world, from their surfaces or by `set`."""
 
     def __init__(
         self,
         client: int,
         scale_friction: Callable[[Place, Sequence[float]], None],
-        reach: Callable[[Vector], float],
+        friction_ratio: Callable[[Vector], float],
     ) -> None:
         """Work in the world of that PyBullet client.
 
@@ -29,9 +29,10 @@ class Slipping:
             scale_friction: sets the friction scales of a part along its axes.
             reach: ratio of friction to mu N possible in a direction.
         """
-        self._client, self._scale_friction, self._reach = client, scale_friction, reach
+        self._client, self._scale_friction = client, scale_friction
+        self._friction_ratio = friction_ratio
         self.links: list[tuple[Body, str, Slip]] = []
-        self._held: dict[Place, tuple[float, ...]] = {}  # friction scales set last
+        self._scales: dict[Place, tuple[float, ...]] = {}  # friction scales set last
 
     def add(self, body: Body, spec: ModelSpec) -> None:
         """Add the links of a body whose surfaces have slip1 or slip2."""
@@ -57,51 +58,51 @@ class Slipping:
         self.links = [link for link in self.links if link[0] is not body]
         for places in body.surfaces.values():
             for place in places:
-                self._held.pop(place, None)
+                self._scales.pop(place, None)
 
     def clear(self) -> None:
         """Forget all links."""
         self.links.clear()
-        self._held.clear()
+        self._scales.clear()
 
-    def note(self) -> tuple[Any, ...]:
-        """Return the state for `recall`."""
-        return tuple(self.links), dict(self._held)
+    def save_state(self) -> tuple[Any, ...]:
+        """Return the state for `restore_state`."""
+        return tuple(self.links), dict(self._scales)
 
-    def recall(self, note: tuple[Any, ...]) -> None:
+    def restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore the state of a note; the bodies must be the same."""
-        links, held = note
+        links, scales = saved
         whole = {place: axes.scales for body, _, _ in (*self.links, *links)
                  for place, axes in body.friction_axes.items()}
-        for place in self._held:
-            self._scale(place, held.get(place, whole.get(place, ISOTROPIC)))
-        self.links, self._held = list(links), dict(held)
+        for place in self._scales:
+            self._scale(place, scales.get(place, whole.get(place, ISOTROPIC)))
+        self.links, self._scales = list(links), dict(scales)
 
-    def weaken(
+    def update_friction(
         self, body: Body, link: str, state: tuple[Pose, Twist], axle: Vector,
         slips: tuple[float, float], step_size: float,
     ) -> None:
         """Scale the friction of a link for the next step; arguments as in `links`."""
         pose, twist = state
         for place in body.surfaces[link]:
-            held = NONE_SLIPS if not any(slips) else shares(
-                self._touches(place, pose.position, twist), rotate(pose.orientation, axle), slips,
-                step_size, self._reach,
+            scales = FULL_FRICTION if not any(slips) else slip_scales(
+                self._contacts(place, pose.position, twist), rotate(pose.orientation, axle), slips,
+                step_size, self._friction_ratio,
             )
-            if held is None:
+            if scales is None:
                 continue
             axes = body.friction_axes[place]
-            along, ahead = held
+            along, ahead = scales
             self._scale(place, tuple(
                 scale * (along if is_axle else ahead)
                 for is_axle, scale in zip(axes_along(axes, axle), axes.scales, strict=True)
             ))
 
     def _scale(self, place: Place, scales: tuple[float, ...]) -> None:
-        self._held[place] = scales
+        self._scales[place] = scales
         self._scale_friction(place, scales)
 
-    def _touches(self, place: Place, origin: Vector, twist: Twist) -> Iterator[Touch]:
+    def _contacts(self, place: Place, origin: Vector, twist: Twist) -> Iterator[TyreContact]:
         """Yield the contacts of a part of a link in the last step."""
         number, index = place
         client = self._client
@@ -110,14 +111,14 @@ class Slipping:
         as_second = {point[6] for point in pybullet.getContactPoints(
             bodyB=number, linkIndexB=index, physicsClientId=client)} if points else ()
         for point in points:
-            other, spot, normal, load = (point[2], point[4]), point[5], point[7], point[9]
+            other, position, normal, load = (point[2], point[4]), point[5], point[7], point[9]
             along, one, across, two = point[10:14]
-            sign = -1.0 if spot in as_second else 1.0
+            sign = -1.0 if position in as_second else 1.0
             x, y, z = (sign * (along * a + across * b) for a, b in zip(one, two, strict=True))
-            own = velocity_at(spot, origin, *twist)
+            own = velocity_at(position, origin, *twist)
             mu = (pybullet.getDynamicsInfo(*each, client)[1] for each in (place, other))
-            yield Touch(
-                spot, normal, load, (x, y, z), subtract(own, self._velocity(*other, spot)),
+            yield TyreContact(
+                position, normal, load, (x, y, z), subtract(own, self._velocity(*other, position)),
                 load * math.prod(mu),
             )
 

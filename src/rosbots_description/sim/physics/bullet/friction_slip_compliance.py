@@ -13,11 +13,11 @@ from typing import NamedTuple
 from ...core import Vector, add, cross, dot, subtract
 
 GRAVITY = 9.8  # [m/s^2] estimates the mass on a contact from its load
-NONE_SLIPS = (1.0, 1.0)  # friction scales without slip
-MIN_SHARE = 1e-3  # least friction scale
+FULL_FRICTION = (1.0, 1.0)  # friction scales without slip
+MIN_SCALE = 1e-3  # least friction scale
 
 
-class Touch(NamedTuple):
+class TyreContact(NamedTuple):
     """A contact of a tyre in the last step; all vectors are in the world."""
 
     place: Vector  # [m]
@@ -28,9 +28,9 @@ class Touch(NamedTuple):
     limit: float  # mu N of the pair [N]
 
 
-def shares(
-    touches: Iterable[Touch], axle: Vector, slips: tuple[float, float], step_size: float,
-    reach: Callable[[Vector], float],
+def slip_scales(
+    contacts: Iterable[TyreContact], axle: Vector, slips: tuple[float, float], step_size: float,
+    friction_ratio: Callable[[Vector], float],
 ) -> tuple[float, float] | None:
     """Return the friction scales of a tyre along the axle and ahead; None without contact.
 
@@ -40,23 +40,24 @@ def shares(
         step_size: [s].
         reach: ratio of friction to mu N possible in a direction.
     """
-    touches = [touch for touch in touches if touch.load > 0.0 and touch.limit > 0.0]
-    if not touches:
+    contacts = [contact for contact in contacts if contact.load > 0.0 and contact.limit > 0.0]
+    if not contacts:
         return None
-    load, limit = sum(touch.load for touch in touches), sum(touch.limit for touch in touches)
+    load = sum(contact.load for contact in contacts)
+    limit = sum(contact.limit for contact in contacts)
     gain = step_size * GRAVITY / load  # change of speed by 1 N in a step [m/s per N]
     found = []
-    for slip, direction in zip(slips, _directions(touches, axle), strict=True):
-        force = sum(dot(touch.force, direction) for touch in touches)
-        speed = sum(dot(touch.velocity, direction) * touch.load for touch in touches) / load
-        held = abs(force * gain - speed) / (slip + gain)
-        found.append(min(1.0, max(MIN_SHARE, held / (limit * reach(direction)))))
+    for slip, direction in zip(slips, _directions(contacts, axle), strict=True):
+        force = sum(dot(contact.force, direction) for contact in contacts)
+        speed = sum(dot(contact.velocity, direction) * contact.load for contact in contacts) / load
+        target = abs(force * gain - speed) / (slip + gain)
+        found.append(min(1.0, max(MIN_SCALE, target / (limit * friction_ratio(direction)))))
     return (found[0], found[1])
 
 
-def _directions(touches: list[Touch], axle: Vector) -> tuple[Vector, Vector]:
+def _directions(contacts: list[TyreContact], axle: Vector) -> tuple[Vector, Vector]:
     """Return the directions along the axle and ahead, in the contact plane."""
-    normal = touches[0].normal
+    normal = contacts[0].normal
     ahead = cross(axle, normal)
     length = math.hypot(*ahead) or 1.0
     ahead = (ahead[0] / length, ahead[1] / length, ahead[2] / length)

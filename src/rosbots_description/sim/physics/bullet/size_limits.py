@@ -43,15 +43,15 @@ def excess_of_joints(tree: Tree, groups: Sequence[Groups]) -> str | None:
     joints = len(tree.links) - 1
     if joints > MAX_JOINTS:
         return (
-            f'the links that hang together need more than {MAX_JOINTS} joints in the '
-            'physics engine, which holds no more: split the model'
+            f'a kinematic tree of the model has more than {MAX_JOINTS} joints, the limit of the '
+            'physics engine: split the model'
         )
     # Each further surface of a link needs an auxiliary link on a fixed joint.
     auxiliary = sum(len(of_link) - 1 for of_link in groups)
     if joints + auxiliary > MAX_JOINTS:
         return (
-            f'links that hang together have {auxiliary} collisions with a surface of their own and '
-            f'{joints} joints; the physics engine holds {MAX_JOINTS} of both: give collisions of '
-            'one link the same mu, kp and kd'
+            f'a kinematic tree of the model has {auxiliary} collisions with surfaces of their own '
+            f'and {joints} joints; the physics engine supports {MAX_JOINTS} of both: give the '
+            'collisions of a link the same mu, kp and kd'
         )
     return None

@@ -19,9 +19,9 @@ from ...core import SimError
 from .client import pybullet
 
 # A collision detection drops a tenth of the stale pairs, at least one: 80 of them drop 4000.
-_LOOKS = 80
-_APART = 1e4  # [m] distance between bodies while stale pairs are dropped
-_NO_TURN = (0.0, 0.0, 0.0, 1.0)
+_PASSES = 80
+_SPACING = 1e4  # [m] distance between bodies while stale pairs are dropped
+_NO_ROTATION = (0.0, 0.0, 0.0, 1.0)
 _NEGLIGIBLE_EFFORT = 1e-300  # [N m or N]
 
 Joints = Sequence[tuple[int, int]]  # by PyBullet's body and index
@@ -31,9 +31,10 @@ class BulletSnapshot:
     """State of a PyBullet world, and notes of further state; bodies are compared by identity."""
 
     def __init__(
-        self, state: int, bodies: Sequence[Any], idle: Joints, notes: tuple[Any, ...]
+        self, state: int, bodies: Sequence[Any], idle: Joints, engine_state: tuple[Any, ...]
     ) -> None:
-        self.state, self.bodies, self.idle, self.notes = state, tuple(bodies), idle, notes
+        self.state, self.bodies, self.idle = state, tuple(bodies), idle
+        self.engine_state = engine_state
 
 
 class Snapshots:
@@ -42,18 +43,18 @@ class Snapshots:
     def __init__(self, client: int) -> None:
         """Work in the world of that PyBullet client."""
         self._client = client
-        self._kept: set[int] = set()
+        self._states: set[int] = set()
 
     def clear(self) -> None:
         """Drop all snapshots, before PyBullet is reset or disconnected."""
-        for state in self._kept:
+        for state in self._states:
             pybullet.removeState(state, physicsClientId=self._client)
-        self._kept.clear()  # finalizers of live snapshots have nothing left to free
-        self._kept = set()
+        self._states.clear()  # finalizers of live snapshots have nothing left to free
+        self._states = set()
 
     def take(
         self, bodies: Sequence[Any], moving: Sequence[int], idle: Joints,
-        note: Callable[[], tuple[Any, ...]],
+        save_state: Callable[[], tuple[Any, ...]],
     ) -> BulletSnapshot:
         """Return a snapshot.
 
@@ -65,13 +66,14 @@ class Snapshots:
         """
         client = self._client
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
-        snapshot = BulletSnapshot(pybullet.saveState(physicsClientId=client), bodies, idle, note())
-        self._kept.add(snapshot.state)
-        weakref.finalize(snapshot, _drop, self._kept, snapshot.state, client).atexit = False
-        self._put_back(snapshot, moving)
+        state = pybullet.saveState(physicsClientId=client)
+        snapshot = BulletSnapshot(state, bodies, idle, save_state())
+        self._states.add(snapshot.state)
+        weakref.finalize(snapshot, _drop, self._states, snapshot.state, client).atexit = False
+        self._restore(snapshot, moving)
         return snapshot
 
-    def put_back(
+    def restore(
         self, snapshot: BulletSnapshot, bodies: Sequence[Any], moving: Sequence[int]
     ) -> tuple[Any, ...]:
         """Restore PyBullet's part of a snapshot, and return the notes.
@@ -81,36 +83,37 @@ class Snapshots:
         """
         same = len(bodies) == len(snapshot.bodies) and all(
             a is b for a, b in zip(bodies, snapshot.bodies, strict=True))
-        if not same or snapshot.state not in self._kept:
+        if not same or snapshot.state not in self._states:
             raise SimError('the snapshot is of other models: none may be added, removed or changed '
                            'between taking a snapshot and going back to it; take a new one')
-        self._put_back(snapshot, moving)
-        return snapshot.notes
+        self._restore(snapshot, moving)
+        return snapshot.engine_state
 
-    def _put_back(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> None:
+    def _restore(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> None:
         client, put = self._client, pybullet.resetBasePositionAndOrientation
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
         # A motor that was switched off still reports its last effort.
-        self._give_effort(snapshot.idle, _NEGLIGIBLE_EFFORT)
-        for look in range(_LOOKS):
-            for i, number in enumerate(moving if look < 2 else moving[:1]):
+        self._set_effort(snapshot.idle, _NEGLIGIBLE_EFFORT)
+        for attempt in range(_PASSES):
+            for i, number in enumerate(moving if attempt < 2 else moving[:1]):
                 # PyBullet drops pairs only after something has moved.
-                put(number, (_APART * (i + 1), _APART * (1 + look % 2), _APART), _NO_TURN, client)
-            if look:
+                position = (_SPACING * (i + 1), _SPACING * (1 + attempt % 2), _SPACING)
+                put(number, position, _NO_ROTATION, client)
+            if attempt:
                 pybullet.performCollisionDetection(client)
             else:
                 pybullet.stepSimulation(client)  # clears applied forces
-        self._give_effort(snapshot.idle, 0.0)
+        self._set_effort(snapshot.idle, 0.0)
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
 
-    def _give_effort(self, joints: Joints, effort: float) -> None:
+    def _set_effort(self, joints: Joints, effort: float) -> None:
         for joint in joints:
             pybullet.setJointMotorControl2(
                 *joint, pybullet.VELOCITY_CONTROL, force=effort, physicsClientId=self._client)
 
 
-def _drop(kept: set[int], state: int, client: int) -> None:
+def _drop(states: set[int], state: int, client: int) -> None:
     """Free a state in PyBullet after its last reference is gone."""
-    if state in kept:
-        kept.discard(state)
+    if state in states:
+        states.discard(state)
         pybullet.removeState(state, physicsClientId=client)

@@ -42,7 +42,7 @@ class SolverEffort:
         self._targets, self._patience, self._wait = [], PATIENCE, 0
         self._set_iterations(least)
 
-    def look(self, motors: Iterable[Motor]) -> None:
+    def update(self, motors: Iterable[Motor]) -> None:
         """Update the number of iterations from the current state of the motors."""
         motors = list(motors)
         targets = [motor[1] for motor in motors]
@@ -59,13 +59,13 @@ class SolverEffort:
         elif self._level and self._missed < REACHED and self._wait < 0:
             self._shift(-1)
 
-    def note(self) -> tuple[Any, ...]:
-        """Return the state for `recall`."""
+    def save_state(self) -> tuple[Any, ...]:
+        """Return the state for `restore_state`."""
         return (self._least, self._level, self._missed, self._targets, self._patience, self._wait)
 
-    def recall(self, note: tuple[Any, ...]) -> None:
+    def restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore the state of a note."""
-        (self._least, self._level, self._missed, self._targets, self._patience, self._wait) = note
+        (self._least, self._level, self._missed, self._targets, self._patience, self._wait) = saved
         self._set_iterations(self._least * FACTOR**self._level)
 
     def _shift(self, levels: int) -> None:

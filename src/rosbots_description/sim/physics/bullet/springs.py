@@ -62,7 +62,7 @@ class Springs:
                     number, index, jointDamping=damping, physicsClientId=self._client
                 )
 
-    def forget(self, numbers: Iterable[int]) -> None:
+    def remove(self, numbers: Iterable[int]) -> None:
         """Remove bodies."""
         for number in numbers:
             self._bodies.pop(number, None)
@@ -70,9 +70,9 @@ class Springs:
 
     def clear(self) -> None:
         """Remove all bodies."""
-        self.forget(list(self._bodies))
+        self.remove(list(self._bodies))
 
-    def push(self) -> None:
+    def apply(self) -> None:
         """Apply the springs' efforts to the joints for the next step."""
         for number, (joints, stiffness, reference) in self._springs.items():
             states = pybullet.getJointStates(number, joints, self._client)

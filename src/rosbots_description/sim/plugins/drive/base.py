@@ -23,7 +23,7 @@ NO_VARIANCES = (0.0,) * 6
 class Drive(PeriodicPlugin):
     """Follows a velocity command and outputs odometry, as a reading and as a transform.
 
-    A subclass calls `read_frames` and `give_odometry` in `load`, and follows `target` (x [m/s],
+    A subclass calls `read_frames` and `add_odometry` in `load`, and follows `target` (x [m/s],
     y [m/s], yaw rate [rad/s]) in `update`.
     """
 
@@ -39,7 +39,7 @@ class Drive(PeriodicPlugin):
                              ('odometryFrame', 'odom'), ('robotBaseFrame', base)):
             self.params.read(tag, default)
 
-    def give_odometry(self, message: bool = True, transform: bool = True) -> None:
+    def add_odometry(self, message: bool = True, transform: bool = True) -> None:
         """Create the outputs of odometry and of its transform, if they are requested."""
         self.odometry: Output[Odometry] = self.output('odometry', message)
         self.odometry_transform: Output[FrameTransform] = self.output(
@@ -101,7 +101,7 @@ class WheeledDrive(Drive):
         """Read the log level of the server."""
         self.params.read('rosDebugLevel', 'na')
 
-    def give_wheels(self, transforms: bool, states: bool) -> None:
+    def add_wheels(self, transforms: bool, states: bool) -> None:
         """Create the outputs of the wheel transforms, one per wheel, and of the joint states."""
         self.wheel_transform: Output[FrameTransform] = self.output('wheel_transform', transforms)
         self.joint_states: Output[JointStates] = self.output('joint_states', states)

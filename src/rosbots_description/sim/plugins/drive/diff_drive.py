@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from ...core import Pose, Twist
 from ...plugin_registry import register
 from ...runtime import FrameTransform, JointStates, Odometry
-from ..wheel_geometry import drives_towards_x, radius_of, same_way, track_of
+from ..wheel_geometry import drives_towards_x, radius_of, same_direction, track_of
 from .base import Encoders, WheeledDrive, reads_encoders
 
 logger = logging.getLogger(__name__)
@@ -38,8 +38,8 @@ class DiffDrive(WheeledDrive):
         # publishTf is for the odometry message and its transform, publishOdomTF for the latter.
         odometry = read('publishTf', True)
         wheel_transforms = read('publishWheelTF', False)
-        self.give_odometry(odometry, read('publishOdomTF', True) and odometry)
-        self.give_wheels(wheel_transforms, read('publishWheelJointState', False))
+        self.add_odometry(odometry, read('publishOdomTF', True) and odometry)
+        self.add_wheels(wheel_transforms, read('publishWheelJointState', False))
         self.wheel_separation = params.length('wheelSeparation', 0.34)  # [m]
         self.wheel_diameter = params.length('wheelDiameter', 0.15)  # [m]
         self.wheel_acceleration = read('wheelAcceleration', 0.0)  # [m/s^2] at the rim; 0: no limit
@@ -121,7 +121,7 @@ class DiffDrive(WheeledDrive):
         """Warn if the robot will not follow its commands, in Gazebo as here."""
         left, right = self.wheels
         faults = []
-        if not same_way(left, right):
+        if not same_direction(left, right):
             faults.append('spin when asked to drive straight; give both joints the same axis')
         else:
             if track_of(left, right) < 0.0:

@@ -32,14 +32,14 @@ class PlanarMove(Drive):
         self.read_frames('base_footprint')
         rate = self.params.rate('odometryRate', 20.0)  # 0 for none
         self.set_rate(rate)
-        self.give_odometry(rate > 0.0, rate > 0.0)
+        self.add_odometry(rate > 0.0, rate > 0.0)
         # [s] after which a command expires; below 0: never
         self.command_timeout = self.params.read('cmdTimeout', -1.0)
 
     def reset(self) -> None:
         """Measure the motion from the current pose on; keep the command."""
         super().reset()
-        self._told_ns, self._told = self.world.clock.now_ns, self.model.pose
+        self._measured_ns, self._measured = self.world.clock.now_ns, self.model.pose
 
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
         """Set the velocity command, which holds until the next one or until it expires."""
@@ -60,17 +60,17 @@ class PlanarMove(Drive):
         """Send the pose, and the mean twist since the last report."""
         if self.odometry_wanted:
             pose, now_ns = self.model.pose, self.world.clock.now_ns
-            elapsed = (now_ns - self._told_ns) / NANOSECONDS
+            elapsed = (now_ns - self._measured_ns) / NANOSECONDS
             self.send_odometry(Odometry(pose, self._twist(pose, elapsed)), flat=True)
-            self._told_ns, self._told = now_ns, pose
+            self._measured_ns, self._measured = now_ns, pose
 
     def _twist(self, pose: Pose, elapsed: float) -> Twist:
         yaw, turning = yaw_of(pose.orientation), self.target[2]
         dx, dy = (
             (now - then) / elapsed
-            for now, then in zip(pose.position[:2], self._told.position[:2], strict=True)
+            for now, then in zip(pose.position[:2], self._measured.position[:2], strict=True)
         )
         if abs(turning) <= math.pi / elapsed:  # else the rotation is ambiguous
-            turning = math.remainder(yaw - yaw_of(self._told.orientation), math.tau) / elapsed
+            turning = math.remainder(yaw - yaw_of(self._measured.orientation), math.tau) / elapsed
         cos, sin = math.cos(yaw), math.sin(yaw)
         return Twist((cos * dx + sin * dy, cos * dy - sin * dx, 0.0), (0.0, 0.0, turning))

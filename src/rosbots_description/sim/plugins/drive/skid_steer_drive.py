@@ -25,7 +25,7 @@ class SkidSteerDrive(Drive):
     def load(self) -> None:
         """Read all tags with upstream's defaults and in upstream's order; find the wheels."""
         params, read = self.params, self.params.read
-        self.give_odometry(transform=read('broadcastTF', False))
+        self.add_odometry(transform=read('broadcastTF', False))
         names = [read(f'{what}Joint', name) for what, name in zip(JOINTS, DEFAULTS, strict=True)]
         self.wheel_separation = params.length('wheelSeparation', 0.4)  # [m]
         self.wheel_diameter = params.length('wheelDiameter', 0.15)  # [m]

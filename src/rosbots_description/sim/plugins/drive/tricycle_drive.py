@@ -36,7 +36,7 @@ class TricycleDrive(WheeledDrive):
         self.acceleration = read('wheelAcceleration', 0.0)
         self.read_debug_level()
         self.read_frames('base_link')
-        self.give_odometry()
+        self.add_odometry()
         self.set_rate(params.rate('updateRate', 100.0))
         names = (
             read('steeringJoint', 'front_steering_joint'),
@@ -55,7 +55,7 @@ class TricycleDrive(WheeledDrive):
         self.angle_tolerance = read('steeringAngleTolerance', 0.01)  # [rad] to stop within
         self.every_step = reads_encoders(params)
         wheel_transforms = read('publishWheelTF', False)
-        self.give_wheels(wheel_transforms, read('publishWheelJointState', False))
+        self.add_wheels(wheel_transforms, read('publishWheelJointState', False))
         self.joints = tuple(self.joint(name, 'wheel hinge') for name in names)
         if len(set(names)) < len(names):
             raise PluginError(f'{self.log_prefix}two of its joints are one: {", ".join(names)}')

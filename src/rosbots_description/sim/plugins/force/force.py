@@ -21,7 +21,7 @@ class Force(ModelPlugin):
 
     def load(self) -> None:
         """Read the tags and find the link."""
-        self._pushed, _ = self.link('bodyName')
+        self._link, _ = self.link('bodyName')
         self.params.required('topicName')
         self.wrench = (ZERO, ZERO)
 
@@ -39,7 +39,7 @@ class Force(ModelPlugin):
 
     def before_step(self) -> None:
         """Apply the wrench."""
-        self._pushed.push(*self.wrench)
+        self._link.apply_wrench(*self.wrench)
         self.due = self.world.clock.steps + 1
 
     def reset(self) -> None:

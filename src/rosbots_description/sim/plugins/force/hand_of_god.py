@@ -84,8 +84,8 @@ class HandOfGod(ModelPlugin):
         torque = self._spring(
             _half_rotation(multiply(back, target.orientation)), rotate(back, angular),
             self.angular_stiffness, inertial.ixx, min(inertial.ixx, inertial.iyy, inertial.izz))
-        self._link.push(force, rotate(pose.orientation, torque))
-        self.watches, self.due = self.is_read, self.world.clock.steps + 1
+        self._link.apply_wrench(force, rotate(pose.orientation, torque))
+        self.runs_after_step, self.due = self.is_read, self.world.clock.steps + 1
 
     def after_step(self) -> None:
         """Send the pose of the link."""

@@ -45,7 +45,7 @@ class P3D(PeriodicPlugin):
     missing_level = logging.DEBUG
     hints: Mapping[str, str] = {
         'xyzOffsets': ' (the offset is <xyzOffset>)', 'rpyOffsets': ' (it is <rpyOffset>)'}
-    later = keeps_rate = False
+    strictly_after = keeps_rate = False
 
     def load(self) -> None:
         """Read the tags; find the link and the frame.

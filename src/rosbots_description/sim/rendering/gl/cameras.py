@@ -62,7 +62,7 @@ def light_axes(direction: NDArray[Any]) -> NDArray[Any]:
     return np.stack([right, np.cross(backward, right), backward])
 
 
-def seen_ball(eye: NDArray[Any], lens: Lens) -> tuple[NDArray[Any], float]:
+def frustum_sphere(eye: NDArray[Any], lens: Lens) -> tuple[NDArray[Any], float]:
     """Return centre and radius of the bounding sphere of a camera's view up to SHADOWED [m]."""
     reach = min(lens.far, SHADOWED)
     slope = np.hypot(1.0, lens.height / lens.width) * np.tan(min(lens.field_of_view, WIDEST) / 2.0)

@@ -12,11 +12,11 @@ import numpy as np
 from PIL import Image
 
 from .context import NoContextError, open_context
-from .development import Development
+from .image_pipeline import ImagePipeline
 from .renderer import Renderer
-from .values import Colour, Lens, Light, Look, Scene, ScenePart
+from .values import Appearance, Colour, Lens, Light, Scene, ScenePart
 
-LARGEST_IMAGE = 2048  # [pixels] along an edge; larger ones are scaled down
+MAX_IMAGE_SIZE = 2048  # [pixels] along an edge; larger ones are scaled down
 NICENESS = 2  # the simulation has priority
 
 
@@ -56,7 +56,7 @@ class _Service:
         """Load an image file; white if it cannot be read."""
         pixels = np.full((1, 1, 3), 255, 'u1')
         with contextlib.suppress(Exception), Image.open(path) as image:  # any error of the decoder
-            image.thumbnail((LARGEST_IMAGE, LARGEST_IMAGE))
+            image.thumbnail((MAX_IMAGE_SIZE, MAX_IMAGE_SIZE))
             pixels = np.asarray(image.convert('RGBA' if 'A' in image.getbands() else 'RGB'))
         self._renderer.add_image(path, pixels)
 
@@ -65,8 +65,8 @@ class _Service:
         shadows: bool,
     ) -> None:
         self._renderer.set_scene(Scene(
-            tuple(ScenePart(key, body, matrix, Look(*look), *others)
-                  for key, body, matrix, look, *others in parts),
+            tuple(ScenePart(key, body, matrix, Appearance(*appearance), *others)
+                  for key, body, matrix, appearance, *others in parts),
             tuple(Light(*light) for light in lights), ambient, background, shadows))
 
     def _camera(self, number: int, lens: tuple[Any, ...], size: int) -> None:
@@ -92,7 +92,7 @@ class _Service:
         try:
             if has_colour:
                 pixels = self._renderer.colours(lens, where, bodies)
-                content = camera.development.finish(pixels, seed)
+                content = camera.pipeline.finish(pixels, seed)
                 camera.memory[place:place + lens.colour_bytes] = content.reshape(-1).view('u1').data
                 place += lens.colour_bytes
             if has_depth:
@@ -109,4 +109,4 @@ class _Camera:
     def __init__(self, lens: Lens, memory: mmap.mmap) -> None:
         self.lens = lens
         self.memory = memory
-        self.development = Development(lens)
+        self.pipeline = ImagePipeline(lens)

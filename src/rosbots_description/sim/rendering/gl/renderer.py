@@ -17,12 +17,12 @@ from .shaders import (
     surface_fragment,
 )
 from .shadows import Shadows, uniform
-from .values import DIRECTIONAL, Lens, Look, Scene, ScenePart
+from .values import DIRECTIONAL, Appearance, Lens, Scene, ScenePart
 
 SAMPLES = 4  # per pixel, for antialiasing
 MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have no antialiasing
 MAX_LIGHTS = 8
-_FARTHEST_SHADOW = 30.0  # [m] from its caster
+_MAX_SHADOW_DISTANCE = 30.0  # [m] from its caster
 _LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a vertex
 
 
@@ -71,13 +71,13 @@ class Renderer:
         for drawable in self._drawables:
             drawable.release()
         self._drop(self._meshes, {part.mesh for part in scene.parts})
-        self._drop(self._images, {part.look.texture for part in scene.parts})
+        self._drop(self._images, {part.appearance.texture for part in scene.parts})
         self._drawables = [
             _Drawable(self._context, part, *self._meshes[part.mesh], self._placed,
-                      self._images.get(part.look.texture))
+                      self._images.get(part.appearance.texture))
             for part in scene.parts
         ]
-        self._still_bodies = sorted({part.body for part in scene.parts if part.still})
+        self._static_bodies = sorted({part.body for part in scene.parts if part.still})
         self._stood: NDArray[Any] | None = None  # poses of still bodies in the last shadow map
         self._write_surfaces()
 
@@ -85,7 +85,7 @@ class Renderer:
         """Compile the programs of surfaces for the scene's lights and shadows."""
         for program in self._surfaces.values():
             program.release()
-        textures = {bool(drawable.part.look.texture) for drawable in self._drawables}
+        textures = {bool(drawable.part.appearance.texture) for drawable in self._drawables}
         types = [light.type for light in self._lights]
         self._surfaces = {
             (textured, moving): self._context.program(
@@ -94,11 +94,11 @@ class Renderer:
             for textured in textures for moving in (False, True)
         }
         for drawable in self._drawables:
-            textured = bool(drawable.part.look.texture)
+            textured = bool(drawable.part.appearance.texture)
             drawable.set_surfaces([self._surfaces[textured, moving] for moving in (False, True)])
 
-    def _draw_shadows(self, shadows: Shadows, frame: '_Shot', poses: NDArray[Any]) -> None:
-        stands = poses[self._still_bodies]
+    def _draw_shadows(self, shadows: Shadows, frame: '_View', poses: NDArray[Any]) -> None:
+        stands = poses[self._static_bodies]
         if self._stood is None or not np.array_equal(stands, self._stood):
             self._stood = stands
             shadows.forget()
@@ -151,9 +151,9 @@ class Renderer:
             drawable.draw_depth()
         return target.read()
 
-    def _frame(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> '_Shot':
+    def _frame(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> '_View':
         eye_matrix = matrices(np.asarray(eye, dtype=float)[None])[0]
-        frame = _Shot(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
+        frame = _View(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
                        matrices(poses))
         frame.visible = []
         for drawable in self._drawables:
@@ -168,7 +168,7 @@ class Renderer:
             self._targets[key] = _Target(self._context, *key, samples)
         return self._targets[key]
 
-    def _set_frame(self, program: moderngl.Program, frame: '_Shot') -> None:
+    def _set_frame(self, program: moderngl.Program, frame: '_View') -> None:
         uniform(program, 'view').write(_gl(frame.view))
         _set(program, 'eye', tuple(frame.eye[:3, 3]))
         _set(program, 'scene_ambient', self._scene.ambient)
@@ -184,7 +184,7 @@ class Renderer:
         if self._shadows is not None:
             self._shadows.use(program)
 
-    def _draw_surfaces(self, frame: '_Shot') -> None:
+    def _draw_surfaces(self, frame: '_View') -> None:
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         # Front to back: hidden surfaces need no lighting.
@@ -204,14 +204,14 @@ class Renderer:
             context.fbo.depth_mask = True
 
     def _cull(self, drawable: '_Drawable') -> None:
-        if drawable.part.look.both_sides:
+        if drawable.part.appearance.both_sides:
             self._context.disable(moderngl.CULL_FACE)
         else:
             self._context.enable(moderngl.CULL_FACE)
             self._context.front_face = 'ccw' if drawable.mirrored else 'cw'
 
 
-class _Shot:
+class _View:
     """View, lens and poses of one picture."""
 
     visible: list['_Drawable']
@@ -237,7 +237,9 @@ class _Shot:
             low: height below which there is nothing [m].
         """
         fall = drawable.middle[2] + drawable.radius - low
-        length = min(_FARTHEST_SHADOW, fall / -light[2]) if light[2] < 0.0 else _FARTHEST_SHADOW
+        length = _MAX_SHADOW_DISTANCE
+        if light[2] < 0.0:
+            length = min(length, fall / -light[2])
         begin = self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
         end = begin + length * (self._planes[:, :3] @ light)
         return bool((np.maximum(begin, end) > -drawable.radius).all())
@@ -275,7 +277,7 @@ class _Drawable:
         half = self._half = (bounds[1] - bounds[0]) / 2.0
         self.radius = float(np.linalg.norm(np.abs(self._matrix[:3, :3]) @ half))
         self.mirrored = bool(np.linalg.det(self._matrix[:3, :3]) < 0.0)
-        self.transparent = part.look.alpha < 1.0
+        self.transparent = part.appearance.alpha < 1.0
         self.casts_shadow = part.casts_shadow and not self.transparent
         self._depth, self._shadow = (
             context.vertex_array(program, [(buffer, '3f 5x4', 'position')])
@@ -293,9 +295,9 @@ class _Drawable:
                               for name, size in _LAYOUT.items())
             self._surfaces.append(
                 self._context.vertex_array(program, [(self._buffer, layout, *used)]))
-        self._looks = [_look_uniforms(program, self.part.look) for program in programs]
+        self._uniforms = [_uniforms(program, self.part.appearance) for program in programs]
 
-    def place(self, frame: _Shot) -> None:
+    def place(self, frame: _View) -> None:
         """Update the placement for a picture."""
         body = frame.bodies[self.part.body]
         placement = body @ self._matrix
@@ -311,7 +313,7 @@ class _Drawable:
         uniform(program, 'placement').write(self._placement)
         if 'normal_placement' in program:
             uniform(program, 'normal_placement').write(_gl(self._turn @ self._normals))
-        for place, value in self._looks[shadows_move]:
+        for place, value in self._uniforms[shadows_move]:
             place.write(value)
         if self._image is not None:
             self._image.use(0)
@@ -367,18 +369,20 @@ class _Target:
 
 
 @lru_cache(maxsize=4096)
-def _look_values(look: Look) -> dict[str, bytes]:
+def _appearance_values(appearance: Appearance) -> dict[str, bytes]:
     values = {
-        'ambient': look.ambient, 'diffuse': (*look.diffuse, look.alpha),
-        'specular': (*look.specular, look.shininess), 'emissive': look.emissive,
-        'lit': (float(look.lit),),
+        'ambient': appearance.ambient, 'diffuse': (*appearance.diffuse, appearance.alpha),
+        'specular': (*appearance.specular, appearance.shininess), 'emissive': appearance.emissive,
+        'lit': (float(appearance.lit),),
     }
     return {name: np.array(value, 'f4').tobytes() for name, value in values.items()}
 
 
-def _look_uniforms(program: moderngl.Program, look: Look) -> list[tuple[moderngl.Uniform, bytes]]:
-    return [(uniform(program, name), value) for name, value in _look_values(look).items()
-            if name in program]
+def _uniforms(
+    program: moderngl.Program, appearance: Appearance
+) -> list[tuple[moderngl.Uniform, bytes]]:
+    values = _appearance_values(appearance)
+    return [(uniform(program, name), value) for name, value in values.items() if name in program]
 
 
 def _set(program: moderngl.Program, name: str, value: object) -> None:

@@ -13,13 +13,13 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from .cameras import light_axes, seen_ball, shadow_view
+from .cameras import frustum_sphere, light_axes, shadow_view
 from .values import Lens
 
 STILL_SIZE, MOVING_SIZE = 2048, 1024  # texels along an edge
 _ROOM = 1.25  # size of the map of still bodies, relative to the view
 _CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # relative edge of the cells that share a map
-_MOST_MAPS = 4  # of still bodies, for cameras of different views
+_MAX_MAPS = 4  # of still bodies, for cameras of different views
 
 
 def uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
@@ -66,9 +66,9 @@ class Shadows:
         self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
     ) -> None:
         """Update the maps for a camera's picture."""
-        middle, radius = seen_ball(eye, lens)
+        middle, radius = frustum_sphere(eye, lens)
         if radius not in self._still:
-            if len(self._still) == _MOST_MAPS:
+            if len(self._still) == _MAX_MAPS:
                 self._still.pop(next(iter(self._still))).release()
             self._still[radius] = _Map(self._context, STILL_SIZE)
         still_map = self._still[radius]
@@ -81,7 +81,7 @@ class Shadows:
                 if np.linalg.norm(one.middle - middle) < radius + one.radius]
         self.move = bool(near)
         if near:
-            self._moving.draw(self._program, self._axes, *_ball_around(near), near)
+            self._moving.draw(self._program, self._axes, *_bounding_sphere(near), near)
         self._used = still_map, self._moving
 
     def use(self, program: moderngl.Program) -> None:
@@ -94,7 +94,7 @@ class Shadows:
                 program[f'{name}_texel'] = one.texel
 
 
-def _ball_around(casters: Sequence[Caster]) -> tuple[NDArray[Any], float]:
+def _bounding_sphere(casters: Sequence[Caster]) -> tuple[NDArray[Any], float]:
     """Return centre and radius of the bounding sphere of casters [m]."""
     middles = np.array([one.middle for one in casters])
     reach = np.array([one.radius for one in casters])[:, None]

@@ -14,7 +14,7 @@ BYTES = {RGB: 3, BGR: 3, RGB16: 6, GREY8: 1, GREY16: 2, **dict.fromkeys(BAYER, 1
 DIRECTIONAL, POINT, SPOT = range(3)
 
 
-class Look(NamedTuple):
+class Appearance(NamedTuple):
     """Material of a surface, as in fixed-function OpenGL."""
 
     ambient: Colour = (1.0, 1.0, 1.0)
@@ -34,7 +34,7 @@ class ScenePart(NamedTuple):
     mesh: str  # key of its triangles
     body: int  # row of the poses that come with each request
     matrix: bytes  # (4, 4) float64, row-major: from the mesh to the body, scale included
-    look: Look
+    appearance: Appearance
     casts_shadow: bool = True
     still: bool = False  # it seldom moves
 

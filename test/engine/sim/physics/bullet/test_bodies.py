@@ -284,11 +284,11 @@ def test_five_boxes_stand_on_each_other():
 
 def test_the_courses_obstacle_stands_and_does_not_explode():
     shape = '<origin xyz="2 0 1"/><geometry><box size="1 1 2"/></geometry>'
-    obstacle = urdf_spec(f"""<link name="my_box"><inertial><origin xyz="2 0 0"/><mass value="1"/>
+    write_error = urdf_spec(f"""<link name="my_box"><inertial><origin xyz="2 0 0"/><mass value="1"/>
       <inertia ixx="1" iyy="100" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
       <collision>{shape}</collision><visual>{shape}</visual></link>""")
     with empty_world() as world:
-        model = world.spawn(obstacle, 'my_object', Pose((1.0, 0.0, 1.0)))
+        model = world.spawn(write_error, 'my_object', Pose((1.0, 0.0, 1.0)))
         world.run(5 * SECOND)
         assert model.pose.position == pytest.approx((1.0, 0.0, 0.0), abs=0.01)
         # It still rocks: even the nearest inertia of a body is a hundred times that of such a box.

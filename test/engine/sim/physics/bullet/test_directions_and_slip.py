@@ -66,7 +66,8 @@ def test_what_slips_slides_by_its_slip_times_the_force(slip1, slip2, speed, yaw)
     with empty_world() as world:
         model = world.spawn(box(surface), 'box', Pose((0.0, 0.0, 0.1), from_rpy(0.0, 0.0, yaw)))
         for _ in range(1500):
-            model.links['l'].push((2.0 * math.cos(yaw), 2.0 * math.sin(yaw), 0.0), (0.0, 0.0, 0.0))
+            force = (2.0 * math.cos(yaw), 2.0 * math.sin(yaw), 0.0)
+            model.links['l'].apply_wrench(force, (0.0, 0.0, 0.0))
             world.run(1)
         assert math.hypot(*model.twist.linear[:2]) == pytest.approx(speed, rel=BOX_SHARE)
 
@@ -83,7 +84,7 @@ def test_what_slips_on_a_slab_does_so_whichever_of_them_was_there_first(slab_com
             world.spawn(*spawn)
         model = world.models['box']
         for _ in range(1500):
-            model.links['l'].push((2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            model.links['l'].apply_wrench((2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.run(1)
         assert model.twist.linear[0] == pytest.approx(0.04, rel=BOX_SHARE)
 
@@ -147,7 +148,7 @@ def drift(lateral, longitudinal, force, yaw):
         model.plugins[0].command(SPEED, 0.0)
         body, start = model.links['base_footprint'], None
         for step in range(2000):
-            body.push(rotate(model.pose.orientation, force), (0.0, 0.0, 0.0))
+            body.apply_wrench(rotate(model.pose.orientation, force), (0.0, 0.0, 0.0))
             world.run(1)
             start = model.pose if step == 999 else start
         x, y, _ = relative(model.pose, start).position

@@ -71,7 +71,7 @@ def test_rough_surfaces_hold_what_is_pushed_hard(mu):
         world.run(200)
         start = box.pose.position
         for _ in range(SECOND):
-            box.links['box'].push((1.4 * 2.0 * GRAVITY, 0.0, 0.0), (0.0, 0.0, 0.0))
+            box.links['box'].apply_wrench((1.4 * 2.0 * GRAVITY, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.run(1)
         assert math.dist(box.pose.position, start) < 1e-3
         assert abs(acceleration_down(math.radians(55.0), mu, mu)) < 1e-3
@@ -89,7 +89,7 @@ def test_a_box_slides_on_a_heavy_one_that_moves_by_the_lesser_mu(mu_low, mu_high
         for force, steps in ((0.9 * mu * GRAVITY, 300), (1.5 * mu * GRAVITY, 500)):
             before = high.twist.linear[0] - low.twist.linear[0]
             for _ in range(steps):
-                high.links['box'].push((force, 0.0, 0.0), (0.0, 0.0, 0.0))
+                high.links['box'].apply_wrench((force, 0.0, 0.0), (0.0, 0.0, 0.0))
                 world.run(1)
             gained = high.twist.linear[0] - low.twist.linear[0] - before
             slides = max(0.0, force - mu * GRAVITY) * steps / SECOND
@@ -111,7 +111,7 @@ def test_a_floor_can_be_slippery_and_what_comes_later_knows_it():
         boxes.append(world.spawn(urdf_spec(ball('ball', 0.05, 1.0)), 'ball', Pose((0, -2, 0.05))))
         for _ in range(SECOND):
             for box in boxes[:3]:
-                box.links['box'].push((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+                box.links['box'].apply_wrench((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.run(1)
         for box in boxes[:3]:
             assert box.twist.linear[0] == pytest.approx(3.0 - 0.2 * GRAVITY, rel=0.02)

@@ -121,16 +121,16 @@ def test_what_turns_fast_slips_is_pushed_and_runs_in_other_steps_goes_on_as_befo
         world.engine.set_slip_compliance(box.body, 'box', (1.0, 0.0, 0.0), (0.01, 0.02))
         box.set_twist(Twist((0.5, 0.5, 0.0)))
         world.engine.step(40)
-        box.links['box'].push((0.0, 0.0, 30.0), (0.0, 0.0, 0.5))
-        arm.joints['j'].push(0.5)
+        box.links['box'].apply_wrench((0.0, 0.0, 30.0), (0.0, 0.0, 0.5))
+        arm.joints['j'].apply_effort(0.5)
         snapshot = world.engine.snapshot()
         wanted = go_on(world, 400)
         for _ in range(2):
-            box.links['box'].push((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            box.links['box'].apply_wrench((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.engine.set_slip_compliance(box.body, 'box', (0.0, 1.0, 0.0), (1.0, 1.0))
             world.set_physics(PhysicsSettings(step_size=0.002, gravity=(0.0, 0.0, -3.0)))
             world.engine.step(50)
-            box.links['box'].push((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            box.links['box'].apply_wrench((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.engine.restore(snapshot)
             assert go_on(world, 400) == wanted
 
@@ -156,10 +156,10 @@ def test_a_snapshot_of_other_models_is_refused_with_a_sentence():
         world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
         with pytest.raises(SimError, match='of other models'):
             world.engine.restore(snapshot)
-        later = world.engine.snapshot()
+        strictly_after = world.engine.snapshot()
         world.reset_simulation()
         with pytest.raises(SimError, match='of other models'):
-            world.engine.restore(later)
+            world.engine.restore(strictly_after)
 
 
 def test_after_a_reset_a_world_that_was_saved_moves_as_a_new_one():

@@ -36,7 +36,7 @@ def states(spec, steps, velocity=0.0, **physics):
         model = world.spawn(spec, 'weight', HIGH)
         (joint,) = model.joints.values()
         if velocity:
-            joint.push(velocity * spec.links[0].inertial.ixx / world.physics.step_size)
+            joint.apply_effort(velocity * spec.links[0].inertial.ixx / world.physics.step_size)
         found = []
         for _ in range(steps):
             world.run(1)
@@ -143,7 +143,7 @@ def test_a_spring_works_beside_a_push_a_motor_and_after_changes():
         model = world.spawn(weight(1.0, stiffness=100.0, damping=5.0), 'weight', HIGH)
         joint = model.joint('joint')
         for _ in range(4000):
-            joint.push(20.0)
+            joint.apply_effort(20.0)
             world.run(1)
         assert joint.position == pytest.approx((20.0 - GRAVITY) / 100.0, rel=1e-3)
         model.respecify(model.spec)

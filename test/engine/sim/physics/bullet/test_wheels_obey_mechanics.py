@@ -229,7 +229,7 @@ def test_a_robot_on_its_roof_stays_there_though_its_wheels_turn(
             if not degrees:
                 push = (0.0, 0.3 * mass * GRAVITY, 0.0)
                 x, y, z = model.pose.position
-                world.engine.push(model.body, 'base', push, (0.0, 0.0, 0.0),
+                world.engine.apply_wrench(model.body, 'base', push, (0.0, 0.0, 0.0),
                                   (x, y, z - 0.4 * size))
             world.run(1)
         assert math.dist(model.pose.position, before) < 0.01

@@ -84,7 +84,8 @@ def test_nothing_in_the_world_moves_meanwhile_and_everything_goes_on_afterwards(
 def test_pushes_of_that_time_are_lost_and_do_not_add_up(world, arm):
     other = world.spawn(urdf_spec(box('box', (1.0, 1.0, 1.0), 1.0)), 'box', Pose((9.0, 0.0, 5.0)))
     world.external_forces.add(
-        other.link('box'), lambda: other.link('box').push((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), 0, -1)
+        other.link('box'),
+        lambda: other.link('box').apply_wrench((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), 0, -1)
     arm.plugin('jpt').play('world', 0, ['turn'], [((1.0,), HALF)])
     world.run(501)
     assert other.twist.linear[0] == pytest.approx(1e-3)

@@ -68,11 +68,12 @@ def seen(count):
 
 
 @pytest.mark.parametrize('made, most, said', [
-    (chain, size_limits.MAX_JOINTS, 'the links that hang together need more than 127 joints'),
+    (chain, size_limits.MAX_JOINTS, 'a kinematic tree of the model has more than 127 joints'),
     (rough, size_limits.MAX_JOINTS + 1,
-     'have 128 collisions with a surface of their own and 0 joints'),
-    (lambda count: rough(count, joints=100), 28, '28 collisions with a surface of their own and '
-     '100 joints; the physics engine holds 127 of both: give collisions of one link the same mu'),
+     'has 128 collisions with surfaces of their own and 0 joints'),
+    (lambda count: rough(count, joints=100), 28, '28 collisions with surfaces of their own and '
+     '100 joints; the physics engine supports 127 of both: give the collisions of a link the same '
+     'mu'),
     (loose, size_limits.MAX_LINKS, 'has 501 links that fixed joints do not merge; at most 500 are'),
     (seen, size_limits.MAX_SHAPES, 'has 5001 collisions and visuals; at most 5000 are accepted'),
 ])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rosbots_description.sim.physics.bullet.fast_rotation import gained_share
+from rosbots_description.sim.physics.bullet.fast_rotation import energy_growth_rate
 
 MOMENTS = (0.1, 0.2, 0.3)
 
@@ -14,13 +14,13 @@ MOMENTS = (0.1, 0.2, 0.3)
     (MOMENTS, (0.0, 0.0, 0.0)),
 ])
 def test_what_needs_no_torque_to_turn_on_gains_nothing(moments, velocity):
-    assert gained_share(moments, velocity, 1e-3) == 0.0
+    assert energy_growth_rate(moments, velocity, 1e-3) == 0.0
 
 
 def test_the_share_gained_grows_with_the_square_of_the_speed_and_with_the_step():
-    share = gained_share(MOMENTS, (3.0, 4.0, 5.0), 1e-3)
-    assert gained_share(MOMENTS, (6.0, 8.0, 10.0), 1e-3) == pytest.approx(4.0 * share)
-    assert gained_share(MOMENTS, (3.0, 4.0, 5.0), 2e-3) == pytest.approx(2.0 * share)
+    share = energy_growth_rate(MOMENTS, (3.0, 4.0, 5.0), 1e-3)
+    assert energy_growth_rate(MOMENTS, (6.0, 8.0, 10.0), 1e-3) == pytest.approx(4.0 * share)
+    assert energy_growth_rate(MOMENTS, (3.0, 4.0, 5.0), 2e-3) == pytest.approx(2.0 * share)
 
 
 def test_the_share_gained_is_that_of_a_step_of_explicit_euler():
@@ -30,4 +30,4 @@ def test_the_share_gained_is_that_of_a_step_of_explicit_euler():
     energies = [sum(i * w * w for i, w in zip(MOMENTS, v, strict=True))
                 for v in ((x, y, z), after)]
     gained = (energies[1] / energies[0] - 1.0) / dt
-    assert gained_share(MOMENTS, (x, y, z), dt) == pytest.approx(gained, rel=1e-3)
+    assert energy_growth_rate(MOMENTS, (x, y, z), dt) == pytest.approx(gained, rel=1e-3)

@@ -2,7 +2,11 @@
 
 import pytest
 
-from rosbots_description.sim.physics.bullet.friction_slip_compliance import MIN_SHARE, Touch, shares
+from rosbots_description.sim.physics.bullet.friction_slip_compliance import (
+    MIN_SCALE,
+    TyreContact,
+    slip_scales,
+)
 
 AXLE = (0.0, 1.0, 0.0)
 LOAD, LIMIT = 10.0, 8.0  # [N]
@@ -10,11 +14,11 @@ STEP = 0.001  # [s]
 
 
 def touch(force=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), load=LOAD):
-    return Touch((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), load, force, velocity, LIMIT)
+    return TyreContact((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), load, force, velocity, LIMIT)
 
 
-def held(*touches, slips=(0.01, 0.0)):
-    return shares(touches, AXLE, slips, STEP, lambda _: 1.0)
+def held(*contacts, slips=(0.01, 0.0)):
+    return slip_scales(contacts, AXLE, slips, STEP, lambda _: 1.0)
 
 
 def test_a_tyre_in_the_air_is_left_alone():
@@ -34,7 +38,7 @@ def test_a_tyre_that_holds_without_slip_lets_go_and_one_that_slides_too_fast_is_
 
 def test_friction_is_never_more_than_there_is_nor_nothing():
     assert held(touch(velocity=(0.0, 100.0, 0.0)))[0] == 1.0
-    assert held(touch())[0] == MIN_SHARE
+    assert held(touch())[0] == MIN_SCALE
 
 
 def test_without_compliance_all_of_the_friction_is_held():

@@ -13,7 +13,7 @@ def iterations_after(*motors, looks=LOOKS):
     effort = SolverEffort(told.append)
     effort.start(11)
     for _ in range(looks):
-        effort.look(motors)
+        effort.update(motors)
     return told
 
 
@@ -46,7 +46,7 @@ def test_when_all_motors_reach_their_targets_fewer_do():
     effort.start(11)
     for missed in (0.5, 0.0):
         for _ in range(LOOKS):
-            effort.look([(1.0 - missed, 1.0, 0.1, 1.0)])
+            effort.update([(1.0 - missed, 1.0, 0.1, 1.0)])
     assert told == [11, 44, 176, 44, 11]
 
 
@@ -56,7 +56,7 @@ def test_who_needs_more_iterations_gets_enough_to_miss_by_less():
     effort.start(11)
     for missed in (0.03, 0.1, 0.03):
         for _ in range(LOOKS):
-            effort.look([(1.0 - (missed if told[-1] < 176 else 0.01), 1.0, 0.1, 1.0)])
+            effort.update([(1.0 - (missed if told[-1] < 176 else 0.01), 1.0, 0.1, 1.0)])
     assert told == [11, 44, 176]
 
 
@@ -64,7 +64,7 @@ def tries(effort, told, looks, target=1.0):
     """Return how often fewer iterations are tried by a motor that needs 44."""
     before = told.count(11)
     for _ in range(looks):
-        effort.look([(0.9 * target if told[-1] < 44 else target, target, 0.1, 1.0)])
+        effort.update([(0.9 * target if told[-1] < 44 else target, target, 0.1, 1.0)])
     return told.count(11) - before
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..core import Pose
 from ..runtime import World
 from .gl import Lens
-from .render_process import UNDER_WAY, RenderedCamera, RenderError, RenderProcess
+from .render_process import MAX_PENDING, RenderedCamera, RenderError, RenderProcess
 from .scene import SceneMirror
 
 
@@ -27,34 +27,34 @@ class Picture(NamedTuple):
     depths: NDArray[Any] | None
 
 
-class Studio:
+class SceneRenderer:
     """Draws a world for its cameras; the process starts with the first picture."""
 
     def __init__(self, world: World) -> None:
         self._mirror = SceneMirror(world)
         self.process = RenderProcess(lambda key: self._mirror.meshes[key]())
 
-    def look(self) -> NDArray[Any]:
+    def update(self) -> NDArray[Any]:
         """Update the scene; return the poses of its bodies (n, 7)."""
         if self._mirror.update():
             self.process.set_scene(self._mirror.scene)
         return self._mirror.poses()
 
 
-_STUDIOS: 'weakref.WeakKeyDictionary[World, Studio]' = weakref.WeakKeyDictionary()
+_RENDERERS: 'weakref.WeakKeyDictionary[World, SceneRenderer]' = weakref.WeakKeyDictionary()
 
 
-def studio_of(world: World) -> Studio:
-    """Return the studio of a world, which is closed with the world."""
-    studio = _STUDIOS.get(world)
-    if studio is None:
-        studio = _STUDIOS[world] = Studio(world)
-        world.resources.callback(studio.process.close)
-        weakref.finalize(world, studio.process.close)  # if the world is never closed
-    return studio
+def renderer_of(world: World) -> SceneRenderer:
+    """Return the renderer of a world, which is closed with the world."""
+    renderer = _RENDERERS.get(world)
+    if renderer is None:
+        renderer = _RENDERERS[world] = SceneRenderer(world)
+        world.resources.callback(renderer.process.close)
+        weakref.finalize(world, renderer.process.close)  # if the world is never closed
+    return renderer
 
 
-class Shutter:
+class ImageCapture:
     """Takes pictures with several lenses at the same time.
 
     Pictures are drawn asynchronously: the world may continue after a request.
@@ -72,16 +72,16 @@ class Shutter:
         self._cameras.clear()
 
     @property
-    def under_way(self) -> int:
+    def pending(self) -> int:
         """Return the number of pending pictures."""
         return len(self._stamps)
 
     @property
     def is_free(self) -> bool:
         """Tell whether another picture may be requested."""
-        return len(self._stamps) < UNDER_WAY
+        return len(self._stamps) < MAX_PENDING
 
-    def press(
+    def request(
         self, lenses: Sequence[tuple[Lens, Pose]], seed: int, wants: tuple[bool, bool]
     ) -> None:
         """Request a picture of the world in its current state.
@@ -93,27 +93,27 @@ class Shutter:
         Raises:
             RenderError: drawing was given up.
         """
-        studio = studio_of(self._world)
-        bodies = studio.look()
+        renderer = renderer_of(self._world)
+        bodies = renderer.update()
         if not self._cameras:
-            self._cameras = [studio.process.camera(lens) for lens, _ in lenses]
+            self._cameras = [renderer.process.camera(lens) for lens, _ in lenses]
         for camera, (_, pose) in zip(self._cameras, lenses, strict=True):
             camera.request(np.array([*pose.position, *pose.orientation]), bodies, seed, wants)
         self._stamps.append(self._world.clock.now_ns)
 
-    def take(self, wait: bool) -> tuple[Picture, ...] | None:
+    def receive_image(self, wait: bool) -> tuple[Picture, ...] | None:
         """Return the oldest picture of each lens; None if they are pending or none was requested.
 
         Raises:
             RenderError: a picture could not be drawn.
         """
-        if not self._stamps or not all(camera.has_picture(wait) for camera in self._cameras):
+        if not self._stamps or not all(camera.has_image(wait) for camera in self._cameras):
             return None
         stamp_ns = self._stamps.popleft()
         found, faults = [], []
         for camera in self._cameras:
             try:
-                found.append(Picture(stamp_ns, *(camera.take(wait) or (None, None))))
+                found.append(Picture(stamp_ns, *(camera.receive_image(wait) or (None, None))))
             except RenderError as error:
                 faults.append(error)
         if faults:

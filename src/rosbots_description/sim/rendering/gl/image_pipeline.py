@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .values import BAYER, BGR, GREY8, GREY16, RGB16, Lens
 
 
-class Development:
+class ImagePipeline:
     """Converts drawn pixels to the picture of one camera."""
 
     def __init__(self, lens: Lens) -> None:
