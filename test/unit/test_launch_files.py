@@ -1,6 +1,7 @@
 """Every launch file loads without a master, explains its arguments, and starts what it says."""
 
 import os
+import re
 import shlex
 import sys
 from pathlib import Path
@@ -115,6 +116,23 @@ def test_spawn_calls_spawn_model_as_the_article_does(load):
     assert arguments(config, 'mybot_spawn') == (
         '-urdf -param robot_description -model rosbots -x 0 -y 0 -z 0.5 -R 0 -P 0 -Y 0')
     assert '<robotBaseFrame>base_link<' in config.params['/robot_description'].value
+
+
+@pytest.mark.parametrize('file', ['load_description', 'rviz', 'spawn', 'simulation'])
+def test_the_robot_gets_the_sensors_that_are_asked_for(load, file):
+    switches = [f'{name}:=true' for name in ('depth', 'imu', 'laser', 'bumper', 'surfaces')]
+    text = load(f'{file}.launch', 'camera:=true', 'camera_pitch:=0.5', *switches
+                ).params['/robot_description'].value
+    assert re.findall('<sensor name=".*" type="(.*)"', text) == ['depth', 'imu', 'ray', 'contact']
+    assert 'rpy="0 0.5 0"' in text
+    assert '<kp>' in text
+
+
+def test_each_argument_goes_to_the_one_of_its_name():
+    text = (ROOT / 'launch' / 'load_description.launch').read_text(encoding='utf-8')
+    passed = re.findall(r'(\w+):=\$\(arg (\w+)\)', text)
+    assert [name for name, _ in passed] == [name for _, name in passed]
+    assert {name for name, _ in passed} | {'model'} == set(re.findall('<arg name="([^"]+)"', text))
 
 
 def test_spawn_passes_every_argument_on(load):

@@ -1,6 +1,7 @@
 """The robot's xacro says what the article says, and gives the TF trees it promises."""
 
 import json
+import math
 import os
 import subprocess
 from functools import cache
@@ -132,6 +133,73 @@ def test_one_tf_tree_changes_two_parameters_and_nothing_else():
     for tree in (default, one_tree):
         tree.remove(tree.find('gazebo'))
     assert ElementTree.tostring(default) == ElementTree.tostring(one_tree)
+
+
+# Argument of the xacro -> what it adds: links, and sensors as (link, type, library).
+ADDED = {
+    'camera': ({'camera_link', 'camera_link_optical'},
+               {('camera_link', 'camera', 'libgazebo_ros_camera.so')}),
+    'imu': ({'imu_link'}, {('imu_link', 'imu', 'libgazebo_ros_imu_sensor.so')}),
+    'laser': ({'laser_link'}, {('laser_link', 'ray', 'libgazebo_ros_laser.so')}),
+    'bumper': (set(), {('base_link', 'contact', 'libgazebo_ros_bumper.so')}),
+    'surfaces': (set(), set()),
+}
+
+
+def sensors(elements: list[ElementTree.Element]) -> set:
+    return {(block.get('reference'), sensor.get('type'), sensor.find('plugin').get('filename'))
+            for block in elements for sensor in block.findall('sensor')}
+
+
+def added(**arguments: str) -> list[ElementTree.Element]:
+    """Return the elements behind those of the robot without arguments, which must be the same."""
+    plain, more = list(robot()), list(robot(**arguments))
+    for one, other in zip(plain, more, strict=False):
+        assert ElementTree.tostring(one).strip() == ElementTree.tostring(other).strip()
+    return more[len(plain):]
+
+
+@pytest.mark.parametrize('argument', ADDED)
+def test_an_argument_adds_its_sensor_and_nothing_else(argument):
+    links, expected = ADDED[argument]
+    elements = added(**{argument: 'true'})
+    new = {tag: [element for element in elements if element.tag == tag]
+           for tag in ('link', 'joint', 'gazebo')}
+    assert sum(map(len, new.values())) == len(elements) > 0
+    assert {link.get('name') for link in new['link']} == links
+    assert {joint.find('child').get('link') for joint in new['joint']} == links
+    assert {joint.get('type') for joint in new['joint']} <= {'fixed'}
+    # They have neither mass nor collisions: the robot drives as it does without them.
+    assert {part.tag for link in new['link'] for part in link} <= {'visual'}
+    assert sensors(new['gazebo']) == expected
+    assert added(**{argument: 'false'}) == []
+
+
+def test_depth_makes_the_camera_a_depth_camera():
+    assert sensors(added(camera='true', depth='true')) == {
+        ('camera_link', 'depth', 'libgazebo_ros_openni_kinect.so')}
+    assert added(depth='true') == []
+
+
+def test_the_camera_looks_down_as_far_as_is_wanted_and_its_frames_are_those_of_rep_103():
+    tree = robot(camera='true', camera_pitch='0.6')
+    assert origin(tree.find("joint[@name='camera_joint']"))['rpy'] == [0.0, 0.6, 0.0]
+    joint = tree.find("joint[@name='camera_optical_joint']")
+    assert origin(joint)['rpy'] == pytest.approx([-math.pi / 2, 0.0, -math.pi / 2])
+    # Pictures are taken where that frame is.
+    sensor = tree.find(".//sensor[@name='camera1']")
+    assert numbers(sensor.findtext('pose')) == [*origin(joint)['xyz'], 0.0, 0.0, 0.0]
+    assert sensor.findtext('plugin/frameName') == 'camera_link_optical'
+
+
+def test_surfaces_are_those_of_the_course():
+    blocks = {block.get('reference'): {child.tag: child.text for child in block}
+              for block in added(surfaces='true')}
+    tyre = {'mu1': '1.0', 'mu2': '1.0', 'kp': '1000000.0', 'kd': '100.0', 'minDepth': '0.001',
+            'maxVel': '1.0'}
+    assert blocks == {
+        'wheel_left_link': tyre, 'wheel_right_link': tyre,
+        'base_link': {'material': 'Gazebo/Blue', 'mu1': '0.3', 'mu2': '0.3'}}
 
 
 def tf_parents(tree: ElementTree.Element) -> dict:

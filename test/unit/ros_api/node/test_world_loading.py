@@ -61,7 +61,8 @@ def test_our_own_worlds_are_found_by_name(name):
 
 
 def test_all_our_own_worlds_can_be_read():
-    assert own_worlds() == [f'worlds/{name}.world' for name in ('empty', 'maze', 'room', 'shapes')]
+    assert own_worlds() == [f'worlds/{name}.world' for name in (
+        'empty', 'line', 'maze', 'room', 'rooms', 'shapes')]
     for name in own_worlds():
         assert read_world(name).faults == ()
 
