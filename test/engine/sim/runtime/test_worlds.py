@@ -24,6 +24,8 @@ OWN_WORLDS = {
     'room': ['ground_plane', 'walls', 'table', 'bookcase', 'column', 'crate_large', 'crate_small',
              'barrel', 'ball'],
     'maze': ['ground_plane', 'maze'],
+    'line': ['ground_plane', 'line'],
+    'rooms': ['ground_plane', 'walls', 'column', 'cupboard', 'crate', 'shelf'],
 }
 
 
@@ -102,6 +104,20 @@ def test_the_robot_does_not_drive_through_the_walls_of_the_maze(world):
     robot.plugins[0].command(1.0, 0.0)
     world.run(10000)  # far longer than the way to the first wall, 3 m ahead
     assert 2.0 < robot.pose.position[0] < 3.0
+
+
+def test_the_line_is_closed_and_bends_gently():
+    (_, (line, _)) = own('line').models
+    pieces = line.links[0].visuals
+    for piece, following in zip(pieces, [*pieces[1:], pieces[0]], strict=True):
+        assert line.links[0].collisions == ()
+        half, other = piece.geometry.size[0] / 2, following.geometry.size[0] / 2
+        end = compose(piece.pose, Pose((half, 0.0, 0.0))).position
+        begin = compose(following.pose, Pose((-other, 0.0, 0.0))).position
+        assert math.dist(end, begin) < 0.01
+        turn = to_rpy(following.pose.orientation)[2] - to_rpy(piece.pose.orientation)[2]
+        assert abs(math.remainder(turn, math.tau)) < math.radians(9.1)
+        assert piece.pose.position[2] + piece.geometry.size[2] / 2 == pytest.approx(0.005)
 
 
 def test_an_empty_world_file_is_read_in_a_moment():
