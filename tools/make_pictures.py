@@ -31,7 +31,8 @@ COLOURS = 256  # of a picture; so few make small files
 REFINED = 2  # times that the colours are chosen anew
 START = 60.0  # [s, wall] for a window to show all of it
 LOOK = 0.5  # [s, wall] between two looks at the screen
-STILL = 0.5  # mean difference of two looks when nothing more comes; a clock ticks on [0-255]
+STILL = 0.5  # mean difference of two looks when nothing comes; a clock ticks on [0-255]
+LOOKS = 5  # alike when nothing more comes; a first picture takes a while
 LEAST = 1000  # wide is a window [pixels]; what RViz shows while it starts is less
 FEWEST = 300  # colours with a robot in sight
 # Launch files to open one after the other, each with the text after which the next may come.
@@ -43,6 +44,7 @@ WINDOWS: dict[str, list[tuple[list[str], str | None]]] = {
         (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
          'Successfully spawned entity'),
     ],
+    'see.png': [(['rosbots_description', 'see.launch'], 'pictures are drawn by')],
 }
 DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
 
@@ -88,12 +90,14 @@ def window(pixels: np.ndarray) -> np.ndarray:
 
 def steady(file: Path) -> np.ndarray:
     """Return the window once all of it is there and nothing moves any more."""
-    deadline, before = time.monotonic() + START, None
+    deadline, before, alike = time.monotonic() + START, None, 1
     while time.monotonic() < deadline:
         now = window(screen(file))
-        if (before is not None and now.shape == before.shape and now.shape[1] > LEAST
-                and len(np.unique(now.reshape(-1, 3), axis=0)) >= FEWEST
-                and np.abs(now.astype(float) - before).mean() < STILL):
+        same = (before is not None and now.shape == before.shape
+                and np.abs(now.astype(float) - before).mean() < STILL)
+        alike = alike + 1 if same else 1
+        if (alike >= LOOKS and now.shape[1] > LEAST
+                and len(np.unique(now.reshape(-1, 3), axis=0)) >= FEWEST):
             return now
         before = now
         time.sleep(LOOK)

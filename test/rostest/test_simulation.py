@@ -6,11 +6,24 @@ import unittest
 
 import rospy
 import rostest
+from gazebo_msgs.msg import ContactsState
 from geometry_msgs.msg import Twist
+from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan, PointCloud2
 from simulator import DEADLINE, wait_until
 from tf2_msgs.msg import TFMessage
 
-FIXED_FRAMES = {'base_link', 'base_second_link', 'mcu_link', 'batery_link', 'caster_back_link'}
+SENSORS = {  # topic: type, frame
+    '/scan': (LaserScan, 'laser_link'),
+    '/imu/data': (Imu, 'imu_link'),
+    '/bumper_states': (ContactsState, 'base_link'),
+    '/camera1/image_raw': (Image, 'camera_link_optical'),
+    '/camera1/camera_info': (CameraInfo, 'camera_link_optical'),
+    '/camera1/depth/image_raw': (Image, 'camera_link_optical'),
+    '/camera1/depth/camera_info': (CameraInfo, 'camera_link_optical'),
+    '/camera1/depth/points': (PointCloud2, 'camera_link_optical'),
+}
+FIXED_FRAMES = {'base_link', 'base_second_link', 'mcu_link', 'batery_link', 'caster_back_link',
+                *(frame for _, frame in SENSORS.values())}
 START = 30.0  # [s, wall] for simulator, spawn and robot_state_publisher
 
 
@@ -43,6 +56,20 @@ class FramesTest(unittest.TestCase):
         self.assertEqual(parents['base_link'], {'base_footprint'})
         roots = set().union(*parents.values()) - set(parents)
         self.assertEqual(roots, {'odom'})
+
+    def test_every_sensor_publishes_in_its_frame(self):
+        found = {}
+
+        def keep(message, topic):
+            found[topic] = message
+
+        subscribers = [rospy.Subscriber(topic, message_class, keep, topic, queue_size=1)
+                       for topic, (message_class, _) in SENSORS.items()]
+        wait_until(lambda: len(found) == len(SENSORS), 'all sensors', START)
+        for subscriber in subscribers:
+            subscriber.unregister()
+        self.assertEqual({topic: message.header.frame_id for topic, message in found.items()},
+                         {topic: frame for topic, (_, frame) in SENSORS.items()})
 
 
 if __name__ == '__main__':

@@ -8,6 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+import yaml
 from roslaunch.arg_dump import dump_args
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.xmlloader import XmlLoader
@@ -149,6 +150,22 @@ def test_simulation_has_one_tf_tree_and_no_rviz_unless_wanted(load):
     assert '<robotBaseFrame>base_footprint<' in config.params['/robot_description'].value
     assert ' -x -1 ' in arguments(config, 'mybot_spawn')
     assert 'rviz' in nodes(load('simulation.launch', 'rviz:=true'))
+
+
+def test_see_shows_what_all_sensors_sense(load):
+    config = load('see.launch')
+    assert set(nodes(config)) == {'gazebo', 'mybot_spawn', 'robot_state_publisher', 'rviz'}
+    assert arguments(config, 'gazebo').endswith(' "worlds/rooms.world"')
+    description = config.params['/robot_description'].value
+    assert re.findall('<sensor name=".*" type="(.*)"', description) == [
+        'depth', 'imu', 'ray', 'contact']
+    file = Path(arguments(config, 'rviz').split("'")[1])
+    view = yaml.safe_load(file.read_text(encoding='utf-8'))['Visualization Manager']
+    topics = {display['Class']: display.get('Topic', display.get('Image Topic'))
+              for display in view['Displays']}
+    assert topics == dict.fromkeys(['rviz/Grid', 'rviz/RobotModel', 'rviz/TF']) | {
+        'rviz/LaserScan': 'scan', 'rviz/PointCloud2': 'camera1/depth/points',
+        'rviz/Image': 'camera1/image_raw'}
 
 
 def test_simulation_hands_its_arguments_to_the_simulator(load):
