@@ -1,5 +1,6 @@
 """Contacts and ray casts in one PyBullet world, with the collision names of the ModelSpec."""
 
+import itertools
 import math
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -16,6 +17,7 @@ from .client import pybullet
 from .generated_urdf import MeshFile
 
 _MAX_RAYS = 8192  # in one call; PyBullet accepts 16384, but drops the last one
+_MARGIN = 0.02  # by which a contact point may be beside the surface of its shape [m]
 
 
 class ContactQueries:
@@ -33,6 +35,7 @@ class ContactQueries:
         self._client, self._link_pose, self._mesh_file = client, link_pose, mesh_file
         self._owners: dict[Place, tuple[Body, str]] = {}
         self._triangles: dict[Mesh, FloatArray] = {}
+        self._bounds: dict[Place, FloatArray] = {}
 
     def add(self, body: Body) -> None:
         """Register the names of a body."""
@@ -45,11 +48,13 @@ class ContactQueries:
         for places in body.surfaces.values():
             for place in places:
                 self._owners.pop(place, None)
+                self._bounds.pop(place, None)
 
     def clear(self) -> None:
         """Forget all bodies."""
         self._owners.clear()
         self._triangles.clear()
+        self._bounds.clear()
 
     def contacts(self, body: Body, link: str | None) -> list[Contact]:
         """Return contacts; see `PhysicsEngine.contacts`."""
@@ -103,8 +108,37 @@ class ContactQueries:
             return CollisionName(body, link, shapes[0].name)
         pose = self._link_pose(body, link)
         local = rotate(conjugate(pose.orientation), subtract(position, pose.position))
-        nearest = min(shapes, key=lambda shape: abs(self._distance(shape, local)))
-        return CollisionName(body, link, nearest.name)
+        # Distances to meshes are costly, so they are left to points that several boxes contain.
+        if place not in self._bounds:
+            self._bounds[place] = np.array([self._bounding_box(shape) for shape in shapes])
+        low, high = self._bounds[place].transpose(1, 0, 2)
+        beside = np.maximum(np.maximum(low - local, np.array(local) - high), 0.0)
+        distances = np.sqrt((beside * beside).sum(axis=1))
+        near = [shapes[k] for k in np.flatnonzero(distances <= distances.min() + _MARGIN)]
+        if len(near) > 1:
+            near.sort(key=lambda shape: abs(self._distance(shape, local)))
+        return CollisionName(body, link, near[0].name)
+
+    def _bounding_box(self, shape: Collision) -> FloatArray:
+        """Return the lowest and highest corner of a shape in the link's frame, shape (2, 3) [m]."""
+        match shape.geometry:
+            case Plane():
+                return np.array([[-math.inf] * 3, [math.inf] * 3])
+            case Mesh() as mesh:
+                corners = self._triangles_of(mesh).reshape(-1, 3)
+                low, high = corners.min(axis=0), corners.max(axis=0)
+            case Sphere(radius):
+                high = np.full(3, radius)
+                low = -high
+            case Box(size):
+                high = np.array(size) / 2.0
+                low = -high
+            case Cylinder(radius, length):
+                high = np.array([radius, radius, length / 2.0])
+                low = -high
+        turned = [rotate(shape.pose.orientation, corner)
+                  for corner in itertools.product(*zip(low, high, strict=True))]
+        return np.add([np.min(turned, axis=0), np.max(turned, axis=0)], shape.pose.position)
 
     def _distance(self, shape: Collision, point: Vector) -> float:
         """Return the signed distance of a point in the link's frame to a shape's surface [m]."""
@@ -120,10 +154,14 @@ class ContactQueries:
             case Plane(normal):
                 return sum(a * b for a, b in zip(local, normal, strict=True))
             case Mesh() as mesh:
-                if mesh not in self._triangles:
-                    with open(self._mesh_file(mesh), 'rb') as file:
-                        self._triangles[mesh] = read_stl(file.read())
-                return _to_triangles(self._triangles[mesh], np.array(local))
+                return _to_triangles(self._triangles_of(mesh), np.array(local))
+
+    def _triangles_of(self, mesh: Mesh) -> FloatArray:
+        """Return the n triangles of a mesh, shape (n, 3, 3) [m]."""
+        if mesh not in self._triangles:
+            with open(self._mesh_file(mesh), 'rb') as file:
+                self._triangles[mesh] = read_stl(file.read())
+        return self._triangles[mesh]
 
 
 def _outside(reaches: Iterable[float]) -> float:
