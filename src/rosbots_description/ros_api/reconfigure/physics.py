@@ -11,9 +11,6 @@ Parameters:
 
 import contextlib
 import logging
-from collections.abc import Sequence
-from types import SimpleNamespace
-from typing import NamedTuple
 
 from dynamic_reconfigure.encoding import Config, encode_config
 from dynamic_reconfigure.server import Server as ReconfigureServer
@@ -29,21 +26,9 @@ from geometry_msgs.msg import Vector3
 from ..server import Server
 from ..services import SERVICES, respond
 from ..transport import NO_MASTER, write_parameters
+from .parameters import Parameter, description
 
 logger = logging.getLogger(__name__)
-
-_EVERYTHING = 1  # the level of every parameter, as upstream
-
-
-class Parameter(NamedTuple):
-    """A setting as dynamic_reconfigure describes it; its type is that of the default."""
-
-    name: str
-    default: float | int | bool
-    minimum: float | int | bool
-    maximum: float | int | bool
-    description: str
-
 
 PARAMETERS = (
     Parameter('time_step', 0.001, 0.0, 10.0, 'simulated time of one step [s]'),
@@ -62,7 +47,6 @@ PARAMETERS = (
     Parameter('contact_max_correcting_vel', 100.0, 0.0, 1e7, 'kept, without effect here [m/s]'),
     Parameter('max_contacts', 100, 0, 10_000_000, 'kept, without effect here'),
 )
-_TYPES = {float: 'double', int: 'int', bool: 'bool'}
 
 
 def advertise_reconfigure(server: Server) -> None:
@@ -159,23 +143,4 @@ def _set_request(wanted: dict[str, float | int | bool]) -> SetPhysicsPropertiesR
         max_update_rate=wanted['max_update_rate'],
         gravity=Vector3(wanted['gravity_x'], wanted['gravity_y'], wanted['gravity_z']),
         ode_config=ODEPhysics(**{field: wanted[field] for field in ODEPhysics.__slots__}),
-    )
-
-
-def description(parameters: Sequence[Parameter]) -> SimpleNamespace:
-    """Return the description as dynamic_reconfigure's generator writes it into a module."""
-    return SimpleNamespace(
-        defaults={p.name: p.default for p in parameters},
-        min={p.name: p.minimum for p in parameters},
-        max={p.name: p.maximum for p in parameters},
-        config_description={
-            'name': 'Default', 'type': '', 'id': 0, 'parent': 0, 'state': True, 'groups': [],
-            'parameters': [
-                {
-                    'name': p.name, 'type': _TYPES[type(p.default)], 'level': _EVERYTHING,
-                    'description': p.description, 'edit_method': '',
-                }
-                for p in parameters
-            ],
-        },
     )

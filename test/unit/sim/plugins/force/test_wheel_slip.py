@@ -77,7 +77,7 @@ def test_compliances_can_be_changed_for_all_wheels_and_negative_ones_leave_them(
 
 
 def test_dynamic_reconfigure_hands_its_numbers_to_the_plugin(monkeypatch):
-    monkeypatch.setattr(wheel_slip.ReconfigureServer, '__init__',
+    monkeypatch.setattr(wheel_slip.PluginReconfigure, '__init__',
                         lambda self, *_: setattr(self, 'mutex', threading.Lock()))
     plugin = load(wheel())
     server = wheel_slip.SlipReconfigure(plugin, lambda command: command())
