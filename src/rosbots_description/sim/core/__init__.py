@@ -23,6 +23,7 @@ from .messages import (
     source_of,
     suggestion,
 )
+from .numbers import parse_number, parse_numbers
 from .transforms import (
     ALONG,
     IDENTITY,
@@ -98,6 +99,8 @@ __all__ = [
     'note',
     'one_line',
     'owner',
+    'parse_number',
+    'parse_numbers',
     'plain_text',
     'relative',
     'rotate',

@@ -1,11 +1,10 @@
 """Typed reading of a plugin's tags, with upstream's defaults and upstream's warnings."""
 
 import logging
-import math
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..core import MIN_UPDATE_RATE, PluginError, Vector
+from ..core import MIN_UPDATE_RATE, PluginError, Vector, parse_number
 from ..description import Element
 
 logger = logging.getLogger(__name__)
@@ -134,11 +133,8 @@ class Params:
         return value
 
     def _number(self, tag: str, text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
+        value = parse_number(text)
+        if value is None:
             raise PluginError(f"{self.prefix}<{tag}> is '{text}'; it takes a finite number")
         return value
 

@@ -349,14 +349,9 @@ class World:
         if cls is None:  # nobody has loaded any sensors
             return
         sensor = cls(self, link, spec)
-        try:
-            sensor.start()
-        except SimError as error:
-            logger.error('%s: %s; the model is spawned without it', where, error)
-            model.left_out.append(called)
+        if not self._start(model, sensor, where, called):
             return
         model.sensors.append(sensor)
-        self.schedule.add(sensor)
         for inner in spec.plugins:
             plugin_cls = sensor_plugin_class(inner.filename)
             plugin = None if plugin_cls is None else plugin_cls(sensor, inner)
@@ -374,15 +369,19 @@ class World:
             logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
                        where, library_remark(spec.filename), PAGE)
             model.left_out.append(called)
-            return
+        elif self._start(model, plugin, where, called):
+            model.plugins.append(plugin)
+
+    def _start(self, model: Model, part: ModelPart, where: str, called: str) -> bool:
+        """Start and schedule a plugin or sensor; after an error the model is spawned without it."""
         try:
-            plugin.start()
+            part.start()
         except SimError as error:
             logger.error('%s: %s; the model is spawned without it', where, error)
             model.left_out.append(called)
-            return
-        model.plugins.append(plugin)
-        self.schedule.add(plugin)
+            return False
+        self.schedule.add(part)
+        return True
 
     def _parts(self) -> Iterator[ModelPart]:
         for model in self.models.values():

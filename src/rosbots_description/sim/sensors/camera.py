@@ -4,7 +4,7 @@ import logging
 import math
 from typing import NamedTuple
 
-from ..core import PluginError, Pose, compose, from_rpy
+from ..core import PluginError, Pose, compose, from_rpy, parse_numbers
 from ..description import Element
 from ..plugin_registry import register_sensor
 from ..rendering import ImageCapture, Lens, NoRendererError, Picture, RenderError
@@ -206,13 +206,9 @@ class DepthSensor(CameraSensor):
     has_depth = True
 
 
-def _numbers(element: Element, size: int) -> list[float]:
-    words = element.text.split()
-    try:
-        values = [float(word) for word in words]
-    except ValueError:
-        values = []
-    if len(values) != size or not all(map(math.isfinite, values)):
+def _numbers(element: Element, size: int) -> tuple[float, ...]:
+    values = parse_numbers(element.text, size)
+    if values is None:
         raise PluginError(f"line {element.line}: <{element.tag}> is '{element.text}'; it takes "
                           f'{size} finite numbers')
     return values

@@ -1,8 +1,6 @@
 """Reads numbers from the elements of a <sensor>."""
 
-import math
-
-from ..core import PluginError
+from ..core import PluginError, parse_number
 from ..description import Element
 
 
@@ -23,11 +21,8 @@ def number(element: Element | None, path: str, default: float) -> float:
     if child is None:
         return default
     text = child.attributes.get('value') or child.text
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    value = parse_number(text)
+    if value is None:
         raise PluginError(f"line {child.line}: <{child.tag}> is '{text}'; it takes a finite number")
     return value
 

@@ -3,9 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ...core import IDENTITY, Pose, as_vector, compose, from_rpy, relative, to_rpy
+from ...core import IDENTITY, Pose, as_vector, compose, from_rpy, parse_numbers, relative, to_rpy
 from ...description import Element, SensorSpec
-from ..xml import parse_numbers
 
 
 def move_part(element: Element, frame: Pose) -> Element:

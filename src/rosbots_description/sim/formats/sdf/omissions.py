@@ -6,8 +6,8 @@ from itertools import islice
 
 from lxml import etree
 
-from ...core import MAX_NOTES, line_of, location, shortened
-from ..xml import LeftOut, parse_numbers, scalar, tag_of
+from ...core import MAX_NOTES, line_of, location, parse_numbers, shortened
+from ..xml import LeftOut, scalar, tag_of
 
 logger = logging.getLogger(__name__)
 

@@ -2,8 +2,8 @@
 
 from lxml import etree
 
-from ...core import line_of, shortened
-from ..xml import parse_numbers, scalar
+from ...core import line_of, parse_numbers, shortened
+from ..xml import scalar
 
 _NUMBERS = 6  # x y z roll pitch yaw
 _FOREIGN = ('plugin',)  # their content is interpreted by their readers

@@ -22,6 +22,7 @@ from ...core import (
     line_of,
     location,
     note,
+    parse_number,
     shortened,
     suggestion,
 )
@@ -44,7 +45,6 @@ from ..xml import (
     LeftOut,
     boolean,
     is_endless,
-    parse_numbers,
     read_sensor,
     require_damping,
     scalar,
@@ -133,7 +133,7 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
     Examples are '0.5;' and '0.5 0.5'.
     """
     for child in block:
-        if child.tag not in _NUMBER_TAGS or parse_numbers(scalar(child), 1) is not None:
+        if child.tag not in _NUMBER_TAGS or parse_number(scalar(child)) is not None:
             continue
         found = _LEADING_NUMBER.match(scalar(child))
         if found and not is_endless(child):

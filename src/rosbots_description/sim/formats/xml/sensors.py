@@ -1,13 +1,20 @@
 """Reads <sensor> elements, which URDF and SDF share."""
 
-import math
 from collections.abc import Callable
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, from_rpy, location, shortened
+from ...core import (
+    IDENTITY,
+    Pose,
+    from_rpy,
+    location,
+    parse_number,
+    parse_numbers,
+    shortened,
+)
 from ...description import PluginSpec, SensorSpec
-from .values import boolean, parse_numbers, scalar, to_element
+from .values import boolean, scalar, to_element
 
 Complain = Callable[[str], object]
 
@@ -60,11 +67,8 @@ def _rate(element: etree._Element, complain: Complain) -> float:
     child = element.find('update_rate')
     if child is None:
         return 0.0
-    try:
-        rate = float(scalar(child))
-    except ValueError:
-        rate = math.nan
-    if not math.isfinite(rate):
+    rate = parse_number(scalar(child))
+    if rate is None:
         complain(f"{location(child)}: <update_rate> is '{shortened(scalar(child), 60)}'; it takes "
                  'a finite number [Hz]. The sensor measures in every step')
         return 0.0

@@ -20,6 +20,7 @@ from ...core import (
     as_vector,
     fault,
     from_rpy,
+    parse_numbers,
 )
 from ...description import Element
 
@@ -198,18 +199,6 @@ def require_damping(element: etree._Element, value: float) -> None:
             f'<{tag_of(element)}> is {value:g}; damping must be 0 to '
             f'{MAX_DAMPING:g}',
         )
-
-
-def parse_numbers(text: str, count: int) -> tuple[float, ...] | None:
-    """Return `count` finite numbers separated by blanks, or None for any other text."""
-    parts = text.split()
-    if len(parts) != count or '_' in text:
-        return None
-    try:
-        values = tuple(float(part) for part in parts)
-    except ValueError:
-        return None
-    return values if all(math.isfinite(value) for value in values) else None
 
 
 def scalar(element: etree._Element) -> str:

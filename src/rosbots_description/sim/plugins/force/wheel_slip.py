@@ -6,11 +6,10 @@ compliance along its axle and the longitudinal one ahead.
 """
 
 import logging
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...core import PluginError
+from ...core import PluginError, parse_number
 from ...description import Element
 from ...plugin_registry import register
 from ..base import PeriodicPlugin
@@ -97,8 +96,9 @@ class WheelSlip(PeriodicPlugin):
             if value <= 0.0:
                 raise PluginError(f"<wheel link_name='{name}'>: <{tag}> must be above 0")
         if not link.can_slip(joint.spec.axis_in_child):
-            raise PluginError(f"<wheel link_name='{name}'>: its axle is no principal axis of its "
-                              'inertia, and the engine can weaken friction along these alone')
+            raise PluginError(
+                f"<wheel link_name='{name}'>: its axle is no principal axis of its inertia, and "
+                'the engine can scale friction along these axes only')
         lateral, longitudinal = (max(0.0, numbers[tag]) for tag in NUMBERS[:2])
         return SlippingWheel(joint, lateral, longitudinal, numbers['wheel_normal_force'], radius)
 
@@ -107,11 +107,8 @@ def _number(element: Element, name: str, tag: str) -> float:
     child = element.child(tag)
     if child is None:
         return 0.0
-    try:
-        value = float(child.text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    value = parse_number(child.text)
+    if value is None:
         raise PluginError(
             f"<wheel link_name='{name}'>: <{tag}> is '{child.text}'; it takes a finite number")
     return value
