@@ -29,7 +29,7 @@ def digest(world, steps=1500, chunk=70):
             found.update(repr((world.time, model.state(), model.joint_states)).encode())
             for plugin in model.plugins:
                 for output in plugin.outputs.values():
-                    found.update(repr(output.kept).encode())
+                    found.update(repr(output.latched).encode())
     return found.hexdigest()
 
 

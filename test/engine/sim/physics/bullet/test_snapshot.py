@@ -179,9 +179,9 @@ def test_snapshots_that_nobody_holds_are_freed():
     with empty_world() as world:
         for _ in range(20):
             snapshot = world.engine.snapshot()
-        assert len(world.engine._snapshots._kept) == 1
+        assert len(world.engine._snapshots._states) == 1
         del snapshot
-        assert not world.engine._snapshots._kept
+        assert not world.engine._snapshots._states
 
 
 def test_a_restore_takes_some_steps_time():
