@@ -2,25 +2,20 @@
 
 import copy
 import math
-from collections import defaultdict
 from types import SimpleNamespace
-
-import numpy as np
 
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Twist, compose
 from rosbots_description.sim.physics.compiled_model import CompiledModel
-from rosbots_description.sim.physics.engine import JointState, Motion, RayHits, Wrench
-
-NO_WRENCH = Wrench((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+from rosbots_description.sim.physics.engine import JointState, Motion, PhysicsEngine
 
 
-class FakeEngine:
+class FakeEngine(PhysicsEngine):
     """Takes the place of an engine in a world; all its state is that of the bodies it made.
 
-    A body has `spec`, `pose`, `twist`, and by the name of a joint `state` (position and velocity)
-    and `reactions`, which a test may change, as well as what the engine says is there: `touching`,
-    by link, and `ray_hits`.
+    A body has `spec`, `pose`, `twist`, and by the name of a joint `state` (position and velocity),
+    which a test may change. Forces have no effect, and nothing touches. Methods that only command
+    are those of the protocol, which do nothing.
     """
 
     needs_rebuild = False
@@ -29,31 +24,23 @@ class FakeEngine:
         self.steps = []  # how many each call of `step` has made
         self.slips = {}  # by link
         self.rigid = set()  # links that cannot slip
-        self.pushes = []  # in the last step, and for the next one
         self.bodies = []
-        self.touching = defaultdict(list)
-        self.ray_hits = lambda starts, _: RayHits(np.full(len(starts), math.inf), ())
         self.apply(physics)
 
     def apply(self, physics):
         self.step_size = physics.step_size
-
-    def enable(self, enabled):
-        self.enabled = enabled
 
     def compile(self, spec):
         return CompiledModel(spec, (), 0)
 
     def add(self, model, pose):
         spec, root = model.spec, model.spec.links[0].name
-        body = SimpleNamespace(
-            spec=spec, pose=pose, twist=Twist(), roots=[root],
+        names = [joint.name for joint in spec.joints]
+        self.bodies.append(SimpleNamespace(
+            spec=spec, pose=pose, twist=Twist(), roots=[root], joints=set(names),
             fixed_roots={root} if spec.static else set(),
-            joints={joint.name for joint in spec.joints}, state={}, motors={}, reactions={})
-        for joint in spec.joints:
-            body.state[joint.name], body.motors[joint.name] = [0.0, 0.0], (0.0, 0.0)
-        self.bodies.append(body)
-        return body
+            state={name: [0.0, 0.0] for name in names}, motors=dict.fromkeys(names, (0.0, 0.0))))
+        return self.bodies[-1]
 
     def remove(self, body):
         self.bodies.remove(body)
@@ -61,16 +48,11 @@ class FakeEngine:
     def reset(self):
         self.bodies.clear()
 
-    def close(self):
-        self.reset()
-
     def step(self, steps):
         self.steps.append(steps)
-        self.pushes.clear()
-        for body in self.bodies:
-            for state in body.state.values():
-                for _ in range(steps):
-                    state[0] += state[1] * self.step_size
+        for state in [state for body in self.bodies for state in body.state.values()]:
+            for _ in range(steps):
+                state[0] += state[1] * self.step_size
 
     def overlap(self, one, other):
         return 0.0
@@ -105,10 +87,10 @@ class FakeEngine:
     def set_root_poses(self, body, poses):
         (body.pose,) = poses.values()
 
-    def set_root_twist(self, body, link, twist):
+    def set_twist(self, body, twist):
         body.twist = twist
 
-    def set_twist(self, body, twist):
+    def set_root_twist(self, body, link, twist):
         body.twist = twist
 
     def set_joint_position(self, body, joint, position, velocity=0.0):
@@ -120,32 +102,11 @@ class FakeEngine:
     def set_joint_motor(self, body, joint, velocity, effort):
         body.motors[joint], body.state[joint][1] = (velocity, effort), velocity
 
-    def apply_wrench(self, body, link, force, torque, place=None):
-        self.pushes.append((link, force, torque, place))
-
-    def apply_joint_effort(self, body, joint, effort):
-        self.pushes.append((joint, effort))
-
     def can_slip(self, body, link, axis):
         return link not in self.rigid
 
     def set_slip_compliance(self, body, link, axis, compliances):
         self.slips[link] = compliances
-
-    def contacts(self, body, link=None):
-        links = [link] if link else [one.name for one in body.spec.links]
-        return [contact for name in links for contact in self.touching[name]]
-
-    def cast_rays(self, starts, ends, named=False):
-        return self.ray_hits(starts, ends)
-
-    def measure_reaction(self, body, joint, wanted=True):
-        body.reactions = {**body.reactions, joint: NO_WRENCH}
-        if not wanted:
-            del body.reactions[joint]
-
-    def joint_reaction(self, body, joint):
-        return body.reactions.get(joint, NO_WRENCH)
 
     def snapshot(self):
         return [(body, copy.deepcopy(self.motion(body))) for body in self.bodies]
