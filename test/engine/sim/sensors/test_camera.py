@@ -13,10 +13,12 @@ from contextlib import closing
 import numpy as np
 import pytest
 from PIL import Image
+from sensor_msgs.msg import RegionOfInterest
 from support import robot_spec
 from support.pictures import FILES, recorded_picture, recorded_world, spawn_robot
 from support.sensing import recordings
 
+from rosbots_description.ros_api.adapters.cameras import info_message
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.public.world import World
 from rosbots_description.sim.rendering.image_capture import renderer_of
@@ -145,13 +147,29 @@ def test_noise_has_the_deviation_that_was_asked_for_and_repeats_with_the_step(sc
 def test_camera_info_is_the_recorded_one(scene, name):
     recorded = INFOS[name]
     _, camera = spawn_robot(scene, recorded['robot'])
-    info = plugin_of(camera).channels[0].info
-    assert (info.width, info.height, info.model, info.frame) == (
-        recorded['width'], recorded['height'], recorded['distortion_model'], recorded['frame_id'])
-    for ours, theirs in ((info.distortion, 'D'), (info.intrinsics, 'K'),
-                         (info.rectification, 'R'), (info.projection, 'P')):
-        assert ours == pytest.approx(recorded[theirs], rel=1e-7)
+    plugin, infos = plugin_of(camera), []
+    plugin.outputs[recorded['output']].connect(infos.append)
+    plugin.take(camera.read())
+    message, expected = info_message(infos[0]), recorded['message']
+    for field in ('width', 'height', 'distortion_model'):
+        assert getattr(message, field) == expected[field]
+    for field in 'DKRP':
+        numbers = getattr(message, field)
+        assert list(numbers) == pytest.approx(expected[field], rel=1e-7)
+        assert np.array_equal(np.signbit(numbers), np.signbit(expected[field]))  # P has a -0
+    assert message.header.frame_id == expected['frame_id']
+    assert (message.binning_x, message.binning_y, message.roi) == (0, 0, RegionOfInterest())
     assert camera.cameras[0].encoding == recorded['encoding']
+
+
+def test_numbers_have_six_digits_as_gazebos_sensors_read_them():
+    """Known to all who print a camera_info: 1.3962634 rad and 800 pixels make 476.7030836."""
+    with closing(World.empty()) as world:
+        camera = world.spawn(
+            '<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" type="camera">'
+            '<camera><horizontal_fov>1.3962634</horizontal_fov><image><width>800</width>'
+            '<height>800</height></image></camera></sensor></link></model></sdf>', 'm').sensors[0]
+    assert camera.cameras[0].lens.focal_length == pytest.approx(476.7030836014194, abs=1e-12)
 
 
 def test_depths_are_the_recorded_ones(scene):

@@ -54,6 +54,12 @@ def test_a_scan_is_the_recorded_one(name):
         assert getattr(scan, tag) == pytest.approx(message[tag], rel=1e-6)
 
 
+def test_angles_have_six_digits_as_gazebos_sensors_read_them(scene):
+    sensor = scene.spawn(robot_with(min_angle=-1.570796, max_angle=1.570796)).sensors[0]
+    assert np.float32(sensor.read().angle_min) == np.float32(-1.57079994678)
+    assert sensor.read().angle_max == 1.5708
+
+
 def test_what_moves_is_seen_where_it_is_at_the_end_of_the_step(scene):
     robot = scene.spawn(ROBOT)
     ball = scene.spawn('<sdf version="1.6"><model name="ball"><link name="l"><gravity>0</gravity>'
