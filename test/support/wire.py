@@ -45,7 +45,7 @@ class Topic:
     """What was published on one topic is in `sent`, once it has a reader."""
 
     def __init__(self, message_class, options):
-        self.options, self.sent, self._class = options, [], message_class
+        self.options, self.sent, self.message_class = options, [], message_class
         self.impl = SimpleNamespace(
             connections=[], subscriber_listeners=[], seq=0, message_data_sent=0)
 
@@ -70,4 +70,4 @@ class Topic:
     def _take(self, data):
         (size,) = struct.unpack_from('<I', data)
         assert len(data) == size + 4
-        self.sent.append(self._class().deserialize(data[4:]))
+        self.sent.append(self.message_class().deserialize(data[4:]))
