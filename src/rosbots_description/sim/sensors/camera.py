@@ -27,11 +27,7 @@ _DISTORTION = ('k1', 'k2', 'k3', 'p1', 'p2')
 
 
 class SensedCamera(NamedTuple):
-    """One <camera>: name, pose in the sensor's frame, lens, and published encoding.
-
-    If the format is unknown, the encoding is wrong, as in Gazebo: pixels are red, green, blue, but
-    published as bgr8.
-    """
+    """One <camera>: name, pose in the sensor's frame, lens, and published encoding."""
 
     name: str
     pose: Pose
@@ -173,18 +169,19 @@ class CameraSensor(Sensor):
         encoding = _ENCODINGS.get(written)
         if encoding is None:
             logger.error(
-                "model '%s', %s: <format> '%s' is unknown; pixels are red, green, blue and are "
-                'called bgr8, as in Gazebo', self.model.name, self.called, written)
+                "model '%s', %s: <format> '%s' is unknown; pictures are in bgr8, as in Gazebo; "
+                'B8G8R8 and R8G8B8 are known', self.model.name, self.called, written)
+            encoding = 'bgr8'
         k1, k2, k3, p1, p2 = (
             number(element, f'distortion/{name}', 0.0) for name in _DISTORTION)
         noise = read_noise(element.child('noise'))
         lens = Lens(
-            width, height, field, near, far, encoding or 'rgb8',
+            width, height, field, near, far, encoding,
             (k1, k2, k3, p1, p2), _pair(child_at(element, 'distortion/center'), (0.5, 0.5)),
             k1 < 0.0, noise.mean, noise.deviation)
         pose = element.child('pose')
         return SensedCamera(element.attributes.get('name', ''),
-                            Pose() if pose is None else _pose(pose), lens, encoding or 'bgr8')
+                            Pose() if pose is None else _pose(pose), lens, encoding)
 
 
 @register_sensor('multicamera')

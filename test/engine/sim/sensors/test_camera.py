@@ -16,7 +16,7 @@ from PIL import Image
 from sensor_msgs.msg import RegionOfInterest
 from support import robot_spec
 from support.pictures import FILES, recorded_picture, recorded_world, spawn_robot
-from support.sensing import recordings
+from support.sensing import ROBOTS, recordings
 
 from rosbots_description.ros_api.adapters.cameras import info_message
 from rosbots_description.sim.core.transforms import Pose
@@ -349,11 +349,20 @@ def test_a_robot_may_go_while_its_picture_is_under_way(scene):
     assert camera.read().pixels.shape == (480, 640, 3)
 
 
-def test_an_unknown_format_is_red_green_blue_and_called_bgr8(scene, caplog):
-    _, camera = spawn_robot(scene, 'camera_BGR8')
-    assert "<format> 'BGR8' is unknown" in caplog.text
-    away = np.abs(camera.read().pixels - recorded_picture('camera_320')).max(axis=2)
+@pytest.mark.parametrize('robot', ['camera_B8G8R8', 'camera_BGR8'])
+def test_the_bytes_of_bgr8_are_in_its_order(scene, robot):
+    """The recorded picture of each, decoded as bgr8, is that of the camera in rgb8."""
+    text = (ROBOTS / 'camera_BGR8.urdf').read_text(encoding='utf-8')
+    camera = scene.spawn(text.replace('BGR8', robot.removeprefix('camera_'))).sensors[0]
+    seen = camera.read().pixels[:, :, ::-1].astype(int)
+    away = np.abs(seen - recorded_picture('camera_320')).max(axis=2)
     assert (away > LEVELS).mean() < EDGES
+    assert camera.cameras[0].encoding == 'bgr8'
+
+
+def test_an_unknown_format_is_named(scene, caplog):
+    spawn_robot(scene, 'camera_BGR8')
+    assert "<format> 'BGR8' is unknown; pictures are in bgr8, as in Gazebo" in caplog.text
 
 
 TEXTURED = """<?xml version="1.0"?>
