@@ -67,10 +67,6 @@ class Drive(PeriodicPlugin):
         self.command(0.0, 0.0)
         super().restart()
 
-    def reset(self) -> None:
-        """Start a period."""
-        self.begin_period()
-
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
         """Set the velocity command, which holds until the next one.
 
@@ -117,12 +113,6 @@ class WheeledDrive(Drive):
     @abstractmethod
     def wheel_states(self) -> JointStates:
         """Return the states of the wheels' joints."""
-
-    def reset(self) -> None:
-        """Reset the command and the encoder odometry."""
-        self.command(0.0, 0.0)
-        self.encoders.reset(self.world.clock.now_ns)
-        super().reset()
 
     def after_each_step(self, now_ns: int) -> None:
         """Read the encoders."""

@@ -62,6 +62,12 @@ class DiffDrive(WheeledDrive):
         for wheel in self.wheels:
             wheel.set_motor(0.0, self.wheel_torque)
 
+    def reset(self) -> None:
+        """Reset the command and the encoder odometry, and start a period, as upstream."""
+        self.command(0.0, 0.0)
+        self.encoders.reset(self.world.clock.now_ns)
+        self.begin_period()
+
     def update(self, elapsed: float) -> None:
         """Set the wheels' speeds."""
         x, _, yaw_rate = self.target

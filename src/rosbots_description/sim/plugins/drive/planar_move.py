@@ -38,7 +38,6 @@ class PlanarMove(Drive):
 
     def reset(self) -> None:
         """Measure the motion from the current pose on; keep the command."""
-        super().reset()
         self._measured_ns, self._measured = self.world.clock.now_ns, self.model.pose
 
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:

@@ -5,7 +5,8 @@ Behaviour, defaults and timing are those of libgazebo_ros_tricycle_drive.so in g
 steering angle; `wheelDeceleration` limits speeding up and `wheelAcceleration` slowing down, both
 in rad/s^2; the yaw of encoder odometry has the wrong sign, and its twist is in the odometry frame.
 Different on purpose: it always steers towards the target angle; upstream steers away while it
-drives forward and the angle is to decrease.
+drives forward and the angle is to decrease. Upstream has no reset of its own, so a reset of the
+world keeps the command and the odometry.
 """
 
 import math
@@ -65,6 +66,7 @@ class TricycleDrive(WheeledDrive):
 
     def restart(self) -> None:
         """Reset everything, and let the motors hold the steered wheel."""
+        self.encoders.reset(self.world.clock.now_ns)
         super().restart()
         for joint in (self._steering, self._driven):
             joint.set_motor(0.0, self.torque)

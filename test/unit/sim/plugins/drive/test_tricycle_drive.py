@@ -45,6 +45,19 @@ def test_forward_is_the_speed_of_the_driven_wheels_rim():
     assert plugin.model.joints['front_wheel_joint'].velocity == pytest.approx(4.0)
 
 
+def test_a_reset_of_the_world_leaves_command_and_odometry():
+    plugin = make(odometrySource='encoder')
+    plugin.command(1.0, 0.2)
+    turn(plugin, left_wheel_joint=0.5, right_wheel_joint=0.5)
+    run(plugin, 100)
+    place = plugin.encoders.place
+    plugin.reset()
+    assert (plugin.target, plugin.encoders.place) == ((1.0, 0.0, 0.2), place)
+    assert place[0] > 0.0
+    plugin.restart()
+    assert (plugin.target, plugin.encoders.place) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
 def test_it_speeds_up_by_the_deceleration_and_slows_down_by_the_acceleration():
     plugin = make(wheelAcceleration='1', wheelDeceleration='5', actuatedWheelDiameter='0.2')
     wheel = plugin.model.joints['front_wheel_joint']
