@@ -19,11 +19,24 @@ from network import (
     type_and_sum,
 )
 from rosbots_msgs.srv import GetModelOmissions, Step
+from sensor_msgs.msg import LaserScan
 from simulator import SimulatorTest, proxy, topics_of, wait_until
 
 METRICS = '/gazebo/performance_metrics'
 MANY_STEPS = 20000  # with the robot, far more than a moment
 WAIT = 0.25  # [s, wall] that others may wait meanwhile, on a machine that is not alone
+
+
+RAY = ('<sensor name="{name}" type="ray"><update_rate>40</update_rate><ray><range><max>9</max>'
+       '</range></ray>{plugin}</sensor>')
+LASER = ('<plugin name="p" filename="libgazebo_ros_laser.so"><topicName>{topic}</topicName>'
+         '</plugin>')
+SENSORS = (
+    '<robot name="bot"><link name="l"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/>'
+    '</inertial></link><gazebo><static>true</static></gazebo><gazebo reference="l">'
+    + RAY.format(name='read', plugin=LASER.format(topic='scan'))
+    + RAY.format(name='unread', plugin=LASER.format(topic='other'))
+    + RAY.format(name='bare', plugin='') + '</gazebo></robot>')
 
 
 class NetworkTest(SimulatorTest):
@@ -54,6 +67,15 @@ class NetworkTest(SimulatorTest):
         # A busy machine may be slower; how fast it is, the benchmark measures.
         self.assertTrue(0.2 < metrics[-1].real_time_factor < 1.2, metrics[-1].real_time_factor)
         self.assertEqual(metrics[-1].sensors, [])
+        self.spawn('bot', SENSORS)
+        self.collect('/scan', LaserScan)
+        wait_until(lambda: any(
+            one.sim_update_rate for one in metrics[-1].sensors), 'scans')
+        read, unread, bare = metrics[-1].sensors
+        self.assertEqual((read.name, unread.name, bare.name), (
+            'default::bot::l::read', 'default::bot::l::unread', 'default::bot::l::bare'))
+        self.assertAlmostEqual(read.sim_update_rate, 40.0, 6)
+        self.assertEqual((unread.sim_update_rate, bare.sim_update_rate, bare.fps), (0.0, 0.0, -1.0))
         self.assertGreater(metrics[-1].header.stamp.to_sec(), metrics[0].header.stamp.to_sec())
         self.pause()
         metrics.clear()

@@ -8,16 +8,18 @@ Publishes:
 
 import time
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import rospy
 from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
 
 from ...sim.core import NANOSECONDS
-from ...sim.runtime import SensorLife
+from ...sim.runtime import NEVER, SensorLife
 from ..messages import stamp
 from ..server import Server
 
 PERIOD = 0.2  # [s, wall]
+_WITH_FPS = ('camera', 'depth')  # the fps of other types is -1, as in Gazebo
 
 
 class RealTimeFactor:
@@ -34,24 +36,52 @@ class RealTimeFactor:
         return gained / passed if passed > 0.0 else 0.0
 
 
+class _Sample(NamedTuple):
+    """What was known of a sensor at its last reading; `last_ns` is None while it has no readers."""
+
+    count: int = 0
+    last_ns: int | None = None
+    wall: float = 0.0  # [s]
+    sim_rate: float = 0.0  # [Hz]
+    real_rate: float = 0.0  # [Hz]
+
+
 class SensorRates:
-    """Update rates of sensors between two samples."""
+    """Update rates of sensors, between two samples with new readings."""
 
     def __init__(self) -> None:
-        self._before: dict[SensorLife, tuple[int, int]] = {}  # count, time of the last reading [ns]
+        self._samples: dict[SensorLife, _Sample] = {}
 
-    def update(self, sensors: Iterable[SensorLife], passed: float) -> list[SensorPerformanceMetric]:
-        """Return the rates of sensors since the last sample, `passed` [s, wall] ago."""
-        now = {sensor: (sensor.count, sensor.last_ns) for sensor in sensors}
-        before, self._before = self._before, now
+    def update(
+        self, world: str, sensors: Iterable[SensorLife], wall: float
+    ) -> list[SensorPerformanceMetric]:
+        """Return the rates of sensors.
+
+        Args:
+            world: its name, with which Gazebo's names of sensors begin.
+            wall: the time [s].
+        """
+        before, self._samples = self._samples, {}
         found = []
-        for sensor, (count, last_ns) in now.items():
-            old_count, old_ns = before.get(sensor, (count, last_ns))
-            gained, span = count - old_count, (last_ns - old_ns) / NANOSECONDS
+        for sensor in sensors:
+            sample = self._samples[sensor] = _sample(sensor, before.get(sensor, _Sample()), wall)
             found.append(SensorPerformanceMetric(
-                sensor.scoped_name, gained / span if span > 0.0 else 0.0,
-                gained / passed if passed > 0.0 else 0.0, -1.0))
+                f'{world}::{sensor.scoped_name}', sample.sim_rate, sample.real_rate,
+                sample.real_rate if sensor.spec.type in _WITH_FPS else -1.0))
         return found
+
+
+def _sample(sensor: SensorLife, before: _Sample, wall: float) -> _Sample:
+    if sensor.due == NEVER:
+        return _Sample(sensor.count)
+    readings = sensor.count - before.count
+    if not readings:
+        return before
+    sim_rate, real_rate = before.sim_rate, before.real_rate
+    if before.last_ns is not None and sensor.last_ns > before.last_ns:  # else time was reset
+        sim_rate = readings * NANOSECONDS / (sensor.last_ns - before.last_ns)
+        real_rate = readings / (wall - before.wall)
+    return _Sample(sensor.count, sensor.last_ns, wall, sim_rate, real_rate)
 
 
 def advertise_performance(server: Server) -> None:
@@ -60,17 +90,14 @@ def advertise_performance(server: Server) -> None:
         return
     publisher = rospy.Publisher('~performance_metrics', PerformanceMetrics, queue_size=10)
     clock = server.world.clock
-    begin = time.monotonic()
-    factor, rates = RealTimeFactor(clock.now, begin), SensorRates()
+    factor, rates = RealTimeFactor(clock.now, time.monotonic()), SensorRates()
 
     def publish() -> None:
-        nonlocal begin
         now = time.monotonic()
         message = PerformanceMetrics(real_time_factor=factor.update(clock.now, now))
         models = server.world.models.values()
         message.sensors = rates.update(
-            (sensor for model in models for sensor in model.sensors), now - begin)
-        begin = now
+            server.world.name, (sensor for model in models for sensor in model.sensors), now)
         message.header.stamp = stamp(clock.now_ns)
         if publisher.get_num_connections() > 0:
             publisher.publish(message)

@@ -21,6 +21,7 @@ def populate(world: World, spec: WorldSpec) -> None:
     than the server does anyway are named as not run. A model that the world does not take is an
     error in the log, and the others stand.
     """
+    world.name = spec.name
     world.set_physics(spec.physics)
     world.scene = spec.scene
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins read it

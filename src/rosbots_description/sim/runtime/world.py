@@ -25,6 +25,7 @@ from ..description import (
     PluginSpec,
     SceneSpec,
     SensorSpec,
+    WorldSpec,
 )
 from ..physics import CompiledModel, EngineFactory, make_engine
 from ..plugin_registry import (
@@ -80,6 +81,7 @@ class World:
         Args:
             make_engine: makes the physics engine.
         """
+        self.name = WorldSpec.name
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
         self.schedule = Schedule()
