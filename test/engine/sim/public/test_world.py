@@ -171,7 +171,7 @@ def test_joint_states_are_those_of_the_joints(world):
 
 def test_an_output_keeps_its_newest_reading_once_it_is_told_to(world):
     odometry = world.spawn(XACRO, z=0.5).plugin('diff_drive').odometry
-    with pytest.raises(NotFoundError, match='call its keep'):
+    with pytest.raises(NotFoundError, match='call its latch'):
         _ = odometry.newest
     odometry.latch()
     with pytest.raises(NotFoundError, match='no reading yet'):
