@@ -39,7 +39,7 @@ class RealTimeFactor:
 class _Sample(NamedTuple):
     """What was known of a sensor at its last reading; `last_ns` is None while it has no readers."""
 
-    count: int = 0
+    readings: int = 0  # so far
     last_ns: int | None = None
     wall: float = 0.0  # [s]
     sim_rate: float = 0.0  # [Hz]
@@ -74,7 +74,7 @@ class SensorRates:
 def _sample(sensor: SensorLife, before: _Sample, wall: float) -> _Sample:
     if sensor.due == NEVER:
         return _Sample(sensor.count)
-    readings = sensor.count - before.count
+    readings = sensor.count - before.readings
     if not readings:
         return before
     sim_rate, real_rate = before.sim_rate, before.real_rate

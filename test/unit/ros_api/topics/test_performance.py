@@ -23,10 +23,11 @@ def rates(metrics):
     return [(one.sim_update_rate, one.real_update_rate, one.fps) for one in metrics]
 
 
-def test_rates_are_those_since_the_last_look():
+def test_rates_are_those_since_the_last_update():
     laser, camera = FakeSensor('ray', count=7, last_ns=1_000_000_000), FakeSensor('camera')
     sensor_rates = SensorRates()
-    assert rates(sensor_rates.update('w', [laser, camera], 3.0)) == [(0.0, 0.0, -1.0), (0.0, 0.0, 0.0)]
+    metrics = sensor_rates.update('w', [laser, camera], 3.0)
+    assert rates(metrics) == [(0.0, 0.0, -1.0), (0.0, 0.0, 0.0)]
     laser.give(8, 1200)
     camera.give(1, 1100)
     metrics = sensor_rates.update('w', [laser, camera], 3.4)
