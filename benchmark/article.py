@@ -16,11 +16,11 @@ from rosbots_description.sim.runtime.world import World
 
 ROOT = Path(__file__).resolve().parents[1]
 OUTPUT = ROOT / '.ws' / 'benchmark'  # pictures and logs
-FORWARD = 0.5  # [m/s] at which robots drive where only the cost of driving counts
+FORWARD = 0.5  # [m/s] commanded where only the cost of driving is measured
 
 
 def robot_urdf(**arguments: str) -> str:
-    """Return the URDF text of the article's robot, its meshes as plain paths.
+    """Return the URDF text of the article's robot, with absolute paths of the meshes.
 
     Args:
         arguments: of the xacro file.
@@ -33,13 +33,13 @@ def robot_urdf(**arguments: str) -> str:
 
 
 def robot_spec() -> ModelSpec:
-    """Return the article's robot as the simulator takes it."""
+    """Return the model specification of the article's robot."""
     return load_urdf(robot_urdf(), 'rosbots', robot_namespace='/')[0]
 
 
 @contextlib.contextmanager
 def driven_world(robots: int, distance: float, driving: bool) -> Iterator[World]:
-    """Give an empty world with robots side by side, `distance` [m] apart; free it at the end."""
+    """Yield an empty world with robots side by side, `distance` [m] apart; close it at the end."""
     world = World()
     try:
         add_empty_world(world)

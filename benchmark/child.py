@@ -8,10 +8,10 @@ from typing import Self
 
 
 class Child:
-    """A program of this folder in a process of its own, while a `with` statement lasts."""
+    """Runs a program of this folder in a child process, for the length of a `with` statement."""
 
     def __init__(self, program: str, *arguments: str) -> None:
-        """Start it."""
+        """Start the program."""
         self._process = subprocess.Popen(
             [sys.executable, program, *arguments],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
@@ -24,13 +24,13 @@ class Child:
         self._process.communicate()
 
     def ask(self, line: str = '') -> str:
-        """Return what it answers."""
+        """Send a line and return the answer."""
         assert self._process.stdin is not None
         self._process.stdin.write(f'{line}\n')
         self._process.stdin.flush()
         return self.answer()
 
     def answer(self) -> str:
-        """Return the next line that it writes."""
+        """Return the next line of its standard output."""
         assert self._process.stdout is not None
         return self._process.stdout.readline()

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Compare motion with the real Gazebo's, the quantity in which we differ most first.
+"""Compare motion with that recorded in Gazebo; print the largest differences first.
 
-Everything that was recorded (test/data/gazebo) is done again, headless and through the real
-plugins: drives of six robots, robots that nobody commands, and passive scenes. Nothing is left out
-for being small. Arguments choose robots and scenes by name, or are traces to be replayed: CSV with
-the columns t_since_cmd [s], cmd_v or cmd_vx, cmd_vy [m/s], cmd_w [rad/s], gt_x, gt_y [m], gt_yaw,
-gt_v_body_x, gt_v_body_y [m/s], gt_wz, as Gazebo's ground truth has them, of the robot whose name
-the file's begins with, else of the article's.
+Repeats all recordings (test/data/gazebo), headless and with the real plugins: drives of six
+robots, robots without commands, and passive scenes. Every quantity is compared, however small.
+Arguments are names of robots and scenes, or traces to replay: CSV files with the columns
+t_since_cmd [s], cmd_v or cmd_vx, cmd_vy [m/s], cmd_w [rad/s], gt_x, gt_y [m], gt_yaw [rad],
+gt_v_body_x, gt_v_body_y [m/s], gt_wz [rad/s] of Gazebo's ground truth. The file name begins with
+the name of the robot; the default is the article's.
 """
 
 import csv
@@ -32,11 +32,11 @@ from support.recorded import HEADER, Difference, line, load, worst_first
 
 COLUMNS = ('gt_x', 'gt_y', 'gt_yaw', 'gt_v_body_x', 'gt_v_body_y', 'gt_wz')
 STEADY = (('forward', 'm/s', 4), ('lateral', 'm/s', 5), ('turning', 'rad/s', 6))  # column of a row
-FLOOR = 0.01  # [m, rad, m/s or rad/s] of a tolerance
+FLOOR = 0.01  # [m, rad, m/s or rad/s] least tolerance
 
 
 def compare_all(names: Iterable[str]) -> list[Difference]:
-    """Return every quantity that was recorded of robots and scenes."""
+    """Return the differences in all recorded quantities of robots and scenes."""
     found = []
     for name in names:
         if name in SCENES:
@@ -49,10 +49,10 @@ def compare_all(names: Iterable[str]) -> list[Difference]:
 
 
 def read_trace(path: Path) -> tuple[list[Command], list[tuple[float, ...]]]:
-    """Return commands of a recorded trace, and its rows: time, then `COLUMNS`.
+    """Return the commands of a recorded trace, and its rows: time, then `COLUMNS`.
 
     Raises:
-        ValueError: nothing is commanded in it, or a column is missing.
+        ValueError: the trace contains no command, or a column is missing.
     """
     commands: list[Command] = []
     rows = []
@@ -65,17 +65,17 @@ def read_trace(path: Path) -> tuple[list[Command], list[tuple[float, ...]]]:
                 vx, vy, w = map(float, (forward, row.get('cmd_vy') or 0.0, row['cmd_w']))
                 time, *values = (float(row[key]) for key in ('t_since_cmd', *COLUMNS))
             except KeyError as error:
-                raise ValueError(f'{path}: there is no column {error}') from None
+                raise ValueError(f'{path}: column {error} is missing') from None
             if not commands or commands[-1][1:] != (vx, vy, w):
                 commands.append((time if commands else 0.0, vx, vy, w))
             rows.append((time, *values))
     if not rows:
-        raise ValueError(f'{path}: no row has a t_since_cmd of 0 or later; nothing was commanded')
+        raise ValueError(f'{path}: no row with t_since_cmd >= 0; the trace has no command')
     return commands, rows
 
 
 def compare_trace(path: Path) -> list[Difference]:
-    """Return how far our path is from a recorded one, and the steady speeds of both."""
+    """Compare path, heading and steady speeds with those of a recorded trace."""
     commands, rows = read_trace(path)
     name = path.name.partition('_')[0]
     ours = drive(robot(name if name in ROBOTS else 'article'), commands, rows[-1][0])
@@ -124,8 +124,8 @@ def main(arguments: Sequence[str]) -> int:
     for one in worst_first(found):
         print(line(one))
     beyond = [one for one in found if one.share > 1.0]
-    print(f'{len(found)} quantities, {len(beyond)} beyond their tolerance, '
-          f'{sum(bool(one.why) for one in beyond)} of these on purpose')
+    print(f'{len(found)} quantities, {len(beyond)} outside their tolerance, '
+          f'{sum(bool(one.why) for one in beyond)} of these intended')
     return 0
 
 

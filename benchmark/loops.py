@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Loops that make steps without ROS, each in a process of its own, a window of time at a time.
+"""Step loops without ROS, each in its own process, measured over windows of time.
 
-    bare    PyBullet alone with the article's URDF as it is (17 links); it steps and nothing else
-    engine  our engine alone, with the robot as the simulator describes it (3 links)
-    world   the simulator without ROS: engine, clock, plugins; nobody reads what they report
+    bare    PyBullet alone with the original URDF of the article (17 links); only steps
+    engine  our engine alone, with the simulator's description of the robot (3 links)
+    world   the simulator without ROS: engine, clock, plugins; no output has a reader
 
-The process is told the kind, the number of robots and 1 if they drive. Each line on its standard
-input is a window [s, wall]; it answers with the steps per second.
+Arguments: the kind, the number of robots, and 1 if they drive. Each line on standard input is a
+window [s, wall]; the answer is the number of steps per second.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from child import Child
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.physics.bullet.silence import silent
 
-STANDING = 1000  # steps after which robots have fallen and stand
+STANDING = 1000  # steps until spawned robots stand on the ground
 DISTANCE = 3.0  # [m] between robots
 WHEEL_SPEED = 1.9  # [rad/s] of a robot that drives at 0.5 m/s
 WHEEL_TORQUE = 5.0  # [N m]
-BATCH = 0.01  # [s, wall] between two looks at the clock
+BATCH = 0.01  # [s, wall] between readings of the clock
 
 Steps = Callable[[int], object]
 
 
 class Loop(Child):
-    """One of the loops, in a process of its own that waits between windows."""
+    """One of the loops, in a child process that waits between windows."""
 
     def __init__(self, kind: str, robots: int, driving: bool) -> None:
-        """Start the process; the first window waits until its robots stand."""
+        """Start the process; the first window begins when the robots stand."""
         super().__init__(__file__, kind, str(robots), str(int(driving)))
 
     def speed(self, seconds: float) -> float:
@@ -47,7 +47,7 @@ class Loop(Child):
 
 @contextlib.contextmanager
 def bare(robots: int, driving: bool) -> Iterator[Steps]:
-    """Give the step function of PyBullet alone."""
+    """Yield the step function of PyBullet alone."""
     client = pybullet.connect(pybullet.DIRECT)
     pybullet.setGravity(0, 0, -9.8, client)
     pybullet.setTimeStep(0.001, client)
@@ -65,7 +65,7 @@ def bare(robots: int, driving: bool) -> Iterator[Steps]:
         for _ in range(count):
             pybullet.stepSimulation(client)
 
-    step(STANDING)  # motors that start in the air overturn this robot
+    step(STANDING)  # motors started in the air overturn this robot
     for body in bodies if driving else ():
         _drive(body, client)
     yield step
@@ -83,7 +83,7 @@ def _drive(body: int, client: int) -> None:
 
 @contextlib.contextmanager
 def world(robots: int, driving: bool) -> Iterator[Steps]:
-    """Give the step function of the simulator without ROS."""
+    """Yield the step function of the simulator without ROS."""
     with driven_world(robots, DISTANCE, driving) as made:
         made.run(STANDING)
         yield made.run
@@ -91,14 +91,14 @@ def world(robots: int, driving: bool) -> Iterator[Steps]:
 
 @contextlib.contextmanager
 def engine(robots: int, driving: bool) -> Iterator[Steps]:
-    """Give the step function of our engine, its motors as the plugins left them."""
+    """Yield the step function of our engine, with the motor targets that the plugins set."""
     with driven_world(robots, DISTANCE, driving) as made:
         made.run(STANDING)
         yield made.engine.step
 
 
 def measure(step: Steps, seconds: float, batch: int) -> float:
-    """Return the steps per second over a window [s, wall], counted in batches."""
+    """Return the steps per second over a window [s, wall]; the clock is read once a batch."""
     steps, begin = 0, time.perf_counter()
     while (elapsed := time.perf_counter() - begin) < seconds:
         step(batch)
@@ -107,7 +107,7 @@ def measure(step: Steps, seconds: float, batch: int) -> float:
 
 
 def main() -> int:
-    """Serve windows until the input ends; return the exit code."""
+    """Measure windows until the input ends; return the exit code."""
     logging.disable(logging.WARNING)
     kind, robots, driving = sys.argv[1:]
     loop = {'bare': bare, 'engine': engine, 'world': world}[kind]

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Measure what each choice of the engine does to motion and cost; the table of doc/physics.md.
+"""Measure the effect of engine settings on motion and cost; the table of doc/physics.md.
 
-For each setting: how far the article's robot is from Gazebo (largest share among the steady speeds
-and times to 90 %), the errors of the scenes in test/support/scenes.py, and the cost of a step with
-the robot driving, as a multiple of the usual setting's in the same run.
+For each setting: the largest relative differences of the article's robot from Gazebo (steady
+speeds, times to 90 %), the errors of the scenes in test/support/scenes.py, and the cost of a step
+with the robot driving, relative to the default setting in the same run.
 """
 
 import logging
@@ -33,13 +33,13 @@ SETTINGS = {
 }
 WIDTH = 22  # of the first column
 SMALL = 0.2  # speeds below this are not compared [m/s or rad/s]
-BATCH = 200  # steps between two looks at the time
+BATCH = 200  # steps between readings of the clock
 ROUNDS = 100
 TURNS = 3
 
 
 def gazebo_errors(tuning: Tuning) -> tuple[float, float]:
-    """Return the largest shares by which steady speeds and times to 90 % differ from Gazebo's."""
+    """Return the largest relative errors against Gazebo of steady speeds and times to 90 %."""
     speeds, times = [], []
     for command in load('article')['drives']:
         for one in compare_drive('article', command, tuning):
@@ -59,14 +59,14 @@ def driven(world: World) -> Model:
 
 
 def lay_box(world: World) -> None:
-    """Lay a box of 100 m where the plane was."""
+    """Replace the ground plane by a box of 100 m."""
     world.delete('ground_plane')
     slab = replace(urdf_spec(box('slab', (100.0, 100.0, 1.0), 1.0)), static=True)
     world.spawn(slab, 'ground_plane', Pose((0.0, 0.0, -0.5)))
 
 
 def quickest_batch(world: World) -> float:
-    """Return the shortest time that a batch of steps took [s]; other work only slows down."""
+    """Return the shortest duration of a batch [s]; other load can only add to it."""
     best = float('inf')
     for _ in range(ROUNDS):
         begin = time.perf_counter()
@@ -76,9 +76,9 @@ def quickest_batch(world: World) -> float:
 
 
 def costs() -> dict[str, float]:
-    """Return the cost of a step with the robot driving, in multiples of the usual one.
+    """Return the cost of a step with the robot driving, relative to the default setting.
 
-    The settings take turns, and of each the quickest batch counts.
+    The settings alternate; the quickest batch of each counts.
     """
     best = dict.fromkeys(SETTINGS, float('inf'))
     for _ in range(TURNS):
@@ -90,7 +90,7 @@ def costs() -> dict[str, float]:
 
 
 def compare_grounds() -> str:
-    """Return what a box as ground does to the cost of a step and to the robot's speed."""
+    """Return how a box instead of the ground plane changes the cost of a step and the speed."""
     best, speeds = [float('inf')] * 2, [0.0] * 2
     for _ in range(TURNS):
         for i in (0, 1):
@@ -99,8 +99,8 @@ def compare_grounds() -> str:
                     lay_box(world)
                 speeds[i] = forward_speed(driven(world))
                 best[i] = min(best[i], quickest_batch(world))
-    return (f'a box of 100 m as ground: a step costs {best[1] / best[0]:.2f} times as much, '
-            f'the speed differs by {speeds[1] / speeds[0] - 1.0:+.2%}')
+    return (f'box of 100 m as ground: cost of a step x {best[1] / best[0]:.2f}, '
+            f'speed {speeds[1] / speeds[0] - 1.0:+.2%}')
 
 
 def main() -> int:
@@ -110,7 +110,7 @@ def main() -> int:
     multiples = costs()
     errors = {name: gazebo_errors(tuning) for name, tuning in SETTINGS.items()}
     print(f'{"cost of a step":{WIDTH}}' + ''.join(f'{multiples[n]:11.2f}' for n in SETTINGS))
-    for i, what in enumerate(("speeds, Gazebo's", "t90, Gazebo's")):
+    for i, what in enumerate(('speeds vs. Gazebo', 't90 vs. Gazebo')):
         print(f'{what:{WIDTH}}' + ''.join(f'{errors[n][i]:11.2%}' for n in SETTINGS))
     for what, scene in SCENES.items():
         print(f'{what:{WIDTH}}', end='')

@@ -1,4 +1,4 @@
-"""The picture of the benchmark's speeds."""
+"""Plot of the speeds that the benchmark measured."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from matplotlib import pyplot
 def plot_speed(
     path: Path, curves: Mapping[str, Sequence[tuple[int, float]]], estimated: str
 ) -> None:
-    """Write steps per second against the number of driving robots as PNG.
+    """Write a PNG of steps per second against the number of driving robots.
 
     Args:
-        curves: by their name in the legend, points (robots, steps per wall second).
-        estimated: the curve that was not measured; it is dashed.
+        curves: points (robots, steps per wall second) by their name in the legend.
+        estimated: name of the curve that was not measured; it is dashed.
     Raises:
         OSError: the file cannot be written.
     """

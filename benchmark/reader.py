@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A node that subscribes to topics and only counts the messages.
+"""A node that subscribes to topics and counts the messages.
 
-The process is told the topics. It writes a line when all topics are connected and then,
-for each line on its standard input, how many messages have come.
+Arguments: the topics. The process writes a line when all topics are connected and then, for each
+line on standard input, the number of messages received so far.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ import rospy
 from child import Child
 from server import wait_until
 
-PER_SECOND = 500  # messages of one robot per simulated second: odom, joint_states and three edges
+PER_SECOND = 500  # messages per robot and simulated second: odom, joint_states, three transforms
 
 
 def robot_topics(robots: int) -> list[str]:
-    """Return what robots tell of their motion."""
+    """Return the topics on which robots publish their motion."""
     return ['/tf', *(f'/robot{i}/{topic}' for i in range(robots)
                      for topic in ('odom', 'joint_states'))]
 
 
 class Reader(Child):
-    """Such a node, in a process of its own, while a `with` statement lasts."""
+    """Runs the node in a child process, for the length of a `with` statement."""
 
     def __init__(self, *topics: str) -> None:
-        """Start it on this process's master and wait until it is connected."""
+        """Start the node with this process's ROS master and wait until it is connected."""
         super().__init__(__file__, *topics)
         self.answer()
 
     def messages(self) -> int:
-        """Return how many messages have come."""
+        """Return the number of messages received so far."""
         return int(self.ask())
 
 
@@ -41,7 +41,7 @@ def main() -> int:
     rospy.init_node('reader', disable_rostime=True, disable_signals=True)
     counter = count()
     for name in sys.argv[1:]:
-        # as bytes: only the server's work is to be measured
+        # AnyMsg is not deserialized: only the work of the server is measured
         subscriber = rospy.Subscriber(name, rospy.AnyMsg, lambda _: next(counter))
         wait_until(subscriber.get_num_connections, f'a publisher of {name}')
     print('connected', flush=True)

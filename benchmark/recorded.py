@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The real server with a recorder in it: when each step begins, and when wheels are told what.
+"""The real server with a recorder of the start times of steps and of wheel targets.
 
-Arguments are gzserver's. At the end what was noted goes to a file, which `read` reads.
+Arguments are gzserver's. The record is written to a file at the end; `read` returns it.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ _FILE = OUTPUT / 'recorded.json'
 
 
 class Record(NamedTuple):
-    """What was noted. Wall times are of the monotonic clock, which all processes share.
+    """Recorded times; wall times are of the monotonic clock, which all processes share.
 
-    `steps` tells when each began, and how long the loop had been waiting for a processor in all
-    till then [s]; `targets` when a left wheel got which new target [s, rad/s].
+    `steps`: start time of each step, and total time until then that the loop waited for a
+    processor [s]. `targets`: time and value of each new target of a left wheel [s, rad/s].
     """
 
     steps: list[tuple[float, float]]
@@ -36,39 +36,39 @@ class Record(NamedTuple):
 
 
 class Recorder(Hook):
-    """Notes each step and each new target of a left wheel."""
+    """Records each step and each new target of a left wheel."""
 
     due = 1
 
     def __init__(self) -> None:
-        """Begin; the thread that calls is the one that will make the steps."""
+        """Begin; call this on the thread that will run the steps."""
         self._record = Record([], [])
         self._schedule = os.open('/proc/thread-self/schedstat', os.O_RDONLY)
 
     def before_step(self) -> None:
-        """Note when the step begins, and come again at the next one."""
+        """Record the start time of the step; be due at the next one."""
         waited = int(os.pread(self._schedule, 100, 0).split()[1]) / NANOSECONDS
         self._record.steps.append((time.monotonic(), waited))
         self.due += 1
 
-    def note_target(self, left: float) -> None:
-        """Note a target if it is new [rad/s]."""
+    def record_target(self, left: float) -> None:
+        """Record a target [rad/s] if it is new."""
         targets = self._record.targets
         if not targets or targets[-1][1] != left:
             targets.append((time.monotonic(), left))
 
     def save(self) -> None:
-        """Write what was noted to the file."""
+        """Write the record to the file."""
         _FILE.write_text(json.dumps(self._record), encoding='utf-8')
 
 
 def read() -> Record:
-    """Return what the last server noted that has ended."""
+    """Return the record of the server that ended last."""
     return Record(*json.loads(_FILE.read_text(encoding='utf-8')))
 
 
 def main() -> int:
-    """Be the server until it is told to stop; return the exit code."""
+    """Run the server until it is shut down; return the exit code."""
     recorder = Recorder()
     set_motor = Joint.set_motor
 
@@ -80,7 +80,7 @@ def main() -> int:
     def recorded_set_motor(joint: Joint, velocity: float, effort: float) -> None:
         set_motor(joint, velocity, effort)
         if 'left' in joint.name:
-            recorder.note_target(velocity)
+            recorder.record_target(velocity)
 
     vars(node)['World'] = RecordedWorld
     Joint.set_motor = recorded_set_motor  # type: ignore[method-assign, assignment]  # on purpose

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Run the parts of the benchmark that are named, or all but the long one.
+"""Run the named parts of the benchmark; by default all but the soak test.
 
-Each part is a program of this folder in a process of its own. It is said before how long it takes,
-and shown meanwhile how long it has run; whatever it has started ends with it, also at Ctrl-C and
-SIGTERM. One part alone can be followed by its own arguments.
+Each part is a program of this folder, run in its own process. Its estimated and its elapsed time
+are shown. All processes that it started are ended with it, also at Ctrl-C and SIGTERM. Arguments
+after a single part are passed to it.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from typing import IO, TextIO
 from rosbots_description.cli.launched import descendants, send_signal
 
 FOLDER = Path(__file__).resolve().parent
-# What each takes [s, wall] where two processors have nothing else to do.
+# Duration on two idle processors [s, wall].
 PARTS = {'fidelity': 45.0, 'physics': 330.0, 'veer': 260.0, 'speed': 280.0, 'real_time': 140.0,
          'sensors': 170.0}
 LONG = {'soak': 630.0}  # only by name
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
-GRACE = 2.0  # [s, wall] for processes to end after being asked
-_BECOME_SUBREAPER = 36  # of prctl: who loses its parent below us becomes our child
+GRACE = 2.0  # [s, wall] for processes to end after a signal
+_BECOME_SUBREAPER = 36  # of prctl: orphaned descendants become our children
 
 
-class InterruptedPart(Exception):  # noqa: N818  no error: somebody wants the end
-    """A signal to end."""
+class InterruptedPart(Exception):  # noqa: N818  a request, not an error
+    """SIGINT or SIGTERM was received."""
 
 
 class Progress:
-    """Shows in a terminal's last line, or now and then in a line of its own, how far a part is."""
+    """Shows the elapsed time in the last line of a terminal, else now and then in a new line."""
 
     def __init__(self, name: str, about: float, stream: TextIO) -> None:
         self._name, self._about, self._stream = name, about, stream
@@ -46,7 +46,7 @@ class Progress:
         self._terminal = stream.isatty()
 
     def show(self) -> None:
-        """Tell of the time that has passed."""
+        """Show the elapsed time."""
         now = time.monotonic()
         text = f'{self._name}: {now - self._begin:.0f} s of {in_words(self._about)}'
         if self._terminal:
@@ -58,22 +58,22 @@ class Progress:
             self._stream.flush()
 
     def hide(self) -> None:
-        """Make room for what the part prints."""
+        """Clear the line for the output of the part."""
         if self._terminal:
             self._stream.write('\r\x1b[K')
             self._stream.flush()
 
 
 def in_words(seconds: float) -> str:
-    """Return about how long something takes."""
+    """Return a duration [s] as rounded text."""
     return f'about {seconds:.0f} s' if seconds < 100.0 else f'about {seconds / 60.0:.0f} min'
 
 
 def chosen(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return the parts to run, and the arguments of a single one.
+    """Return the parts to run, and the arguments for a single part.
 
     Raises:
-        ValueError: there is no such part.
+        ValueError: a part is unknown.
     """
     known = {**PARTS, **LONG}
     parts = list(arguments) or list(PARTS)
@@ -86,7 +86,7 @@ def chosen(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def duration(part: str, arguments: Sequence[str]) -> float:
-    """Return about how long a part takes [s, wall]."""
+    """Return the estimated duration of a part [s, wall]."""
     if part == 'soak' and arguments[:1] == ['--seconds'] and len(arguments) > 1:
         with contextlib.suppress(ValueError):
             return float(arguments[1]) + 30.0
@@ -94,17 +94,17 @@ def duration(part: str, arguments: Sequence[str]) -> float:
 
 
 def run(command: Sequence[str | Path], name: str, about: float) -> int:
-    """Run a program with its progress shown; end all that it has started; return its exit code.
+    """Run a program and show progress; end all its processes; return its exit code.
 
     Raises:
-        InterruptedPart: a signal came to end it.
+        InterruptedPart: SIGINT or SIGTERM was received.
     """
     with tempfile.TemporaryDirectory(prefix='rosbots_bench_', ignore_cleanup_errors=True) as folder:
         try:
             part = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                 env=os.environ | {'TMPDIR': folder, 'PYTHONUNBUFFERED': '1'},
-                start_new_session=True)  # the terminal's Ctrl-C is for us to hand on
+                start_new_session=True)  # Ctrl-C reaches this process only, which ends the part
             assert part.stdout is not None
             with part.stdout:
                 _pass_on(part, part.stdout, Progress(name, about, sys.stderr))
@@ -116,14 +116,14 @@ def run(command: Sequence[str | Path], name: str, about: float) -> int:
 def _pass_on(
     part: subprocess.Popen[bytes], output: IO[bytes], progress: Progress
 ) -> None:
-    """Print what the part prints until it closes its output, and the progress in between."""
+    """Forward the part's output until it is closed, and show progress in between."""
     with selectors.DefaultSelector() as selector:
         selector.register(output, selectors.EVENT_READ)
-        begun = False  # a line that has no end yet
+        begun = False  # the last line of output is not complete
         try:
             while True:
                 if not selector.select(1.0):
-                    if part.poll() is not None:  # what it has left behind keeps the output open
+                    if part.poll() is not None:  # only its children keep the output open
                         return
                     if not begun:
                         progress.show()
@@ -141,7 +141,7 @@ def _pass_on(
 
 
 def end_all() -> None:
-    """End every process below this one, also those whose parents have gone; by force at last."""
+    """End all descendants, orphans too, with SIGINT and then SIGKILL."""
     for number in (signal.SIGINT, signal.SIGKILL):
         end = time.monotonic() + GRACE
         send_signal(descendants(os.getpid()), number)
@@ -149,12 +149,12 @@ def end_all() -> None:
             with contextlib.suppress(ChildProcessError):
                 os.waitpid(-1, os.WNOHANG)
             if number == signal.SIGKILL:
-                send_signal(descendants(os.getpid()), number)  # what was started just before
+                send_signal(descendants(os.getpid()), number)  # may have been forked meanwhile
             time.sleep(0.02)
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run what the command line asks for; return the exit code."""
+    """Run the parts given on the command line; return the exit code."""
     try:
         parts, own = chosen(arguments)
     except ValueError as error:
@@ -164,7 +164,7 @@ def main(arguments: Sequence[str]) -> int:
 
     def interrupt(number: int, _frame: object) -> None:
         for other in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(other, signal.SIG_IGN)  # what is begun now takes GRACE at most
+            signal.signal(other, signal.SIG_IGN)  # the cleanup takes 2 * GRACE at most
         raise InterruptedPart(number)
 
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -180,7 +180,7 @@ def main(arguments: Sequence[str]) -> int:
             if code:
                 return code
     except InterruptedPart as interruption:
-        end_all()  # the signal may have come in the midst of that
+        end_all()  # the signal may have interrupted it
         return 128 + interruption.args[0]
     return 0
 

@@ -1,7 +1,7 @@
-"""A whole server for the benchmarks: roscore and gzserver on a master of their own.
+"""A whole server for the benchmarks: roscore and gzserver with a separate ROS master.
 
-A process can have one ROS master in its life, so each server is to be measured by a process of its
-own: `in_a_process_of_its_own`.
+A process can use only one ROS master in its lifetime, so run each server within
+`run_in_new_process`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from std_srvs.srv import Empty
 
 from rosbots_description.cli.launched import Launched
 
-PATIENCE = 30.0  # [s, wall] for what takes a second
+PATIENCE = 30.0  # [s, wall] timeout of what usually takes a second
 EMPTY_WORLD = ('gazebo_ros', 'empty_world.launch', 'gui:=false')
 DISTANCE = 3.0  # [m] between robots
 USER_TIME, SYSTEM_TIME, STARTED = 11, 12, 19  # fields of /proc/PID/stat after the name
@@ -44,32 +44,34 @@ COMMANDS = 'cmd_vel'  # below a robot's namespace, where the article's robot has
 Result = TypeVar('Result')
 
 
-def in_a_process_of_its_own(function: Callable[..., Result], *arguments: object) -> Result:
-    """Return what a module's function returns in a fresh process."""
+def run_in_new_process(function: Callable[..., Result], *arguments: object) -> Result:
+    """Return the result of a module-level function called in a new process."""
     with ProcessPoolExecutor(1, get_context('spawn')) as pool:
         return pool.submit(function, *arguments).result()
 
 
 class Server:
-    """What `roslaunch gazebo_ros empty_world.launch gui:=false` starts, with a master of its own.
+    """The server of `roslaunch gazebo_ros empty_world.launch gui:=false`, with its own master.
 
-    This process is the node /benchmark beside it, which does not listen to /clock.
-    `seconds_to_spawn_service` [s, wall] is how long after roslaunch the spawn service was there,
-    `seconds_to_process` how long roslaunch took before to start gzserver.
+    This process is the node /benchmark, which does not subscribe to /clock.
+    `seconds_to_process` and `seconds_to_spawn_service` [s, wall] are the times from roslaunch to
+    the start of gzserver and to its spawn service.
     """
 
     def __init__(
         self, *arguments: str, launch: Sequence[str] = EMPTY_WORLD, roscore: bool = False
     ) -> None:
-        """Start it, with further arguments for roslaunch, and wait for its services.
+        """Start the server and wait for its services.
 
         Args:
-            roscore: whether a roscore runs before; else roslaunch starts the master.
+            arguments: further arguments for roslaunch.
+            launch: package, launch file and its arguments; or the path of a launch file.
+            roscore: start a roscore first; otherwise roslaunch starts the master.
         """
         os.environ.update(ROS_MASTER_URI=_free_master(), ROS_HOSTNAME='localhost')
         logging.getLogger('rosout').setLevel(logging.WARNING)
         OUTPUT.mkdir(parents=True, exist_ok=True)
-        with ExitStack() as processes:  # they end here if one does not come
+        with ExitStack() as processes:  # ended here if one fails to start
             if roscore:
                 port = os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1]
                 processes.enter_context(_launched('roscore', '--core', '-p', port))
@@ -101,7 +103,7 @@ class Server:
         self._processes.close()
 
     def service(self, name: str, service_class: type) -> rospy.ServiceProxy:
-        """Return one of its services over a lasting connection."""
+        """Return a proxy of one of its services with a persistent connection."""
         return rospy.ServiceProxy(f'/gazebo/{name}', service_class, persistent=True)
 
     def simulated(self) -> float:
@@ -109,22 +111,22 @@ class Server:
         return self._world().sim_time
 
     def unthrottle(self) -> None:
-        """Let it step as fast as it can."""
+        """Step as fast as possible."""
         now = self.service('get_physics_properties', GetPhysicsProperties)()
         self.service('set_physics_properties', SetPhysicsProperties)(
             SetPhysicsPropertiesRequest(now.time_step, 0.0, now.gravity, now.ode_config)
         )
 
     def pause(self) -> None:
-        """Let time stand still."""
+        """Pause physics."""
         self._pause()
 
     def unpause(self) -> None:
-        """Let time go on."""
+        """Unpause physics."""
         self._unpause()
 
     def spawn(self) -> float:
-        """Put one more robot beside the others, ready for commands; return how long it took [s]."""
+        """Spawn one more robot beside the others; return the duration of the call [s]."""
         number = len(self._drivers)
         place = Pose(Point(0.0, DISTANCE * number, 0.5), Quaternion(0.0, 0.0, 0.0, 1.0))
         begin = time.monotonic()
@@ -135,23 +137,23 @@ class Server:
         self._drivers.append(rospy.Publisher(f'/robot{number}/{COMMANDS}', Twist, queue_size=1))
         return took
 
-    def bring(self, name: str, text: str, x: float = 0.0) -> None:
-        """Spawn a model from a URDF on the x axis [m]."""
+    def spawn_urdf(self, name: str, text: str, x: float = 0.0) -> None:
+        """Spawn a model from URDF text at (x, 0, 0) [m]."""
         place = Pose(Point(x, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
         answer = self._spawn(name, text, '/', place, '')
         if not answer.success:
             raise RuntimeError(answer.status_message)
 
-    def rounded(self, seconds: float) -> None:
-        """Let simulated time [s] pass."""
+    def wait_simulated(self, seconds: float) -> None:
+        """Wait until `seconds` of simulated time have passed."""
         end, deadline = self.simulated() + seconds, time.monotonic() + PATIENCE
         while self.simulated() < end:
             if time.monotonic() > deadline:
-                raise TimeoutError(f'{seconds:g} simulated seconds take longer than {PATIENCE:g} s')
+                raise TimeoutError(f'{seconds:g} s of simulated time not within {PATIENCE:g} s')
             time.sleep(0.01)
 
     def drive(self, forward: float = FORWARD) -> None:
-        """Let all robots drive straight on [m/s]."""
+        """Command all robots to drive straight at `forward` [m/s]."""
         command = Twist()
         command.linear.x = forward
         for driver in self._drivers:
@@ -159,23 +161,23 @@ class Server:
             driver.publish(command)
 
     def cpu_seconds(self) -> float:
-        """Return the processor time that it and its child processes have used so far [s]."""
+        """Return the processor time of the server and its children so far [s]."""
         children = Path(f'/proc/{self.process}/task/{self.process}/children').read_text('ascii')
         return sum(self._in_seconds(field, process) for field in (USER_TIME, SYSTEM_TIME)
                    for process in (self.process, *map(int, children.split())))
 
     def _in_seconds(self, field: int, process: int = 0) -> float:
-        """Return what /proc tells of a process in a field after its name, a time [s]."""
+        """Return a time [s] from /proc/PID/stat; fields count from the one after the name."""
         stat = Path(f'/proc/{process or self.process}/stat').read_text(encoding='ascii')
         return int(stat.rsplit(')', 1)[1].split()[field]) / os.sysconf('SC_CLK_TCK')
 
     def memory(self) -> float:
-        """Return the memory that it has resident [MB]."""
+        """Return the resident memory of the server [MB]."""
         pages = Path(f'/proc/{self.process}/statm').read_text(encoding='ascii').split()[1]
         return int(pages) * os.sysconf('SC_PAGE_SIZE') / 1e6
 
     def _wait_for(self, service: str) -> float:
-        """Wait until a service is registered; return when that was [s, monotonic]."""
+        """Wait until a service is registered; return the time [s, monotonic]."""
         wait_until(lambda: _is_registered(f'/gazebo/{service}'), f'/gazebo/{service}')
         return time.monotonic()
 
@@ -192,10 +194,10 @@ def _is_registered(service: str) -> bool:
 
 
 def wait_until(condition: Callable[[], object], what: str) -> None:
-    """Wait by wall time.
+    """Wait until a condition holds.
 
     Raises:
-        TimeoutError: it took longer than `PATIENCE`.
+        TimeoutError: it did not hold within `PATIENCE`.
     """
     end = time.monotonic() + PATIENCE
     while not condition():

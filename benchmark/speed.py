@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Measure steps per wall second of the whole server, beside a bare PyBullet loop in the same run.
+"""Measure steps per wall second of the whole server, and of a bare PyBullet loop in the same run.
 
-The server is roscore, rosout and gzserver, as fast as it can, with /clock at each step, nobody else
-subscribed; robots carry the diff-drive plugin at 100 Hz. The bare loop, in a process of its own,
-takes the article's URDF as it is (17 links) and does nothing but step. Gazebo was once measured
-beside that loop; the bare loop's speed times the quotient of then is what Gazebo would do here.
+The server is roscore, rosout and gzserver, unthrottled, with /clock at each step and no other
+subscriber; robots have the diff-drive plugin at 100 Hz. The bare loop, in its own process, steps
+the original URDF of the article (17 links) and does nothing else. Gazebo's speed relative to that
+loop was measured on another machine; times the speed of the bare loop here, it estimates Gazebo's
+speed here.
 
-The loops take turns in short windows and the best of each counts: whatever else the machine does
-can only slow a loop down.
+The loops alternate in short windows. The best window of each counts, since other load can only slow
+a loop down.
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ from article import OUTPUT
 from loops import Loop
 from plot import plot_speed
 from reader import PER_SECOND, Reader, robot_topics
-from server import Server, in_a_process_of_its_own
+from server import Server, run_in_new_process
 
 WINDOW = 0.5  # [s, wall]
 ROUNDS = 10  # windows of each loop
-SETTLE = 1.0  # [s, simulated] until robots that were spawned stand, or drive steadily
+SETTLE = 1.0  # [s, simulated] until spawned robots stand, or drive at a steady speed
 STEPS_PER_SECOND = 1000.0  # at real time
-GAZEBO_BARE = {20: 2150.0}  # steps/s of the bare loop beside Gazebo, by robots
+GAZEBO_BARE = {20: 2150.0}  # steps/s of the bare loop on the machine of Gazebo, by robots
 LOOPS = ('bare', 'engine', 'world')
 COLUMNS = (*LOOPS, 'server', 'read')
 PICTURE = OUTPUT / 'speed.png'
@@ -37,51 +38,52 @@ PICTURE = OUTPUT / 'speed.png'
 
 @dataclass
 class Case:
-    """So many robots, what Gazebo made of them, and what was measured.
+    """A number of robots, Gazebo's relative speed with them, and the measured speeds.
 
-    Gazebo's quotient beside 5 robots and more is that of standing robots; its own speed was the
-    same with 20 that drove, but the bare loop's was not. So the bare loop's robots stand there.
+    From 5 robots on, Gazebo's speed relative to the bare loop was measured with standing robots.
+    Driving did not change Gazebo's own speed with 20 robots, but it did change that of the bare
+    loop. Therefore the robots of the bare loop stand in these cases.
     """
 
     robots: int
     driving: bool
-    quotient: float | None = None  # Gazebo's steps per second / those of the bare loop
-    aim: float | None = None  # ours / Gazebo's
-    aim_read: float | None = None  # the same with odom, tf and joint_states subscribed
+    ratio: float | None = None  # Gazebo's steps per second / those of the bare loop
+    target: float | None = None  # ours / Gazebo's
+    target_read: float | None = None  # the same with odom, tf and joint_states subscribed
     bare_drives: bool = False
     best: dict[str, float] = field(default_factory=dict)  # column -> steps per second
-    arrived: float = 0.0  # share of the messages that reached their reader
+    received: float = 0.0  # share of the messages that the subscriber received
 
     @property
     def name(self) -> str:
-        """Return what a row of the table is called."""
+        """Return the name of the row in the table."""
         return f'{self.robots} {"driving" if self.driving else "idle"}' if self.robots else 'empty'
 
     @property
     def gazebo(self) -> float | None:
-        """Return the steps per second that Gazebo would make here."""
-        return self.quotient * self.best['bare'] if self.quotient else None
+        """Return the estimated steps per second of Gazebo on this machine."""
+        return self.ratio * self.best['bare'] if self.ratio else None
 
-    def saw(self, column: str, speed: float) -> None:
-        """Take note of a window."""
+    def record(self, column: str, speed: float) -> None:
+        """Keep the speed of a window if it is the best so far."""
         self.best[column] = max(speed, self.best.get(column, 0.0))
 
 
 def cases() -> list[Case]:
-    """Return what is measured, in an order in which robots are only added."""
+    """Return the cases, by increasing number of robots."""
     return [
-        Case(0, False, 0.072, aim=7.0),
+        Case(0, False, 0.072, target=7.0),
         Case(1, False, 0.58),
-        Case(1, True, 0.87, aim=5.5, aim_read=1.2, bare_drives=True),
+        Case(1, True, 0.87, target=5.5, target_read=1.2, bare_drives=True),
         Case(5, True, 0.98),
         Case(10, True, 1.04),
-        Case(20, True, 1.05, aim=3.2),
+        Case(20, True, 1.05, target=3.2),
         Case(50, True),
     ]
 
 
 def measure() -> list[Case]:
-    """Return all cases, measured; starts a server and needs a process of its own."""
+    """Return all cases, measured; starts a server, so it needs its own process."""
     measured = cases()
     with Server() as server:
         server.unthrottle()
@@ -90,36 +92,37 @@ def measure() -> list[Case]:
             while spawned < case.robots:
                 server.spawn()
                 spawned += 1
-            server.rounded(SETTLE)
+            server.wait_simulated(SETTLE)
             if case.driving:
                 server.drive()
-                server.rounded(SETTLE)
+                server.wait_simulated(SETTLE)
             server.pause()
-            _take_turns(case, server)
+            _measure_case(case, server)
             server.unpause()
     return measured
 
 
-def _take_turns(case: Case, server: Server) -> None:
+def _measure_case(case: Case, server: Server) -> None:
+    """Measure the loops and the server in turn."""
     with ExitStack() as stack:
         loops = {}
         for kind in LOOPS:
             driving = case.bare_drives if kind == 'bare' else case.driving
             loops[kind] = stack.enter_context(Loop(kind, case.robots, driving))
         for loop in loops.values():
-            loop.speed(0.0)  # until it is ready
+            loop.speed(0.0)  # wait until it is ready
         for _ in range(ROUNDS):
             for kind, loop in loops.items():
-                case.saw(kind, loop.speed(WINDOW))
-            case.saw('server', _speed(server))
+                case.record(kind, loop.speed(WINDOW))
+            case.record('server', _speed(server))
             if case.robots:
-                speed, arrived = _speed_read(server, case.robots)
-                case.saw('read', speed)
-                case.arrived = max(case.arrived, arrived)
+                speed, received = _speed_read(server, case.robots)
+                case.record('read', speed)
+                case.received = max(case.received, received)
 
 
 def _speed(server: Server) -> float:
-    """Return the server's steps per second over a window; it is paused before and after."""
+    """Return the steps per second of the server over a window; pause it before and after."""
     server.unpause()
     begin, simulated = time.monotonic(), server.simulated()
     time.sleep(WINDOW)
@@ -129,7 +132,7 @@ def _speed(server: Server) -> float:
 
 
 def _speed_read(server: Server, robots: int) -> tuple[float, float]:
-    """Return the steps per second with a reader, and the share of the messages that reached it."""
+    """Return the steps per second with a subscriber, and the share of messages it received."""
     with Reader(*robot_topics(robots)) as reader:
         before, simulated = reader.messages(), server.simulated()
         speed = _speed(server)
@@ -138,67 +141,68 @@ def _speed_read(server: Server, robots: int) -> tuple[float, float]:
 
 
 def table(measured: Sequence[Case]) -> str:
-    """Return the measured cases as text."""
+    """Return the measured cases as a table."""
     rows = ['robots        bare  engine   world  server    read  Gazebo  server/bare  '
-            'server/Gazebo        read/Gazebo  arrived']
+            'server/Gazebo        read/Gazebo received']
     for case in measured:
         speeds = [*(case.best.get(column) for column in COLUMNS), case.gazebo]
         row = f'{case.name:10}'
         row += ''.join(f'{speed:8.0f}' if speed else 8 * ' ' for speed in speeds)
         row += f'{case.best["server"] / case.best["bare"]:13.3f}'
-        row += f'{_against(case, "server", case.aim):>20}'
-        row += f'{_against(case, "read", case.aim_read):>18}'
-        row += f'{case.arrived:9.0%}' if case.robots else ''
+        row += f'{_vs_gazebo(case, "server", case.target):>20}'
+        row += f'{_vs_gazebo(case, "read", case.target_read):>18}'
+        row += f'{case.received:9.0%}' if case.robots else ''
         rows.append(row)
     first = _first_standing([case for case in measured if case.driving])
-    rows.append('Gazebo: not measured here but estimated, by its quotient to the bare loop on '
-                f'another machine; from {first} robots on that of standing ones')
+    rows.append('Gazebo: not measured here but estimated, from its speed relative to the bare loop '
+                f'on another machine; from {first} robots on, measured with standing robots')
     rows += [_real_time(case) for case in measured if case.robots in GAZEBO_BARE]
     return '\n'.join(rows)
 
 
 def _real_time(case: Case) -> str:
-    """Return how fast robots with readers run, here and on the machine Gazebo was measured on."""
+    """Return the real-time factor with subscribers, here and scaled to the machine of Gazebo."""
     here = case.best['read'] / STEPS_PER_SECOND
     there = here * GAZEBO_BARE[case.robots] / case.best['bare']
-    return (f'{case.name} with readers: {here:.2f} of real time here (aim 1), by the bare loop '
-            f'{there:.2f} of it where Gazebo was measured')
+    return (f'{case.name} with subscribers: real-time factor {here:.2f} here (target 1), '
+            f'{there:.2f} scaled to the machine of Gazebo by the bare loop')
 
 
-def _against(case: Case, column: str, aim: float | None) -> str:
-    """Return a quotient with Gazebo's speed, and whether it is what was aimed at."""
+def _vs_gazebo(case: Case, column: str, target: float | None) -> str:
+    """Return the ratio to Gazebo's speed, and whether it meets the target."""
     if not case.gazebo or column not in case.best:
         return ''
     ratio = case.best[column] / case.gazebo
-    return f'{ratio:.2f}' + (f' ({"met" if ratio >= aim else "NOT met"}: {aim:g})' if aim else '')
+    verdict = f' ({"met" if ratio >= target else "NOT met"}: {target:g})' if target else ''
+    return f'{ratio:.2f}{verdict}'
 
 
 def draw(measured: Sequence[Case], path: Path) -> None:
-    """Save the speeds of driving robots as a picture."""
+    """Plot the speeds of driving robots."""
     shown = [case for case in measured if case.driving]
-    standing = f'from {_first_standing(shown)} robots on of standing ones'
+    standing = f'from {_first_standing(shown)} robots on, these stand'
     names = {
-        'server': 'nobody subscribed',
+        'server': 'no subscriber',
         'read': 'odom, tf and joint_states subscribed',
         'bare': f'bare PyBullet, {standing}',
     }
     curves = {
         name: [(case.robots, case.best[column]) for case in shown] for column, name in names.items()
     }
-    gazebo = ('Gazebo, nobody subscribed: estimated, its quotient to bare PyBullet\n'
-              f'on another machine times bare PyBullet here, {standing}')
+    gazebo = ('Gazebo, no subscriber: estimated from its speed relative to\n'
+              f'bare PyBullet on another machine; {standing}')
     curves[gazebo] = [(case.robots, case.gazebo) for case in shown if case.gazebo]
     plot_speed(path, curves, estimated=gazebo)
 
 
 def _first_standing(driving: Sequence[Case]) -> int:
-    """Return from how many robots on those of the bare loop stand, and Gazebo's quotient is so."""
+    """Return the least number of robots for which those of the bare loop stand."""
     return min(case.robots for case in driving if not case.bare_drives)
 
 
 def main() -> int:
-    """Print the table, save the picture; return the exit code."""
-    measured = in_a_process_of_its_own(measure)
+    """Print the table and save the plot; return the exit code."""
+    measured = run_in_new_process(measure)
     print(table(measured))
     draw(measured, PICTURE)
     print(f'picture: {PICTURE}')

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measure by how much robots turn that are asked to drive straight on, with a pyramid and a cone.
+"""Measure the heading drift of robots that drive straight, with friction pyramid and cone.
 
-The article's robot, whose veer was recorded in Gazebo, and robots of 0.2, 5 and 50 kg on one caster
-and on two; each at four headings, of which the worst counts.
+Robots: the article's, whose drift was recorded in Gazebo, and robots of 0.2, 5 and 50 kg with one
+and two casters. Each drives at four headings; the worst counts.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ ARTICLE = "the article's"
 ROBOTS = (ARTICLE, *product(SIZES, (1, 2)))
 CONES = (False, True)
 SPEED, SECONDS = 1.0, 20
-GAZEBO = {ARTICLE: 0.42}  # [rad] in Gazebo, at that speed after that time
+GAZEBO = {ARTICLE: 0.42}  # [rad] in Gazebo, at the same speed and time
 
 
-def turned(case: tuple[str | tuple[float, int], bool]) -> float:
-    """Return by how much a robot turns at the worst heading [rad]."""
+def heading_drift(case: tuple[str | tuple[float, int], bool]) -> float:
+    """Return the drift of a robot at the worst heading [rad]."""
     robot, cone = case
     return max(abs(math.remainder(_yaw(robot, cone, heading) - heading, math.tau))
                for heading in HEADINGS)
@@ -54,8 +54,9 @@ def main() -> int:
     logging.disable(logging.WARNING)
     cases = list(product(ROBOTS, CONES))
     with ProcessPoolExecutor(os.cpu_count()) as pool:
-        found = dict(zip(cases, pool.map(turned, cases), strict=True))
-    print(f'veer [rad] after {SECONDS} s at {SPEED:g} m/s, the worst of {len(HEADINGS)} headings')
+        found = dict(zip(cases, pool.map(heading_drift, cases), strict=True))
+    print(f'heading drift [rad] after {SECONDS} s at {SPEED:g} m/s, '
+          f'worst of {len(HEADINGS)} headings')
     print(f'{"robot":24}{"pyramid":>10}{"cone":>10}{"Gazebo":>10}')
     for robot in ROBOTS:
         name = robot if isinstance(robot, str) else f'{robot[0]:g} kg, casters: {robot[1]}'

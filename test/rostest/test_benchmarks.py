@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A part of the benchmark that is told to end takes its master, server and clients along."""
+"""A part of the benchmark that is interrupted ends its master, server and clients."""
 
 import os
 import signal
@@ -25,7 +25,7 @@ def name_of(pid):
 
 class BenchmarksTest(unittest.TestCase):
 
-    def test_the_soak_leaves_nothing_behind_at_sigterm(self):
+    def test_sigterm_ends_all_processes_of_the_soak_test(self):
         path = os.pathsep.join([str(ROOT / 'test'), os.environ['PYTHONPATH']])
         process = subprocess.Popen(
             [sys.executable, ROOT / 'benchmark' / 'run.py', 'soak', '--seconds', '600'],

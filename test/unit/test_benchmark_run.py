@@ -1,4 +1,4 @@
-"""What runs the benchmark's parts: names, times and progress; nothing is left behind."""
+"""Runner of the benchmark's parts: names, durations, progress and cleanup."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ import pytest
 from support import ROOT
 
 BENCHMARK = ROOT / 'benchmark'
-DEADLINE = 20.0  # [s, wall] for what takes a second
+DEADLINE = 20.0  # [s, wall] timeout of what usually takes a second
 RUNNER = """
 import pathlib, sys
 sys.path.insert(0, {benchmark!r})
@@ -18,7 +18,7 @@ import run
 run.FOLDER, run.PARTS, run.REMINDER = pathlib.Path({folder!r}), {{'part': 7.0}}, 0.0
 sys.exit(run.main(sys.argv[1:]))
 """
-# Leaves a file, and a process that has lost its parent, has its own session and hears nothing.
+# Leaves a file and an orphan in a session of its own that ignores signals.
 STUBBORN = """
 import os, signal, sys, tempfile, time
 handle, name = tempfile.mkstemp()
@@ -44,14 +44,14 @@ def run(monkeypatch):
 
 
 def runner(folder, *arguments):
-    """Start the runner on a part of the test's own."""
+    """Start the runner with `folder` as the folder of parts."""
     program = RUNNER.format(benchmark=str(BENCHMARK), folder=str(folder))
     return subprocess.Popen(
         [sys.executable, '-c', program, *arguments], stdout=subprocess.PIPE,
         stderr=subprocess.PIPE, text=True, env=os.environ | {'PYTHONPATH': str(ROOT / 'src')})
 
 
-def lives(pid):
+def is_running(pid):
     return Path(f'/proc/{pid}').exists()
 
 
@@ -61,22 +61,22 @@ def test_a_signal_leaves_no_process_and_no_file(tmp_path, number):
     process = runner(tmp_path)
     assert process.stdout.readline() == '== part, about 7 s\n'
     pid, name = process.stdout.readline().split()
-    assert lives(pid)
+    assert is_running(pid)
     process.send_signal(number)
     _, complaints = process.communicate(timeout=DEADLINE)
     assert process.returncode == 128 + number
     assert 'Traceback' not in complaints
-    assert not lives(pid)
+    assert not is_running(pid)
     assert not os.path.exists(name)
     assert not os.path.exists(os.path.dirname(name))
 
 
-def test_what_a_part_left_behind_ends_with_it(tmp_path):
+def test_orphans_of_a_part_end_with_it(tmp_path):
     (tmp_path / 'part.py').write_text(STUBBORN.format(end='sys.exit(3)'))
     process = runner(tmp_path)
     printed, _ = process.communicate(timeout=DEADLINE)
     assert process.returncode == 3
-    assert not lives(printed.splitlines()[-1].split()[0])
+    assert not is_running(printed.splitlines()[-1].split()[0])
 
 
 def test_progress_is_shown_while_a_part_is_silent(tmp_path):
@@ -86,7 +86,7 @@ def test_progress_is_shown_while_a_part_is_silent(tmp_path):
     assert progress.splitlines()[0] == 'part: 1 s of about 7 s'
 
 
-def test_arguments_go_to_a_single_part(tmp_path):
+def test_arguments_after_a_single_part_are_passed_to_it(tmp_path):
     (tmp_path / 'part.py').write_text('import sys\nprint(sys.argv[1:])\n')
     process = runner(tmp_path, 'part', '--seconds', '3')
     printed, _ = process.communicate(timeout=DEADLINE)
@@ -99,25 +99,28 @@ def test_arguments_go_to_a_single_part(tmp_path):
     (['fidelity', 'a.csv', 'b.csv'], ['fidelity'], ['a.csv', 'b.csv']),
     (['soak', '--seconds', '20'], ['soak'], ['--seconds', '20']),
 ])
-def test_all_but_the_long_one_run_where_none_is_named(run, arguments, parts, own):
+def test_parts_and_arguments_are_told_apart(run, arguments, parts, own):
     chosen, given = run.chosen(arguments)
     assert chosen[:2] == parts
     assert given == own
+
+
+def test_soak_runs_only_by_name(run):
     assert 'soak' not in run.chosen([])[0]
 
 
-def test_what_is_no_part_is_named_with_those_that_are(run, capsys):
+def test_error_about_an_unknown_part_lists_the_known_ones(run, capsys):
     assert run.main(['sped', 'speed']) == 2
     said = capsys.readouterr().err
     assert "there is no benchmark 'sped'; there are: fidelity " in said
 
 
-def test_the_soak_takes_as_long_as_it_is_told(run):
+def test_estimate_for_soak_follows_its_argument(run):
     assert run.duration('soak', ['--seconds', '20']) == pytest.approx(50.0)
     assert run.duration('soak', []) > 600.0
 
 
-def test_help_readme_and_contributing_name_every_part(run):
+def test_help_readme_and_contributing_list_every_part(run):
     usage = subprocess.run([ROOT / 'rosbots', 'help'], capture_output=True, text=True, check=True)
     texts = [usage.stdout, *((ROOT / name).read_text(encoding='utf-8')
                              for name in ('README.md', 'CONTRIBUTING.md'))]

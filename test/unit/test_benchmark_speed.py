@@ -1,4 +1,4 @@
-"""The speeds as table and picture: what is an estimate is called one."""
+"""Table and plot of speeds: estimates are called so."""
 
 import sys
 from types import ModuleType
@@ -9,9 +9,9 @@ from support import ROOT
 
 @pytest.fixture
 def speed(monkeypatch):
-    """Return the module, without what starts servers."""
+    """Return the module, with stubs for the modules that start servers."""
     monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
-    for name, members in (('server', ('Server', 'in_a_process_of_its_own')),
+    for name, members in (('server', ('Server', 'run_in_new_process')),
                           ('reader', ('PER_SECOND', 'Reader', 'robot_topics')),
                           ('loops', ('Loop',))):
         module = ModuleType(name)
@@ -24,15 +24,15 @@ def speed(monkeypatch):
 
 @pytest.fixture
 def measured(speed):
-    """Return cases in which every loop makes 1000 steps per second."""
+    """Return cases in which every loop runs 1000 steps per second."""
     cases = speed.cases()
     for case in cases:
         for column in speed.COLUMNS:
-            case.saw(column, 1000.0)
+            case.record(column, 1000.0)
     return cases
 
 
-def test_the_picture_calls_gazebos_curve_an_estimate_of_standing_robots(
+def test_plot_labels_gazebos_curve_an_estimate_with_standing_robots(
         speed, measured, monkeypatch, tmp_path):
     drawn = {}
     monkeypatch.setattr(speed, 'plot_speed', lambda path, curves, estimated: drawn.update(
@@ -40,15 +40,15 @@ def test_the_picture_calls_gazebos_curve_an_estimate_of_standing_robots(
     speed.draw(measured, tmp_path / 'speed.png')
     label = drawn['estimated']
     assert label in drawn['curves']
-    assert label.startswith('Gazebo, nobody subscribed: estimated')
-    assert 'from 5 robots on of standing ones' in label
+    assert label.startswith('Gazebo, no subscriber: estimated')
+    assert 'from 5 robots on, these stand' in label
     assert [robots for robots, _ in drawn['curves'][label]] == [1, 5, 10, 20]
 
 
-def test_the_picture_can_be_drawn(speed, measured, tmp_path):
+def test_plot_is_written_as_png(speed, measured, tmp_path):
     speed.draw(measured, tmp_path / 'speed.png')
     assert (tmp_path / 'speed.png').read_bytes().startswith(b'\x89PNG')
 
 
-def test_the_table_says_so_too(speed, measured):
+def test_table_calls_gazebos_speeds_estimated(speed, measured):
     assert 'not measured here but estimated' in speed.table(measured)
