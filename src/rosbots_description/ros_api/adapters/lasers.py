@@ -5,17 +5,31 @@ Publishes:
         are any, from the lowest upward.
     <ns>/<topicName> (sensor_msgs/PointCloud): block_laser, with one channel without a name.
     <ns>/<topicName> (sensor_msgs/Range): range.
+    <ns>/<topicName> (sensor_msgs/PointCloud2): Velodyne's, with x, y, z, intensity, ring and time.
 Parameters:
     tf_prefix, searched from the plugin's namespace upward.
 """
 
-from sensor_msgs.msg import LaserScan, PointCloud, Range
+from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField, Range
 
-from ...sim.sensors import BlockLaserPlugin, Distance, LaserPlugin, RangePlugin, Scan
+from ...sim.sensors import (
+    BlockLaserPlugin,
+    Distance,
+    LaserPlugin,
+    RangePlugin,
+    RingCloud,
+    Scan,
+    VelodynePlugin,
+)
 from ..messages import LaserScanLayout, PointCloudLayout
 from .adapter import Adapter
 from .declarations import Pack, Publishes
 from .registry import connects
+
+_RING_FIELDS = [
+    PointField(name, offset, PointField.UINT16 if name == 'ring' else PointField.FLOAT32, 1)
+    for name, offset in (
+        ('x', 0), ('y', 4), ('z', 8), ('intensity', 12), ('ring', 16), ('time', 18))]
 
 
 def scan_pack(adapter: Adapter) -> Pack:
@@ -41,7 +55,18 @@ def points_pack(adapter: Adapter) -> Pack:
     return lambda number, now_ns, points: layout.pack(number, now_ns, *points)
 
 
+def ring_cloud_message(cloud: RingCloud) -> PointCloud2:
+    """Return the message of a point cloud with rings."""
+    height, width = cloud.points.shape
+    step = cloud.points.itemsize
+    return PointCloud2(
+        height=height, width=width, fields=_RING_FIELDS, point_step=step, row_step=step * width,
+        data=cloud.points.tobytes(), is_dense=cloud.is_dense)
+
+
 connects(LaserPlugin, Publishes('scan', '<topicName>', LaserScan, pack=scan_pack))
 connects(RangePlugin, Publishes(
     'range', '<topicName>', Range, convert=range_message, frame='<frameName>'))
 connects(BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, pack=points_pack))
+connects(VelodynePlugin, Publishes(
+    'cloud', '<topicName>', PointCloud2, convert=ring_cloud_message, frame='<frameName>'))

@@ -19,6 +19,7 @@ from .laser import LaserPlugin
 from .link_imu import LinkImu
 from .range import Distance, RangePlugin
 from .ray import Scan
+from .velodyne import RingCloud, VelodynePlugin
 
 __all__ = [
     'BlockLaserPlugin',
@@ -41,8 +42,10 @@ __all__ = [
     'OpenniKinectPlugin',
     'Points',
     'RangePlugin',
+    'RingCloud',
     'Scan',
     'Sensor',
     'SensorPlugin',
     'StampedInfo',
+    'VelodynePlugin',
 ]
