@@ -1,19 +1,26 @@
-"""The topics of IMUs; their frames have no prefix.
+"""The topics of IMUs and of satellite navigation; their frames have no prefix.
 
 Publishes:
-    <ns>/<topicName> (sensor_msgs/Imu): imu_sensor, and imu, the plugin of a model.
+    <ns>/<topicName> (sensor_msgs/Imu): imu_sensor; imu and hector's imu, plugins of a model.
+    <ns>/<biasTopicName> (sensor_msgs/Imu): the errors of hector's imu.
+    <ns>/<topicName> (sensor_msgs/NavSatFix): hector's gps.
+    <ns>/<velocityTopicName> (geometry_msgs/Vector3Stamped): of hector's gps, to north, west and up.
 Services:
-    <ns>/<serviceName> (std_srvs/Empty): of imu; it answers, and nothing is calibrated, as upstream.
+    <ns>/<serviceName> (std_srvs/Empty): of imu, where nothing is calibrated, as upstream; of
+        hector's imu it removes the drift of the angular velocity.
 """
 
 import logging
 from collections.abc import Callable
+from typing import cast
 
 import rospy
-from sensor_msgs.msg import Imu
-from std_srvs.srv import Empty, EmptyResponse
+from geometry_msgs.msg import Vector3, Vector3Stamped
+from sensor_msgs.msg import Imu, NavSatFix, NavSatStatus
+from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from ...sim.sensors import ImuSensorPlugin, LinkImu
+from ...sim.core import Vector
+from ...sim.sensors import Fix, HectorGps, HectorImu, ImuSensorPlugin, LinkImu
 from ..messages import ImuLayout
 from .adapter import Adapter, where
 from .declarations import Offers, Pack, Publishes
@@ -29,8 +36,14 @@ def imu_pack(adapter: Adapter) -> Pack:
 
 def calibration(adapter: Adapter, name: str) -> Callable[[], None]:
     """Offer the service."""
+    plugin = cast(LinkImu, adapter.plugin)
+
+    def answer(_request: EmptyRequest) -> EmptyResponse:
+        adapter.server.loop.call(plugin.calibrate)
+        return EmptyResponse()
+
     try:
-        service = rospy.Service(name, Empty, lambda _request: EmptyResponse())
+        service = rospy.Service(name, Empty, answer)
     except rospy.ServiceException:
         logger.warning('%s: there is a service %s already; give this one another <serviceName>',
                        where(adapter.plugin), name)
@@ -38,7 +51,29 @@ def calibration(adapter: Adapter, name: str) -> Callable[[], None]:
     return service.shutdown
 
 
+def fix_message(fix: Fix) -> NavSatFix:
+    """Return the message of a position."""
+    message = NavSatFix(
+        status=NavSatStatus(fix.status, fix.service), latitude=fix.latitude,
+        longitude=fix.longitude, altitude=fix.altitude,
+        position_covariance_type=NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN)
+    message.position_covariance[::4] = fix.variances
+    return message
+
+
+def velocity_message(velocity: Vector) -> Vector3Stamped:
+    """Return the message of a velocity."""
+    return Vector3Stamped(vector=Vector3(*velocity))
+
+
 IMU = Publishes('imu', '<topicName>', Imu, pack=imu_pack)
 
 connects(ImuSensorPlugin, IMU)
 connects(LinkImu, IMU, Offers('<serviceName>', calibration))
+connects(HectorImu, IMU, Publishes('bias', '<biasTopicName>', Imu, pack=imu_pack),
+         Offers('<serviceName>', calibration))
+connects(
+    HectorGps,
+    Publishes('fix', '<topicName>', NavSatFix, convert=fix_message, frame='<frameId>', queue=10),
+    Publishes('velocity', '<velocityTopicName>', Vector3Stamped, convert=velocity_message,
+              frame='<frameId>', queue=10))

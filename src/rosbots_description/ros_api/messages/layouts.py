@@ -150,12 +150,13 @@ class ImuLayout:
 
     def pack(self, seq: int, now_ns: int, reading: ImuReading) -> bytes:
         """Return the message with the number `seq`, stamped `now_ns` [ns]."""
-        variance = reading.deviation * reading.deviation
-        covariance = (variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance)
+        covariances = [0.0] * 27  # row-major 3x3 each
+        for i in range(3):
+            covariances[9 * i:9 * i + 9:4] = reading.variances[3 * i:3 * i + 3]
         return self._layout.pack(
             self._size, seq, *divmod(now_ns, NANOSECONDS), self._frame,
-            *reading.orientation, *covariance, *reading.angular_velocity, *covariance,
-            *reading.linear_acceleration, *covariance,
+            *reading.orientation, *covariances[:9], *reading.angular_velocity, *covariances[9:18],
+            *reading.linear_acceleration, *covariances[18:],
         )
 
 

@@ -13,6 +13,8 @@ from .camera_plugins import (
     StampedInfo,
 )
 from .contact import BumperPlugin, ContactPair, ContactPoint
+from .hector_gps import Fix, HectorGps
+from .hector_imu import HectorImu
 from .imu import ImuReading, ImuSensorPlugin
 from .joint_wrench import JointWrench, JointWrenchPlugin
 from .laser import LaserPlugin
@@ -31,6 +33,9 @@ __all__ = [
     'ContactPoint',
     'DepthCameraPlugin',
     'Distance',
+    'Fix',
+    'HectorGps',
+    'HectorImu',
     'Image',
     'ImuReading',
     'ImuSensorPlugin',

@@ -30,12 +30,12 @@ _AXES = 'x', 'y', 'z'
 
 
 class ImuReading(NamedTuple):
-    """An IMU reading in the sensor's axes, with its nominal standard deviation."""
+    """An IMU reading in the sensor's axes, with its nominal variances."""
 
     orientation: Quaternion  # relative to the world, or to the initial orientation
     angular_velocity: Vector  # [rad/s]
     linear_acceleration: Vector  # [m/s^2]
-    deviation: float = 0.0  # of each of these numbers, in their units
+    variances: tuple[float, ...] = (0.0,) * 9  # in the same order and units, about x, y and z
 
 
 @register_sensor('imu')
@@ -143,4 +143,4 @@ class ImuSensorPlugin(SensorPlugin[ImuReading]):
             numbers = noisy(numbers, [self._noise] * 10, self.random, self.world.clock.steps)
         x, y, z, w, wx, wy, wz, ax, ay, az = numbers
         self.imu.send(
-            ImuReading((x, y, z, w), (wx, wy, wz), (ax, ay, az), self._noise.deviation))
+            ImuReading((x, y, z, w), (wx, wy, wz), (ax, ay, az), (self._noise.deviation ** 2,) * 9))

@@ -45,6 +45,9 @@ class LinkImu(PeriodicPlugin):
 
     wake = reset
 
+    def calibrate(self) -> None:
+        """Do nothing, as upstream."""
+
     def before_step(self) -> None:
         """Sample the velocity before physics if there is no previous one."""
         if self._before is None and self.is_read:
@@ -63,7 +66,7 @@ class LinkImu(PeriodicPlugin):
             numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
         wx, wy, wz, ax, ay, az = numbers
         self.imu.send(ImuReading(
-            pose.orientation, (wx, wy, wz), (ax, ay, az), self._noise.deviation))
+            pose.orientation, (wx, wy, wz), (ax, ay, az), (self._noise.deviation ** 2,) * 9))
 
     def _state(self) -> tuple[Pose, Twist]:
         """Return pose and twist of the IMU's frame in the world."""

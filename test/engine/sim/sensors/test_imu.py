@@ -125,7 +125,7 @@ def test_noise_is_on_the_numbers_that_gazebo_puts_it_on(world, robot, deviations
     world.run(8000)
     readings = np.array([numbers(reading) for time, reading in found if time > 1000])
     assert readings.std(axis=0) == pytest.approx(np.array(deviations), rel=0.12, abs=1e-6)
-    assert {reading.deviation for _, reading in found} == {claimed}
+    assert {reading.variances for _, reading in found} == {(claimed ** 2,) * 9}
 
 
 @pytest.mark.parametrize(('robot', 'times'), [

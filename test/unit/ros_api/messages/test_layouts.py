@@ -87,12 +87,14 @@ def test_a_point_cloud(points):
 def test_an_imu():
     message = Imu()
     message.header.frame_id, message.header.stamp = 'imu_link', STAMP
+    variances = {'orientation': (-1.0, -1.0, 0.5), 'angular_velocity': (1.0, 2.0, 3.0),
+                 'linear_acceleration': (4.0, 5.0, 6.0)}
     for field, values in (('orientation', POSE.orientation), ('angular_velocity', TWIST.angular),
                           ('linear_acceleration', TWIST.linear)):
         for axis, value in zip('xyzw', values, strict=False):
             setattr(getattr(message, field), axis, value)
-        getattr(message, f'{field}_covariance')[::4] = [0.25] * 3
-    reading = ImuReading(POSE.orientation, TWIST.angular, TWIST.linear, 0.5)
+        getattr(message, f'{field}_covariance')[::4] = variances[field]
+    reading = ImuReading(POSE.orientation, TWIST.angular, TWIST.linear, sum(variances.values(), ()))
     assert ImuLayout('imu_link').pack(SEQ, NOW_NS, reading) == on_the_wire(message)
 
 

@@ -1,0 +1,204 @@
+"""Hector's IMU and satellite navigation measure what mechanics and geodesy have."""
+
+import math
+from contextlib import closing
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rosbots_description.ros_api.adapters.imus import fix_message
+from rosbots_description.sim.core.errors import NotFoundError
+from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, multiply, rotate
+from rosbots_description.sim.public.world import World
+
+ROBOT = '''<robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="1" ixy="0"
+ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="mast"><inertial><mass value=".001"/>
+<inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial></link>
+<joint name="j" type="fixed"><parent link="base"/><child link="mast"/>
+<origin xyz="0 0 2" rpy="0 0 .5"/></joint>
+<gazebo><plugin name="p" filename="libhector_gazebo_ros_{library}.so">{tags}</plugin></gazebo>
+</robot>'''
+GRAVITY = 9.8  # [m/s^2]
+
+
+@pytest.fixture
+def world():
+    with closing(World()) as made:
+        yield made
+
+
+def spawn(world, library, output, tags='', **pose):
+    """Return model, plugin, and a list that takes the readings of an output from now on."""
+    model = world.spawn(ROBOT.format(library=library, tags=tags), 'r', **pose)
+    plugin = model.plugin('p')
+    found = []
+    plugin.outputs[output].connect(found.append)
+    return model, plugin, found
+
+
+def test_a_fix_lies_on_the_ellipsoid_with_x_to_the_north_and_y_to_the_west(world):
+    _, plugin, found = spawn(world, 'gps', 'fix', x=100.0, y=50.0, z=3.0)
+    plugin.report()
+    fix = found[0]
+    # A degree there, by the usual series of WGS 84: 111227.13 m to the north, 71844.36 m east.
+    assert fix.latitude == pytest.approx(49.9 + 100.0 / 111227.13, abs=1e-9)
+    assert fix.longitude == pytest.approx(8.9 - 50.0 / 71844.36, abs=1e-8)
+    assert fix.altitude == pytest.approx(3.0)
+    assert (fix.status, fix.service, fix.variances) == (0, 0, (0.0, 0.0, 0.0))
+
+
+def test_the_heading_turns_position_and_velocity(world):
+    tags = ('<referenceLatitude>0</referenceLatitude><referenceLongitude>0</referenceLongitude>'
+            '<referenceHeading>90</referenceHeading><referenceAltitude>7</referenceAltitude>')
+    model, plugin, found = spawn(world, 'gps', 'fix', tags, y=100.0)
+    velocities = []
+    plugin.outputs['velocity'].connect(velocities.append)
+    model.set_twist(Twist((0.0, 2.0, 0.5), (0.0, 0.0, 0.0)))
+    plugin.report()
+    assert found[0][:3] == pytest.approx((100.0 / 110574.3, 0.0, 7.0), abs=1e-7)
+    assert velocities[0] == pytest.approx((2.0, 0.0, 0.5))
+
+
+def test_a_fix_comes_four_times_a_second_and_of_a_lumped_body_too(world):
+    times = []
+    _, plugin, found = spawn(world, 'gps', 'fix', '<bodyName>mast</bodyName>')
+    plugin.outputs['fix'].connect(lambda _: times.append(world.clock.now_ns // 1_000_000))
+    world.run(750)
+    assert times == [250, 500, 750]
+    assert found[0].altitude == pytest.approx(2.0 - GRAVITY * 0.25**2 / 2, abs=0.01)
+
+
+def test_the_message_knows_its_covariance(world):
+    tags = '<drift>3 3 3</drift><gaussianNoise>4 0 1</gaussianNoise><service>1</service>'
+    _, plugin, found = spawn(world, 'gps', 'fix', tags)
+    plugin.report()
+    message = fix_message(found[0])
+    assert list(message.position_covariance[::4]) == [25.0, 9.0, 10.0]
+    assert (message.position_covariance_type, message.status.service) == (2, 1)
+
+
+def test_drift_and_noise_have_their_size_and_forget_at_their_frequency():
+    """Over many seeds, as one drift is nearly constant."""
+    tags = ('<accelDrift>.3</accelDrift><accelDriftFrequency>0.1</accelDriftFrequency>'
+            '<yawDrift>.1</yawDrift><accelOffset>1 0 0</accelOffset>')
+    drifts = []
+    for seed in range(150):
+        with closing(World()) as world:
+            world.seed = seed
+            plugin = spawn(world, 'imu', 'imu', tags)[1]
+            drifts.append([plugin._accel.drift(time) for time in (0.0, 10.0, 100.0)])
+            assert plugin._accel.bias(5.0) - plugin._accel.drift(5.0) == pytest.approx((1, 0, 0))
+    now, later, last = np.array(drifts).transpose(1, 0, 2).reshape(3, -1)
+    for drift in (now, later, last):
+        assert drift.std() == pytest.approx(0.3, rel=0.1)
+    assert (now * later).mean() == pytest.approx(0.3**2 * math.exp(-1.0), abs=0.02)
+    assert (now * last).mean() == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_drift_of_the_velocity_moves_the_position(world):
+    tags = '<velocityDrift>.5</velocityDrift><driftFrequency>0.001</driftFrequency>'
+    plugin = spawn(world, 'gps', 'fix', tags)[1]
+    model, step = plugin._speed, 0.5
+    moved = sum(math.exp(-0.001 * (100.0 - time)) * model.drift(time) * step
+                for time in np.arange(0.25, 100.0, step))
+    assert model.integrated_drift(100.0, plugin._position.frequency) == pytest.approx(
+        moved, rel=1e-3)
+
+
+@pytest.mark.parametrize(('tags', 'mount'), [
+    ('', 0.0), ('<bodyName>mast</bodyName>', 0.5), ('<rpyOffset>0 0 .5</rpyOffset>', 0.5)])
+def test_an_imu_that_falls_and_turns_reads_its_attitude_and_rate_and_no_weight(world, tags, mount):
+    model, _, found = spawn(world, 'imu', 'imu', tags)
+    attitude = from_rpy(0.0, 0.3, 0.4)
+    model.set_pose(Pose((0.0, 0.0, 50.0), attitude))
+    model.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
+    world.run(3)
+    reading = found[-1]
+    assert reading.orientation == pytest.approx(
+        multiply(attitude, from_rpy(0.0, 0.0, mount)), abs=0.005)
+    assert rotate(reading.orientation, reading.angular_velocity) == pytest.approx(
+        (0.0, 0.0, 1.0), abs=0.005)
+    assert np.linalg.norm(reading.linear_acceleration) < 2.1  # of the mast, 2 m off the axis
+
+
+def test_a_standing_imu_feels_gravity_and_its_errors_tilt_its_attitude(world):
+    tags = ('<accelOffset>.49 0 0</accelOffset><yawOffset>.2</yawOffset><rateOffset>0 0 1'
+            '</rateOffset><rateScaleError>2 2 2</rateScaleError><accelGaussianNoise>.98 .98 0'
+            '</accelGaussianNoise><yawGaussianNoise>.1</yawGaussianNoise>')
+    _, plugin, found = spawn(world, 'imu', 'imu', tags)
+    biases = []
+    plugin.outputs['bias'].connect(biases.append)
+    plugin.report()
+    reading, bias = found[-1], biases[-1]
+    assert reading.angular_velocity == pytest.approx((0.0, 0.0, 1.0))
+    assert reading.linear_acceleration[2] == pytest.approx(GRAVITY)
+    # A bias of 0.05 g along x looks like a pitch of -0.05 rad.
+    assert reading.orientation == pytest.approx(
+        multiply(from_rpy(0.0, 0.0, 0.2), from_rpy(0.0, -0.05, 0.0)), abs=1e-4)
+    assert reading.variances == pytest.approx((0.01, 0.01, 0.01, 0, 0, 0, 0.98**2, 0.98**2, 0))
+    assert bias.linear_acceleration == (0.49, 0.0, 0.0)
+    assert bias.angular_velocity == (0.0, 0.0, 1.0)
+    assert bias.orientation == pytest.approx(reading.orientation)
+
+
+def test_calibration_removes_the_drift_until_it_returns(world):
+    plugin = spawn(world, 'imu', 'imu', '<rateDrift>.5</rateDrift>')[1]
+    world.run(1000)
+    drift = plugin._rate.drift(1.0)
+    plugin.calibrate()
+    assert np.abs(drift).min() > 0.0
+    assert plugin._rate.drift(1.0) == pytest.approx((0.0, 0.0, 0.0))
+    world.reset_simulation()
+    assert plugin._rate.drift(1.0) == pytest.approx(drift)
+
+
+def test_readings_repeat_with_the_seed_whenever_somebody_begins_to_read():
+    def reading(seed, begin):
+        with closing(World.empty()) as world:
+            world.seed = seed
+            model = world.spawn(ROBOT.format(library='imu', tags=(
+                '<accelDrift>.3</accelDrift><rateGaussianNoise>.1</rateGaussianNoise>')), 'r')
+            world.run(begin)
+            found = []
+            model.plugin('p').outputs['imu'].connect(found.append)
+            world.run(20 - begin)
+            return found[-1]
+
+    assert reading(1, 0) == reading(1, 10)
+    assert reading(1, 0) != reading(2, 0)
+
+
+def test_without_gravity_no_tilt_is_known(world):
+    plugin = spawn(world, 'imu', 'imu', '<accelOffset>1 1 1</accelOffset>')[1]
+    world.physics = replace(world.physics, gravity=(0.0, 0.0, 0.0))
+    plugin.outputs['imu'].latch()
+    plugin.report()
+    reading = plugin.outputs['imu'].newest
+    assert reading.variances[:2] == (-1.0, -1.0)
+    assert reading.orientation == pytest.approx((0.0, 0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize(('library', 'tags', 'sentence'), [
+    ('imu', '<accelDrift>1 2</accelDrift>', "<accelDrift> is '1 2'; it takes 3 finite numbers"),
+    ('imu', '<yawDrift>nan</yawDrift>', "<yawDrift> is 'nan'; it takes a finite number"),
+    ('imu', '<rateGaussianNoise>-1</rateGaussianNoise>', "is '-1'; it must not be negative"),
+    ('imu', '<bodyName>nobody</bodyName>', 'bodyName: nobody does not exist'),
+    ('gps', '<referenceLatitude>95</referenceLatitude>',
+     '<referenceLatitude> is 95; it must lie between -89.999 and 89.999'),
+    ('gps', '<status>300</status>', '<status> is 300; it must lie between -1 and 2'),
+    ('gps', '<updateRate>fast</updateRate>', "<updateRate> is 'fast'; it takes a finite number"),
+])
+def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
+        world, library, tags, sentence, caplog):
+    model = world.spawn(ROBOT.format(library=library, tags=tags), 'r')
+    assert sentence in caplog.text
+    with pytest.raises(NotFoundError):
+        model.plugin('p')
+    world.run(3)
+
+
+def test_the_old_names_of_the_headings_errors_are_pointed_out(world, caplog):
+    spawn(world, 'imu', 'imu', '<headingDrift>1</headingDrift>')
+    assert 'not read by this plugin: <headingDrift> (the tags of the heading begin with yaw' \
+        in caplog.text
