@@ -41,6 +41,7 @@ def recorded_scene(recording):
     if 'near' in recording:
         x, y, z = LASER
         middle = recording['near'] + 0.01
-        world.spawn(CUBE, x=x + middle * math.cos(HEADING), y=y + middle * math.sin(HEADING), z=z,
-                    yaw=HEADING)
+        # The six digits that were given to spawn_model decide where a ray begins at its surface.
+        world.spawn(CUBE, x=round(x + middle * math.cos(HEADING), 6),
+                    y=round(y + middle * math.sin(HEADING), 6), z=z, yaw=HEADING)
     return world, robot

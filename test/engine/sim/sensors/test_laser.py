@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.sensing import RECORDED, ROBOTS, numbers, recorded_scene, recordings
 
-from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.core.transforms import Pose, normalise
 from rosbots_description.sim.public.world import World
 
 SCANS = recordings('laser')
@@ -58,6 +58,34 @@ def test_angles_have_six_digits_as_gazebos_sensors_read_them(scene):
     sensor = scene.spawn(robot_with(min_angle=-1.570796, max_angle=1.570796)).sensors[0]
     assert np.float32(sensor.read().angle_min) == np.float32(-1.57079994678)
     assert sensor.read().angle_max == 1.5708
+
+
+def test_scans_of_a_driving_robot_are_those_recorded(scene):
+    """Gazebo's rays belong to the pose of the stamp or of one step later, within one scan, too."""
+    robot = scene.spawn(ROBOTS / 'skid4_laser.urdf')
+    sensor = robot.sensor('head_hokuyo_sensor')
+    for recording in recordings('laser_driving'):
+        expected, differences = numbers(recording['ranges']), []
+        for row in recording['poses']:
+            robot.set_pose(Pose(tuple(row[:3]), normalise(tuple(row[3:]))))
+            found = sensor.read().ranges
+            differences.append(np.abs(found.clip(max=99.0) - expected.clip(max=99.0)))
+        assert np.minimum(*differences).max() < 2 * EXACT  # poses have seven digits
+
+
+def test_a_scan_of_a_driving_robot_belongs_to_the_pose_of_its_stamp(scene):
+    robot = scene.spawn(ROBOTS / 'skid4_laser.urdf')
+    robot.plugin('skid_steer_drive').command(0.3, 0.8)
+    sensor = robot.sensor('head_hokuyo_sensor')
+    poses = []
+    found = stamped(scene, sensor)
+    sensor.readings.connect(lambda _: poses.append(robot.pose))
+    scene.run(1000)
+    assert [time for time, _ in found] == list(range(25, 1001, 25))
+    assert math.dist(poses[0].position, poses[-1].position) > 0.2
+    for (_, scan), pose in list(zip(found, poses, strict=True))[-5:]:
+        robot.set_pose(pose)
+        assert sensor.read().ranges == pytest.approx(scan.ranges, abs=1e-9)
 
 
 def test_what_moves_is_seen_where_it_is_at_the_end_of_the_step(scene):
