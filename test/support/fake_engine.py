@@ -19,6 +19,7 @@ class FakeEngine(PhysicsEngine):
     """
 
     needs_rebuild = False
+    placements = 0
 
     def __init__(self, physics):
         self.steps = []  # how many each call of `step` has made
@@ -40,6 +41,7 @@ class FakeEngine(PhysicsEngine):
             spec=spec, pose=pose, twist=Twist(), roots=[root], joints=set(names),
             fixed_roots={root} if spec.static else set(),
             state={name: [0.0, 0.0] for name in names}, motors=dict.fromkeys(names, (0.0, 0.0))))
+        self.placements += 1
         return self.bodies[-1]
 
     def remove(self, body):
@@ -66,6 +68,7 @@ class FakeEngine(PhysicsEngine):
 
     def set_motion(self, body, motion):
         ((body.pose, body.twist),) = motion.roots.values()
+        self.placements += 1
         body.state = {name: list(state) for name, state in motion.joints.items()}
         body.motors = dict(motion.motors)
 
@@ -85,6 +88,7 @@ class FakeEngine(PhysicsEngine):
         return {name: self.joint_state(body, name) for name in body.joints}
 
     def set_root_poses(self, body, poses):
+        self.placements += 1
         (body.pose,) = poses.values()
 
     def set_twist(self, body, twist):
@@ -95,6 +99,7 @@ class FakeEngine(PhysicsEngine):
 
     def set_joint_position(self, body, joint, position, velocity=0.0):
         body.state[joint] = [position, velocity]
+        self.placements += 1
 
     def motor(self, body, joint):
         return body.motors[joint]

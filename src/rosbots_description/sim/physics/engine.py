@@ -120,6 +120,10 @@ class PhysicsEngine(Protocol):
     def needs_rebuild(self) -> bool:
         """Whether removed bodies have leaked so much memory that a `reset` pays off."""
 
+    @property
+    def placements(self) -> int:
+        """How often something was added, placed or restored; else, static models do not move."""
+
     def step(self, steps: int) -> None:
         """Advance physics by whole steps."""
 

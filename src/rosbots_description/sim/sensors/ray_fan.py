@@ -1,4 +1,4 @@
-"""The rays of one sensor, a grid of rows and columns, and their bounding-sphere test."""
+"""The rays of one sensor, a grid of rows and columns, and which of them may hit a shape."""
 
 import math
 from dataclasses import dataclass
@@ -56,15 +56,15 @@ class Sweep:
 
 
 class Patches(NamedTuple):
-    """Patches of a fan: the rows and columns that may hit one bounding sphere each.
+    """Patches of a fan: the rows and columns that may hit one bounding box each.
 
     Attributes:
-        balls: (m,) indices of the spheres, ascending.
+        shapes: (m,) indices of the shapes, ascending.
         rows: (m,) the first row; `rows_end` is one past the last.
         columns: (m,) likewise for columns.
     """
 
-    spheres: Indices
+    shapes: Indices
     rows: Indices
     rows_end: Indices
     columns: Indices
@@ -85,25 +85,35 @@ class RayFan:
         turns = range(math.floor(ends[0] / math.tau - 0.5), math.ceil(ends[1] / math.tau + 0.5) + 1)
         self._turns = np.array(turns) * math.tau
 
-    def near(self, centres: Floats, radii: Floats, most: float) -> Patches:
-        """Return which rays of length up to `most` [m] may hit bounding spheres.
+    def near(self, centres: Floats, radii: Floats, corners: Floats, most: float) -> Patches:
+        """Return which rays of length up to `most` [m] may hit bounding spheres and boxes.
 
         Args:
             centres: (m, 3) in the frame of the fan [m].
             radii: (m,) [m].
+            corners: (3, 8, m) of the boxes, relative to the centres [m].
         """
         x, y, z = centres.T
         flat = np.hypot(x, y)
         far = np.hypot(flat, z)
         rows, rows_end = self.rows.within(*_span(np.arctan2(z, flat), radii, far))
         rows_end = np.where(far - radii < most, rows_end, 0)
-        low, high = _span(np.arctan2(y, x), radii, flat)
+        middle = np.arctan2(y, x)
+        low, high = _span(middle, radii, flat)
+        # A box subtends the azimuths of its corners, unless it may be around the axis of the fan.
+        across, along = x * corners[1] - y * corners[0], x * corners[0] + y * corners[1]
+        slopes = across / (along + flat * flat)
+        beside = flat > radii
+        low = np.where(
+            beside, np.maximum(low, middle + np.arctan(slopes.min(axis=0)) - _SLACK), low)
+        high = np.where(
+            beside, np.minimum(high, middle + np.arctan(slopes.max(axis=0)) + _SLACK), high)
         columns, columns_end = self.columns.within(
             low[:, None] + self._turns, high[:, None] + self._turns)
         there = (columns_end > columns) & (rows_end > rows)[:, None]
-        spheres, turns = np.nonzero(there)
-        return Patches(spheres, rows[spheres], rows_end[spheres],
-                       columns[spheres, turns], columns_end[spheres, turns])
+        shapes, turns = np.nonzero(there)
+        return Patches(shapes, rows[shapes], rows_end[shapes],
+                       columns[shapes, turns], columns_end[shapes, turns])
 
     def rays(self, patches: Patches) -> tuple[Indices, Indices, Indices]:
         """Return indices of patches and rays, and the counts of rays by patch.

@@ -19,6 +19,7 @@ class RayMesh:
 
     Attributes:
         centre: of its bounding box, in the mesh's frame [m].
+        half: extents of that box from its centre [m].
         radius: of its bounding sphere [m].
     """
 
@@ -38,6 +39,8 @@ class RayMesh:
         corners = corners - middle
         x, y, z = middle.tolist()
         self.centre: Vector = (x, y, z)
+        x, y, z = np.abs(corners).max(axis=0).tolist()
+        self.half: Vector = (x, y, z)
         self.radius = float(np.linalg.norm(corners, axis=1).max())
         self._scene = EmbreeScene()
         TriangleMesh(self._scene, corners.reshape(-1, 3, 3).astype(np.float32))

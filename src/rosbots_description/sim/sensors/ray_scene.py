@@ -1,9 +1,11 @@
 """Ray casts against all collisions of a world.
 
 Each scan compares the poses of all links with those of the previous scan and updates those that
-moved. Bounding spheres limit the number of ray-shape pairs to compute.
+moved; static models are looked at only after something was placed. Bounding spheres and boxes limit
+the number of ray-shape pairs to compute.
 """
 
+import itertools
 import logging
 import math
 from collections.abc import Callable, Iterator
@@ -32,7 +34,7 @@ _FORMULAS: dict[type, Formula] = {
 _MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
 
 _AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-
+_SIGNS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))  # of a box's corners
 
 
 def rotation_matrix(orientation: Quaternion) -> Floats:
@@ -47,6 +49,7 @@ class RayScene:
     def __init__(self, world: 'World') -> None:
         self._models: list[Model] = []
         self._known_meshes: dict[Mesh, RayMesh | None] = {}
+        self._placements = -1  # as the engine counts them, when static models were read
         self._world_models = world.models  # a reference to the world would keep it alive
         self._lay_out()
 
@@ -77,33 +80,33 @@ class RayScene:
     def _meet_planes(
         self, origin: Floats, ways: Floats, least: float, distances: Floats, retro: Floats
     ) -> None:
-        if len(self._points):
-            heights = ((self._points - origin) * self._normals).sum(axis=1)
-            met = heights[:, None] / (self._normals @ ways)
-            self._keep_nearest(
-                distances, retro, np.where(met >= least, met, np.inf), self._plane_retro)
+        heights = ((self._points - origin) * self._normals).sum(axis=1)
+        for height, slopes, shine in zip(
+                heights, self._normals @ ways, self._plane_retro, strict=True):
+            met = height / slopes
+            closer = (met >= least) & (met < distances)
+            distances[closer], retro[closer] = met[closer], shine
 
     def _meet_solids(
         self, origin: Floats, turn: Floats, fan: RayFan, least: float, distances: Floats,
         retro: Floats,
     ) -> None:
         offsets = self._centres - origin
-        patches = fan.near(offsets @ turn, self._radii, distances.max())
+        corners = (turn.T @ self._corners.reshape(3, -1)).reshape(self._corners.shape)
+        patches = fan.near(offsets @ turn, self._radii, corners, distances.max())
         laid_out = np.concatenate((  # (15, m): origin of the fan, half extents, fan to shape
             np.einsum('ij,ijk->ki', -offsets, self._axes), self._halves,
             (turn.T @ self._axes).reshape(-1, 9).T))
         at_once = max(1, _MOST // len(distances))
-        for begin in range(0, len(patches.spheres), at_once):
+        for begin in range(0, len(patches.shapes), at_once):
             batch = Patches(*(part[begin:begin + at_once] for part in patches))
             which, ray, counts = fan.rays(batch)
             # take keeps the pairs of a row contiguous in memory, unlike indexing.
-            pairs = laid_out.take(batch.spheres[which], axis=1)
-            along = fan.ways.take(ray, axis=1)[:, None]
-            way = (along * pairs[6:].reshape(3, 3, -1)).sum(axis=0)
-            met = np.full((len(counts), len(distances)), np.inf)
-            met.ravel()[which * len(distances) + ray] = self._meet(
-                batch.spheres, counts, least, pairs[:3], way, pairs[3:6])
-            self._keep_nearest(distances, retro, met, self._retro[batch.spheres])
+            pairs = laid_out.take(batch.shapes[which], axis=1)
+            along = fan.ways.take(ray, axis=1)
+            way = np.einsum('ip,ijp->jp', along, pairs[6:].reshape(3, 3, -1))
+            met = self._meet(batch.shapes, counts, least, pairs[:3], way, pairs[3:6])
+            self._keep_nearest(distances, retro, ray, met, self._retro[batch.shapes[which]])
 
     def _meet(
         self, shapes: Indices, counts: Indices, least: float, start: Floats, way: Floats,
@@ -126,19 +129,25 @@ class RayScene:
         return np.concatenate(met)
 
     def _keep_nearest(
-        self, distances: Floats, retro: Floats, met: Floats, shine: Floats
+        self, distances: Floats, retro: Floats, ray: Indices, met: Floats, shine: Floats
     ) -> None:
-        """Update distances and laser_retro of rays (n,) to the nearest hit, in place.
+        """Update distances and laser_retro of rays (n,) to the nearest hits, in place.
 
         Args:
-            met: (shapes, n) hit distances.
-            shine: (shapes,) laser_retro.
+            ray: (p,) indices of the rays that meet something.
+            met: (p,) hit distances.
+            shine: (p,) laser_retro.
         """
-        nearest = met.min(axis=0)
-        if self._shines:
-            closer = np.flatnonzero(nearest < distances)
-            retro[closer] = shine[met.argmin(axis=0)[closer]]
-        np.minimum(distances, nearest, out=distances)
+        closer = np.flatnonzero(met < distances[ray])
+        closer = closer[np.argsort(ray[closer], kind='stable')]
+        ray, met = ray[closer], met[closer]
+        counts = np.bincount(ray)
+        rays = np.flatnonzero(counts)
+        if len(rays):
+            distances[rays] = np.minimum.reduceat(met, (counts.cumsum() - counts)[rays])
+            if self._shines:
+                hits = np.flatnonzero(met == distances[ray])[::-1]  # the first of equals wins
+                retro[ray[hits]] = shine[closer[hits]]
 
     def _update(self) -> None:
         """Update to models spawned and deleted, and to links moved."""
@@ -146,17 +155,22 @@ class RayScene:
         if models != self._models:
             self._models = models
             self._lay_out()
-        for i, link in enumerate(self._links):
+        placements = self._models[0].engine.placements if self._models else 0
+        links = self._moving if placements == self._placements else self._links
+        self._placements = placements
+        for link in links:
             pose = link.pose
-            if pose != self._poses[i]:
-                self._poses[i] = pose
+            if pose != self._poses[link]:
+                self._poses[link] = pose
                 self._place(link, pose)
 
     def _lay_out(self) -> None:
         """Allocate the arrays for the shapes of all models, sorted by kind."""
         found = list(_collisions(self._models))
         self._links = list(dict.fromkeys(link for link, _ in found))
-        self._poses: list[Pose | None] = [None] * len(self._links)
+        self._moving = [link for link in self._links if not link.model.static]
+        self._poses: dict[Link, Pose | None] = dict.fromkeys(self._links)
+        self._placements = -1
         solids: list[tuple[Link, Collision]] = []
         self._ends: dict[type, int] = {}
         for kind in _FORMULAS:
@@ -170,11 +184,12 @@ class RayScene:
             if mesh is not None:
                 self._meshes[len(solids)] = mesh
                 solids.append((link, collision))
-                halves.append((0.0, 0.0, 0.0))
+                halves.append(mesh.half)
                 radii.append(mesh.radius)
         planes = [one for one in found if isinstance(one[1].geometry, Plane)]
         self._halves, self._radii = np.array(halves).reshape(-1, 3).T, np.array(radii)
         self._centres, self._axes = np.zeros((len(solids), 3)), np.zeros((len(solids), 3, 3))
+        self._corners = np.zeros((3, 8, len(solids)))  # from the centres, in the world's axes
         self._points, self._normals = np.zeros((len(planes), 3)), np.zeros((len(planes), 3))
         self._retro = np.array([collision.surface.laser_retro for _, collision in solids])
         self._plane_retro = np.array([collision.surface.laser_retro for _, collision in planes])
@@ -194,6 +209,7 @@ class RayScene:
             else:
                 self._centres[row] = position
                 self._axes[row] = rotation_matrix(orientation)
+                self._corners[:, :, row] = self._axes[row] @ (_SIGNS * self._halves[:, row]).T
                 if row in self._meshes:
                     self._centres[row] += self._axes[row] @ self._meshes[row].centre
 
@@ -223,7 +239,7 @@ def _half_extents(shape: Geometry) -> Vector:
             return radius, radius, length / 2.0
         case Sphere(radius):
             return radius, radius, radius
-    return ZERO  # not used for meshes and planes
+    return ZERO  # not used for planes; a mesh has its own
 
 
 def _radius(shape: Geometry) -> float:

@@ -1,14 +1,16 @@
 """Laser scans are those that Gazebo recorded, and those that geometry has."""
 
 import math
+import random
 from contextlib import closing
 
 import numpy as np
 import pytest
-from support.sensing import RECORDED, ROBOTS, numbers, recorded_scene, recordings
+from support.sensing import CUBE, RECORDED, ROBOTS, numbers, recorded_scene, recordings
 
-from rosbots_description.sim.core.transforms import Pose, normalise
+from rosbots_description.sim.core.transforms import Pose, from_rpy, normalise
 from rosbots_description.sim.public.world import World
+from rosbots_description.sim.sensors.ray_fan import Patches, RayFan
 
 SCANS = recordings('laser')
 EXACT = 1e-5  # [m] of all recorded ranges; they have six digits behind the point
@@ -100,6 +102,51 @@ def test_what_moves_is_seen_where_it_is_at_the_end_of_the_step(scene):
         (x, y, z), (bx, by, bz) = sensor.pose.position, ball.pose.position
         distance = math.dist((x, y, z), (bx, by, bz)) - 0.1
         assert sensor.read().ranges.min() == pytest.approx(distance, abs=1e-4)  # near its middle
+
+
+def test_a_static_model_is_seen_where_it_was_put(scene):
+    robot = scene.spawn(ROBOT)
+    wall = scene.spawn(CUBE, x=0.62, y=0.03, z=0.35)
+    sensor = robot.sensor('head_hokuyo_sensor')
+    found = [sensor.read().ranges.min()]
+    state = scene.save_state()
+    wall.set_pose(Pose((0.72, 0.03, 0.35)))
+    found.append(sensor.read().ranges.min())
+    scene.restore(state)
+    found.append(sensor.read().ranges.min())
+    wall.set_pose(Pose((0.82, 0.03, 0.35)))
+    scene.run(1)
+    found.append(sensor.read().ranges.min())
+    scene.reset_world()
+    found.append(sensor.read().ranges.min())
+    assert found == pytest.approx([0.49, 0.59, 0.49, 0.69, 0.49], abs=1e-4)
+
+
+@pytest.mark.parametrize('tilt', [(0.0, 0.0), (0.7, -0.4), (math.pi / 2, 0.0)])
+def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
+    """Compare with a cast of all rays at all shapes, near, around and far from the sensor."""
+    def all_of(fan, centres, *_):
+        every, none = np.arange(len(centres)), np.zeros(len(centres), int)
+        return Patches(every, none, none + fan.shape[0], none, none + fan.shape[1])
+
+    draw = random.Random(1)
+    shapes = ('<box><size>{0} {1} {2}</size></box>', '<sphere><radius>{0}</radius></sphere>',
+              '<cylinder><radius>{0}</radius><length>{2}</length></cylinder>')
+    links = ''.join(
+        f'<collision name="c{i}"><pose>{" ".join(str(draw.gauss(0, 2)) for _ in range(6))}</pose>'
+        f'<geometry>{shapes[i % 3].format(*(draw.lognormvariate(-1.5, 1) for _ in range(3)))}'
+        '</geometry></collision>' for i in range(90))
+    with closing(World()) as world:
+        world.spawn(f'<sdf version="1.6"><model name="m"><static>1</static><link name="l">{links}'
+                    '</link></model></sdf>')
+        robot = world.spawn(robot_with(min_angle=-3.0, max_angle=3.5, min=0.01))
+        robot.set_pose(Pose((0.1, 0.2, 0.0), from_rpy(*tilt, 0.5)))
+        sensor = robot.sensor('head_hokuyo_sensor')
+        culled = sensor.cast()
+        monkeypatch.setattr(RayFan, 'near', all_of)
+        whole = sensor.cast()
+    assert np.isfinite(culled[0][culled[0] < 30.0]).sum() > 300
+    assert np.array_equal(culled, whole)
 
 
 def test_what_comes_is_seen_and_what_goes_is_not(scene):

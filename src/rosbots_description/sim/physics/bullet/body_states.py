@@ -30,6 +30,7 @@ class BodyStates:
         """Work in the world of that PyBullet client."""
         self._client = client
         self._enabled = True
+        self.placements = 0  # as of `PhysicsEngine`
         self._fast = FastBodies(client)
         self._driven: dict[Body, None] = {}  # bodies with motors, in the order they were added
         self._applied_forces: list[AppliedForce] = []  # since the last step
@@ -125,6 +126,7 @@ class BodyStates:
 
         Velocities are kept, which PyBullet would zero.
         """
+        self.placements += 1
         for link, pose in poses.items():
             part = body.parts[link]
             near = Pose(_at_most(pose.position, MAX_COORDINATE), pose.orientation)
@@ -181,6 +183,7 @@ class BodyStates:
         self, body: Body, joint: str, position: float, velocity: float = 0.0
     ) -> None:
         """Put a joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
+        self.placements += 1
         self._joint_readings.clear()
         number, index = body.joints[joint]
         pybullet.resetJointState(number, index, position, velocity, self._client)

@@ -202,6 +202,7 @@ class Engine(BodyStates):
         self._slipping.add(body, spec)
         self._queries.add(body)
         self._bodies[body] = None
+        self.placements += 1
         return body
 
     def remove(self, body: Body) -> None:
@@ -280,6 +281,7 @@ class Engine(BodyStates):
 
     def _restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore noted state after PyBullet's own has been restored."""
+        self.placements += 1
         physics, until_check, effort, fast, slipping, applied, readings, motors = saved
         if physics != self._physics:
             self.apply(physics)
