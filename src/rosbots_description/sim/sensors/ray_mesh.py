@@ -4,6 +4,10 @@ Embree computes in single precision. So each ray starts at the bounding sphere o
 centre is the origin.
 """
 
+from collections.abc import Iterable
+from concurrent.futures import Future
+from threading import Thread
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,16 +38,20 @@ class RayMesh:
         from embreex.rtcore_scene import EmbreeScene
 
         vertices, faces = read_mesh(mesh.path).triangles()
-        corners = (vertices * np.array(mesh.scale))[faces].reshape(-1, 3)
-        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
-        corners = corners - middle
+        vertices = vertices * np.array(mesh.scale)
+        corners = vertices[faces].reshape(-1, 3)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        middle = (low + high) / 2.0
         x, y, z = middle.tolist()
         self.centre: Vector = (x, y, z)
-        x, y, z = np.abs(corners).max(axis=0).tolist()
+        x, y, z = (high - middle).tolist()
         self.half: Vector = (x, y, z)
-        self.radius = float(np.linalg.norm(corners, axis=1).max())
+        self.radius = float(np.linalg.norm(corners - middle, axis=1).max())
         self._scene = EmbreeScene()
-        TriangleMesh(self._scene, corners.reshape(-1, 3, 3).astype(np.float32))
+        TriangleMesh(
+            self._scene, (vertices - middle).astype(np.float32), faces.astype(np.int32))
+        some = np.zeros((1, 3), np.float32)
+        self._scene.run(some, some + 1.0, query='DISTANCE')  # the first query builds the tree
 
     def meet(self, start: Floats, way: Floats, least: float) -> Floats:
         """Return the distances of the first hits [m], as `ray_shapes.first_from`.
@@ -58,3 +66,22 @@ class RayMesh:
             begin, np.ascontiguousarray(way.T, dtype=np.float32), query='DISTANCE')
         reach = 2.0 * self.radius + 1.0
         return np.where(met < reach, skipped + met, np.inf)
+
+
+def build_later(meshes: Iterable[Mesh]) -> dict[Mesh, Future[RayMesh]]:
+    """Build meshes on a thread of their own; 20 000 triangles take 20 ms.
+
+    A future has the `ModelError` of a mesh that cannot be read by now.
+    """
+    futures: dict[Mesh, Future[RayMesh]] = {mesh: Future() for mesh in meshes}
+
+    def build() -> None:
+        for mesh, future in futures.items():
+            try:
+                future.set_result(RayMesh(mesh))
+            except BaseException as error:
+                future.set_exception(error)
+
+    if futures:
+        Thread(target=build, name='ray meshes', daemon=True).start()
+    return futures

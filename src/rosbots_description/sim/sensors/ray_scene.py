@@ -8,7 +8,8 @@ the number of ray-shape pairs to compute.
 import itertools
 import logging
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -19,7 +20,7 @@ from ..core import ZERO, ModelError, Pose, Quaternion, Vector, compose, rotate
 from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import ray_shapes
 from .ray_fan import Indices, Patches, RayFan
-from .ray_mesh import RayMesh
+from .ray_mesh import RayMesh, build_later
 
 if TYPE_CHECKING:
     from ..runtime import Link, Model, World
@@ -48,15 +49,31 @@ class RayScene:
 
     def __init__(self, world: 'World') -> None:
         self._models: list[Model] = []
-        self._known_meshes: dict[Mesh, RayMesh | None] = {}
+        self._known_meshes: dict[Mesh, Future[RayMesh]] = {}
+        self._unreadable: set[Mesh] = set()  # of these an error was logged
         self._placements = -1  # as the engine counts them, when static models were read
         self._world_models = world.models  # a reference to the world would keep it alive
         self._lay_out()
+        for model in self._world_models.values():
+            self.model_spawned(model)
+        world.listeners.append(self)
 
     @classmethod
     def of(cls, world: 'World') -> 'RayScene':
         """Return the scene of a world, shared by its sensors."""
-        return _SCENES.setdefault(world, cls(world))
+        if world not in _SCENES:
+            _SCENES[world] = cls(world)
+        return _SCENES[world]
+
+    def model_spawned(self, model: 'Model') -> None:
+        """Begin to build its meshes, so that the first scan needs not."""
+        self._build(collision.geometry for _, collision in _collisions([model]))
+
+    def model_deleted(self, model: 'Model') -> None:
+        """Keep its meshes for other models."""
+
+    def world_reset(self) -> None:
+        """Keep all meshes."""
 
     def cast(
         self, pose: Pose, fan: RayFan, least: float, most: float
@@ -180,7 +197,7 @@ class RayScene:
         radii = [_radius(collision.geometry) for _, collision in solids]
         self._meshes: dict[int, RayMesh] = {}  # by row
         for link, collision in found:
-            mesh = self._read_mesh(collision.geometry)
+            mesh = self._built_mesh(collision.geometry)
             if mesh is not None:
                 self._meshes[len(solids)] = mesh
                 solids.append((link, collision))
@@ -213,15 +230,24 @@ class RayScene:
                 if row in self._meshes:
                     self._centres[row] += self._axes[row] @ self._meshes[row].centre
 
-    def _read_mesh(self, shape: object) -> RayMesh | None:
-        """Return the RayMesh of a mesh, from the cache if possible; None for other shapes."""
-        if isinstance(shape, Mesh) and shape not in self._known_meshes:
-            try:
-                self._known_meshes[shape] = RayMesh(shape)
-            except ModelError as error:
+    def _build(self, shapes: Iterable[Geometry]) -> None:
+        """Begin to build the meshes among some shapes, unless that was done before."""
+        self._known_meshes.update(build_later(
+            shape for shape in dict.fromkeys(shapes)
+            if isinstance(shape, Mesh) and shape not in self._known_meshes))
+
+    def _built_mesh(self, shape: Geometry) -> RayMesh | None:
+        """Return the RayMesh of a mesh once it is built; None for others, and if it cannot be."""
+        if not isinstance(shape, Mesh):
+            return None
+        self._build([shape])  # of a model that is being spawned
+        try:
+            return self._known_meshes[shape].result()
+        except ModelError as error:
+            if shape not in self._unreadable:
                 logger.error('rays do not see a mesh: %s', error)
-                self._known_meshes[shape] = None
-        return self._known_meshes.get(shape) if isinstance(shape, Mesh) else None
+                self._unreadable.add(shape)
+            return None
 
 
 def _collisions(models: 'list[Model]') -> 'Iterator[tuple[Link, Collision]]':

@@ -1,6 +1,7 @@
 """Rays meet the triangles of meshes, from both sides, wherever these are."""
 
 import math
+import threading
 from contextlib import closing
 
 import numpy as np
@@ -9,6 +10,7 @@ from support.sensing import ROBOTS
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy, rotate
 from rosbots_description.sim.public.world import World
+from rosbots_description.sim.sensors.ray_mesh import RayMesh
 
 EXACT = 1e-4  # [m]
 ROBOT = (ROBOTS / 'laser_nonoise.urdf').read_text(encoding='utf-8')
@@ -112,3 +114,32 @@ def test_a_mesh_that_moves_is_met_where_it_is(folder):
                 front = x + 0.1 * math.cos(0.2) - 0.3 - 0.12
                 ahead = scan.ranges[336:340].mean() * math.cos(0.1 - 0.095)
                 assert ahead == pytest.approx(front, abs=0.01)
+
+
+@pytest.mark.parametrize('sensor_first', [True, False])
+def test_meshes_are_built_from_the_spawn_on(folder, monkeypatch, sensor_first):
+    """The first scan, in the world's loop, finds them ready, or waits for them."""
+    builders = []
+    start = threading.Thread.start
+    monkeypatch.setattr(threading.Thread, 'start', lambda one: builders.append(one) or start(one))
+    room = ROOM.format(static=1, pose='0 0 0 0 0 0', uri=folder / 'box.obj', scale=1)
+    with closing(World()) as world:
+        for text in (ROBOT, room) if sensor_first else (room, ROBOT):
+            world.spawn(text)
+        assert [one.name for one in builders] == ['ray meshes']
+        builders[0].join()
+        monkeypatch.setattr(RayMesh, '__init__', None)  # nothing is built any more
+        assert np.isfinite(world.models['lbot'].sensor('head_hokuyo_sensor').read().ranges).any()
+
+
+def test_a_mesh_that_is_gone_is_said_once_and_not_seen(folder, tmp_path, caplog):
+    file = tmp_path / 'box.obj'
+    file.write_bytes((folder / 'box.obj').read_bytes())
+    with closing(World()) as world:
+        world.spawn(ROOM.format(static=1, pose='4 0 0 0 0 0', uri=file, scale=1))
+        file.unlink()
+        sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')
+        for _ in range(2):
+            assert np.isinf(sensor.read().ranges).all()
+            world.spawn(ROBOT, f'r{_}', x=50.0)
+    assert caplog.text.count('rays do not see a mesh') == 1
