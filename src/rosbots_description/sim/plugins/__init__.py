@@ -1,6 +1,6 @@
 """Model plugins, selected by library name in a description; importing registers them."""
 
-from .base import ModelPlugin, PeriodicPlugin
+from .base import ModelPlugin, PeriodicPlugin, offsets_in_gazebo
 from .drive import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
 from .force import Force, HandOfGod, WheelSlip
 from .state import P3D, JointPoseTrajectory, JointStatePublisher
@@ -8,4 +8,5 @@ from .state import P3D, JointPoseTrajectory, JointStatePublisher
 __all__ = [
     'P3D', 'DiffDrive', 'Force', 'HandOfGod', 'JointPoseTrajectory', 'JointStatePublisher',
     'ModelPlugin', 'PeriodicPlugin', 'PlanarMove', 'SkidSteerDrive', 'TricycleDrive', 'WheelSlip',
+    'offsets_in_gazebo',
 ]

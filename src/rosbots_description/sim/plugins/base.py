@@ -1,10 +1,24 @@
 """Base classes of model plugins: tags, outputs, lifecycle, and an update rate."""
 
 import logging
+import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..core import NANOSECONDS, NotFoundError, PluginError, Pose
+from ..core import (
+    NANOSECONDS,
+    NotFoundError,
+    PluginError,
+    Pose,
+    Quaternion,
+    Vector,
+    conjugate,
+    from_rpy,
+    multiply,
+    rotate,
+    subtract,
+    to_rpy,
+)
 from ..description import PluginSpec
 from ..runtime import NEVER, Output, Plugin
 from .parameters import Missing, Params, says_default
@@ -200,3 +214,18 @@ class PeriodicPlugin(ModelPlugin):
         else:
             end = clock.first_step_after(self._last_ns + self._period_ns + self.strictly_after - 1)
             self.due = max(clock.steps + 1, end)
+
+
+def offsets_in_gazebo(mount: Pose, xyz: Vector, rpy: Vector) -> tuple[Vector, Quaternion]:
+    """Return the offsets of a body that fixed joint reduction merged, with sdformat 9's flaws.
+
+    The plugin works on the parent. <xyzOffset> and <rpyOffset> should become the mount of the body
+    on it, but the mount is subtracted, rotations are inverted, and radians are taken for degrees.
+
+    Args:
+        mount: of the body on its parent after reduction, by two fixed joints, as it was recorded.
+        xyz: <xyzOffset> as written [m]; `rpy` likewise [rad].
+    """
+    back = conjugate(mount.orientation)
+    turn = multiply(back, from_rpy(*map(math.radians, rpy)))
+    return subtract(rotate(back, xyz), mount.position), from_rpy(*map(math.radians, to_rpy(turn)))

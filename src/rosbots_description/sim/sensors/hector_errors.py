@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import IDENTITY, PluginError, Pose, Vector, as_vector
+from ..core import IDENTITY, PluginError, Pose, Vector, as_vector, parse_numbers
 from ..plugins import ModelPlugin
 from .noise import RandomSteps
 
@@ -99,15 +99,11 @@ def find_body(plugin: ModelPlugin) -> 'tuple[Link, Pose]':
 
 def _numbers(plugin: ModelPlugin, tag: str, default: float, least: float, axes: int) -> Floats:
     """Return the numbers of a tag, one for each axis; a single one counts for all."""
-    words = (plugin.params.text(tag) or f'{default}').split()
-    try:
-        found = np.array([float(word) for word in words])
-    except ValueError:
-        found = np.array([math.nan])
-    if len(found) not in (1, axes) or not np.isfinite(found).all():
+    text = plugin.params.text(tag) or f'{default}'
+    numbers = parse_numbers(text, axes) or parse_numbers(text, 1)
+    if numbers is None:
         takes = 'a finite number' if axes == 1 else f'{axes} finite numbers'
-        raise PluginError(f"{plugin.log_prefix}<{tag}> is '{' '.join(words)}'; it takes {takes}")
-    if (found < least).any():
-        raise PluginError(f"{plugin.log_prefix}<{tag}> is '{' '.join(words)}'; it must not be "
-                          'negative')
-    return np.broadcast_to(found, (axes,)).copy()
+        raise PluginError(f"{plugin.log_prefix}<{tag}> is '{text}'; it takes {takes}")
+    if min(numbers) < least:
+        raise PluginError(f"{plugin.log_prefix}<{tag}> is '{text}'; it must not be negative")
+    return np.broadcast_to(numbers, (axes,)).copy()

@@ -1,15 +1,16 @@
 """The IMU as a model plugin: libgazebo_ros_imu.so of gazebo_ros_pkgs 2.9.2.
 
 Its acceleration is that of the link, without gravity. Upstream rotates velocity and acceleration by
-the orientation instead of its inverse; this plugin does so in a strict world only.
+the orientation instead of its inverse, and the attitude of a body that fixed joint reduction merged
+is wrong; so it is here in a strict world only.
 """
 
 import logging
 from collections.abc import Sequence
 
-from ..core import Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
+from ..core import IDENTITY, Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
 from ..plugin_registry import register
-from ..plugins import PeriodicPlugin
+from ..plugins import PeriodicPlugin, offsets_in_gazebo
 from .imu import ImuReading, mean_acceleration
 from .noise import RandomSteps, gaussian, noisy
 
@@ -33,7 +34,11 @@ class LinkImu(PeriodicPlugin):
         if read('frameName', self._link.name) in self.model.spec.reduced:
             params.values['frameName'] = self._link.name
         params.ignore('xyzOffset')
-        self._turn = from_rpy(*params.vector('rpyOffset'))
+        rpy = params.vector('rpyOffset')
+        self._turn = from_rpy(*rpy)
+        if self.world.strict and self._mount != IDENTITY:
+            self._turn = offsets_in_gazebo(self._mount, (0.0, 0.0, 0.0), rpy)[1]
+            self._mount = IDENTITY
         self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.set_rate(params.rate('updateRate', 0.0))
         self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')

@@ -115,6 +115,14 @@ def test_a_body_behind_a_fixed_joint_has_its_true_attitude_under_its_parents_nam
     assert rotate(attitude, found[-1][1].angular_velocity) == pytest.approx((0, 0, 1), abs=0.006)
 
 
+def test_a_body_behind_a_fixed_joint_has_the_recorded_attitude_in_a_strict_world(world):
+    world.strict = True
+    _, found = spawn(world, 'imu_model_lumped', yaw=0.7)
+    world.run(20)
+    assert found[-1][1].orientation == pytest.approx(
+        (-0.00215763, 0.00228483, 0.338335, 0.941021), abs=1e-6)  # rest.quat_mean of the recording
+
+
 @pytest.mark.parametrize(('robot', 'deviations', 'claimed'), [
     ('imu_sensor_noise', [0.05] * 10, 0.05),
     ('imu_sensor_sdfnoise', [0.0] * 4 + [2e-4] * 3 + [0.017] * 3, 0.0),

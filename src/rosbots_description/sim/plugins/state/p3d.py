@@ -3,8 +3,8 @@
 Tags, defaults and timing are those of libgazebo_ros_p3d.so in gazebo_ros_pkgs 2.9.2, including its
 oddities: noise is on the twist only, <xyzOffset> is added in the axes of the frame, and in the
 frame of another link rotations are multiplied in the wrong order and velocities rotated by the
-inverse. A link that fixed joint reduction merged has its true pose; in Gazebo its offset from the
-parent has the wrong sign.
+inverse. A link that fixed joint reduction merged has its true pose; in Gazebo, and in a strict
+world, its offset from the parent has the wrong sign.
 """
 
 import logging
@@ -12,6 +12,7 @@ import random
 from collections.abc import Mapping
 
 from ...core import (
+    IDENTITY,
     NotFoundError,
     Pose,
     Twist,
@@ -27,7 +28,7 @@ from ...core import (
 )
 from ...plugin_registry import register
 from ...runtime import WORLD_FRAMES, Link, Odometry, Output
-from ..base import PeriodicPlugin
+from ..base import PeriodicPlugin, offsets_in_gazebo
 
 logger = logging.getLogger(__name__)
 
@@ -66,8 +67,11 @@ class P3D(PeriodicPlugin):
             except NotFoundError as error:
                 logger.error('%sframeName: %s does not exist, will not publish pose: %s',
                              self.log_prefix, frame, error)
-        self._shift = params.vector('xyzOffset')  # [m]
-        self._turn = from_rpy(*params.vector('rpyOffset'))  # [rad]
+        self._shift, rpy = params.vector('xyzOffset'), params.vector('rpyOffset')  # [m], [rad]
+        self._turn = from_rpy(*rpy)
+        if self.world.strict and self._mount != IDENTITY:
+            self._shift, self._turn = offsets_in_gazebo(self._mount, self._shift, rpy)
+            self._mount = IDENTITY
         self.noise = read('gaussianNoise', 0.0)  # standard deviation [m/s and rad/s]
         self.set_rate(params.rate('updateRate', 0.0))
         self.odometry: Output[Odometry] = self.output('odometry', is_known)
@@ -84,7 +88,7 @@ class P3D(PeriodicPlugin):
 
     def _noisy(self, twist: Twist) -> Twist:
         """Return the twist with noise, which is reproducible whatever other readers do."""
-        who = self.model.name, self.spec.name, self.params.values['topicName']
+        who = self.world.seed, self.model.name, self.spec.name, self.params.values['topicName']
         source = random.Random(f'{who} {self.world.clock.now_ns}')
         return Twist(*(add(one, self._sample(source)) for one in twist))
 

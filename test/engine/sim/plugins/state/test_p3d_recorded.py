@@ -81,6 +81,22 @@ def test_a_reduced_link_has_its_true_pose_under_the_name_of_its_parent(skid4):
     assert found.pose.position[2] == pytest.approx(pose.position[2] + 2 * 0.13, abs=1e-4)
 
 
+def test_in_a_strict_world_a_reduced_link_is_where_gazebo_tells_it():
+    text = (DATA / 'robots' / 'skid4_p3d.urdf').read_text(encoding='utf-8')
+    with closing(World()) as world:
+        world.strict = True
+        at = recorded('gt')[1]
+        model = world.spawn(load_urdf(text, 'skid4')[0], 'skid4', at)
+        plugin = model.plugin('p3d_lumped')
+        readings = collect(plugin.odometry)
+        plugin.report()
+    assert plugin.body == 'base_footprint'
+    height = recorded('gt_lumped')[1].position[2] - at.position[2]  # -0.13 m, where +0.13 is true
+    assert readings[0].pose.position == pytest.approx(
+        (*at.position[:2], at.position[2] + height), abs=1e-6)
+    assert readings[0].pose.orientation == pytest.approx(at.orientation, abs=1e-6)
+
+
 P3D = ('<gazebo><plugin name="{name}" filename="libgazebo_ros_p3d.so"><topicName>t</topicName>'
        '<bodyName>{body}</bodyName><frameName>{frame}</frameName></plugin></gazebo>')
 PLACE = Pose((0.3, -0.2, 0.5), from_rpy(0.4, 0.2, -1.0))  # of the mast in the base

@@ -132,8 +132,10 @@ def test_another_links_frame_turns_velocities_and_multiplies_rotations_as_upstre
         assert found == pytest.approx(rotate(frame[0].orientation, subtract(own, there)))
 
 
-def noisy(name='drive'):
-    plugin = make(gaussianNoise='0.05')
+def noisy(name='drive', seed=0):
+    model = fake_model()
+    model.world.seed = seed
+    plugin = make(model, gaussianNoise='0.05')
     plugin.spec = replace(plugin.spec, name=name)
     readings = collect(plugin.odometry)
     place(plugin, TILTED, MOVING)
@@ -156,6 +158,7 @@ def test_noise_repeats_and_does_not_depend_on_who_has_read_before():
     first = noisy()
     assert noisy() == first
     assert noisy('another')[0] != first[0]
+    assert noisy(seed=1)[0] != first[0]
     plugin = make(gaussianNoise='0.05')
     place(plugin, TILTED, MOVING)
     run(plugin, 1000)
