@@ -24,7 +24,7 @@ PERIODS = {
 }
 
 
-def spawn_all(world, robots):
+def spawn_all(world, robots, are_read=True):
     """Return a list that takes robot, output, time [ms] and bytes of all readings."""
     found = []
     for number, name in enumerate(robots):
@@ -35,7 +35,7 @@ def spawn_all(world, robots):
         for plugin in model.plugins:
             if hasattr(plugin, 'target'):
                 plugin.command(0.4, 0.3)
-            for output, readings in plugin.outputs.items():
+            for output, readings in plugin.outputs.items() if are_read else ():
                 readings.connect(lambda reading, key=(name, plugin.spec.name, output): found.append(
                     (key, world.clock.now_ns // 10**6, pickle.dumps(reading))))
     return found
@@ -107,3 +107,16 @@ def test_a_reset_begins_a_period_of_a_diff_drive_and_stops_it(world):
     world.run(100)
     assert found[0][1] == 155 + 34
     assert world.models['burger'].plugins[0].target == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize('is_read', [True, False])
+def test_a_robot_with_any_sensor_may_go_at_any_step(world, is_read):
+    found = spawn_all(world, NOISY, is_read)
+    for gone, name in enumerate(NOISY, 1):
+        world.run(7)
+        world.delete(name)
+        found.clear()
+        world.run(60)
+        heard = {robot for (robot, _, _), _, _ in found}
+        assert heard <= set(NOISY[gone:])
+        assert bool(heard) == (is_read and gone < len(NOISY))

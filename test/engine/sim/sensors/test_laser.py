@@ -56,6 +56,18 @@ def test_a_scan_is_the_recorded_one(name):
         assert getattr(scan, tag) == pytest.approx(message[tag], rel=1e-6)
 
 
+def test_gpu_rays_are_those_of_the_processor(scene):
+    gpu = ROBOT.replace('type="ray"', 'type="gpu_ray"').replace('ros_laser', 'ros_gpu_laser')
+    assert gpu.count('gpu_') == 2
+    expected = scene.spawn(ROBOT, 'cpu').sensor('head_hokuyo_sensor').read()
+    scene.delete('cpu')
+    robot = scene.spawn(gpu, 'gpu')
+    assert robot.plugin('gpu_laser').sensor is robot.sensors[0]
+    found = robot.sensors[0].read()
+    assert np.array_equal(found.ranges, expected.ranges)
+    assert np.array_equal(found.intensities, expected.intensities)
+
+
 def test_angles_have_six_digits_as_gazebos_sensors_read_them(scene):
     sensor = scene.spawn(robot_with(min_angle=-1.570796, max_angle=1.570796)).sensors[0]
     assert np.float32(sensor.read().angle_min) == np.float32(-1.57079994678)
