@@ -4,6 +4,7 @@ Angles, order, limits and interpolation are those of Gazebo. Rays start at the m
 that nearer objects are not seen. They hit collisions, including those of their own robot.
 """
 
+import logging
 import math
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -20,7 +21,11 @@ from .numbers import child_at, count, number
 from .ray_fan import RayFan, Sweep
 from .ray_scene import RayScene
 
-MAX_SAMPLES = 1_000_000  # in all rows; such a scan takes a second
+logger = logging.getLogger(__name__)
+
+MAX_SAMPLES = 1_000_000  # in all rows; such a scan takes half a second
+_MANY_SAMPLES = 200_000
+_MAX_ANGLE = 100.0  # [rad]
 
 Floats = NDArray[np.float64]
 
@@ -54,8 +59,13 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
         line = 0 if element is None else element.line
         raise PluginError(f'line {line}: <resolution> is {resolution:g}; with {samples} '
                           f'<samples> it must give 1 to {MAX_SAMPLES} ranges')
-    return Sweep(samples, int(samples * resolution), number(element, 'min_angle', 0.0),
-                 number(element, 'max_angle', 0.0))
+    angles = []
+    for tag in ('min_angle', 'max_angle'):
+        angles.append(number(element, tag, 0.0))
+        if element is not None and abs(angles[-1]) > _MAX_ANGLE:
+            raise PluginError(f'line {element.line}: <{tag}> is {angles[-1]:g} rad; it must lie '
+                              f'between -{_MAX_ANGLE:g} and {_MAX_ANGLE:g}')
+    return Sweep(samples, int(samples * resolution), *angles)
 
 
 @register_sensor('gpu_ray')
@@ -82,10 +92,13 @@ class RaySensor(Sensor):
         if not 0.0 <= self.range_min < self.range_max:
             raise PluginError(f'line {ray.line}: <range> is from {self.range_min:g} to '
                               f'{self.range_max:g} m; it must begin at 0 or more and end beyond')
-        for total in (self.horizontal.samples * self.vertical.samples,
-                      self.horizontal.count * self.vertical.count):
-            if total > MAX_SAMPLES:
-                raise PluginError(f'line {ray.line}: {total} rays; at most {MAX_SAMPLES} are cast')
+        total = max(self.horizontal.samples * self.vertical.samples,
+                    self.horizontal.count * self.vertical.count)
+        if total > MAX_SAMPLES:
+            raise PluginError(f'line {ray.line}: {total} rays; at most {MAX_SAMPLES} are cast')
+        if total > _MANY_SAMPLES:
+            logger.warning("model '%s', %s: %d rays take long; the simulation waits for each scan",
+                           self.model.name, self.called, total)
         self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
         self._scene, self.fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
         self.blend = self.fan.blend()

@@ -1,0 +1,118 @@
+"""Whatever stands in a <sensor>, its model comes and the clock goes on; a sentence says why."""
+
+import logging
+from contextlib import closing
+
+import pytest
+from support.sensing import RECORDED, ROBOTS
+
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
+from rosbots_description.sim.public.world import World
+
+LASER, IMU, BUMPER, ARM = 'laser_nonoise', 'imu_sensor', 'bumper', 'arm_ft'
+RAYS = 'it takes a number from 1 to 1000000'
+NOISE = '<noise><type>gaussian</type><mean>0</mean><stddev>{}</stddev></noise></ray>'
+
+
+@pytest.fixture
+def world():
+    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as made:
+        yield made
+
+
+def spawn(world, robot, old='', new=''):
+    """Return the model with a text replaced, and a list that takes the times [ms] of readings."""
+    file = ROBOTS / f'{robot}.urdf'
+    text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text('utf-8')
+    assert old in text
+    model = world.spawn(load_urdf(text.replace(old, new, 1), 'bot')[0], 'bot')
+    times = []
+    for plugin in model.plugins:
+        for name, output in plugin.outputs.items():
+            if name in ('scan', 'imu', 'contacts', 'wrench'):
+                output.connect(lambda _: times.append(world.clock.now_ns // 10**6))
+    return model, times
+
+
+@pytest.mark.parametrize(('robot', 'old', 'new', 'sentence'), [
+    (LASER, '<samples>720<', '<samples>0<', f'line 14: <samples> is 0; {RAYS}'),
+    (LASER, '<samples>720<', '<samples>-7<', f'line 14: <samples> is -7; {RAYS}'),
+    (LASER, '<samples>720<', '<samples>2000000<', RAYS),
+    (LASER, '<resolution>1<', '<resolution>0<', '<resolution> is 0; with 720 <samples>'),
+    (LASER, '<resolution>1<', '<resolution>1e9<', 'it must give 1 to 1000000 ranges'),
+    (LASER, '</horizontal>', '</horizontal><vertical><samples>9999</samples></vertical>',
+     '7199280 rays; at most 1000000 are cast'),
+    (LASER, '<min>0.1<', '<min>31<', '<range> is from 31 to 30 m; it must begin at 0 or more'),
+    (LASER, '<min>0.1<', '<min>-1<', '<range> is from -1 to 30 m; it must begin at 0 or more'),
+    (LASER, '<max>30<', '<max>nan<', "<max> is 'nan'; it takes a finite number"),
+    (LASER, '<max_angle>1.5708<', '<max_angle>1e9<',
+     '<max_angle> is 1e+09 rad; it must lie between -100 and 100'),
+    (LASER, '</ray>', NOISE.format('NaN'), "<stddev> is 'NaN'; it takes a finite number"),
+    (LASER, '</ray>', NOISE.format('-1'), '<stddev> of <noise> is -1; it must not be negative'),
+    (LASER, '<update_rate>40<', '<update_rate>1e-12<', '<update_rate> is 1e-12 Hz; it must be'),
+    (IMU, '<updateRateHZ>100<', '<updateRateHZ>nan<', "<updateRateHZ> is 'nan'; it takes a finite"),
+    (IMU, '<gaussianNoise>0<', '<gaussianNoise>NaN<', "<gaussianNoise> is 'NaN'; it takes a"),
+    (IMU, '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
+    (ARM, '<updateRate>100.0<', '<updateRate>nan<', "<updateRate> is 'nan'; it takes a finite"),
+    (ARM, '<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
+    (ARM, '<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
+])
+def test_what_makes_no_sense_is_left_out_with_a_sentence(world, caplog, robot, old, new, sentence):
+    model, times = spawn(world, robot, old, new)
+    world.run(30)
+    assert sentence in caplog.text
+    assert caplog.text.count('the model is spawned without it') == 1
+    assert world.clock.now_ns == 30_000_000
+    assert bool(times) == (robot == ARM)  # whose other joint is measured
+    assert model.name in world.models
+
+
+@pytest.mark.parametrize(('robot', 'old', 'new', 'expected'), [
+    (LASER, '<samples>720<', '<samples>1<', [25]),
+    (LASER, '<update_rate>40<', '<update_rate>0<', [*range(1, 31)]),
+    (LASER, '<update_rate>40<', '<update_rate>-3<', [*range(1, 31)]),
+    (LASER, '<update_rate>40<', '<update_rate>1e9<', [*range(1, 31)]),
+    (LASER, '<update_rate>40</update_rate>', '', [*range(1, 31)]),
+    (LASER, '<topicName>/scan</topicName>', '', [25]),
+    (LASER, '<topicName>/scan<', '<topicName><', []),
+    (LASER, '<frameName>laser_link</frameName>', '', [25]),
+    (LASER, '<max_angle>1.5708<', '<max_angle>-2<', [25]),
+    (LASER, '</ray>', NOISE.format('1e300'), [25]),
+    (IMU, '<updateRateHZ>100<', '<updateRateHZ>0<', [10, 20, 30]),  # at most that of the sensor
+    (IMU, '<updateRateHZ>100<', '<updateRateHZ>-2<', [10, 20, 30]),
+    (IMU, '<updateRateHZ>100<', '<updateRateHZ>1e9<', [10, 20, 30]),
+    (IMU, '<update_rate>100<', '<update_rate>0<', [10, 20, 30]),
+    (IMU, '<topicName>imu/data</topicName>', '', [10, 20, 30]),
+    (BUMPER, '<update_rate>50<', '<update_rate>0<', [*range(1, 31)]),
+    (BUMPER, '<update_rate>50<', '<update_rate>-1<', [*range(1, 31)]),
+    (BUMPER, '<bumperTopicName>bumper</bumperTopicName>', '', [20]),
+    (BUMPER, '<frameName>base_link</frameName>', '', [20]),
+    (ARM, '<updateRate>100.0<', '<updateRate>0<', None),
+    (ARM, '<updateRate>100.0<', '<updateRate>-1<', None),
+])
+def test_what_gazebo_takes_works(world, caplog, robot, old, new, expected):
+    _, times = spawn(world, robot, old, new)
+    world.run(30)
+    assert 'spawned without' not in caplog.text
+    assert 'ERROR' not in caplog.text
+    if expected is None:  # one joint in each step, the other at 100 Hz
+        assert len(times) == pytest.approx(30 + 3, abs=1)
+    else:
+        assert times == expected
+
+
+def test_a_contact_sensor_without_a_collision_says_which_there_are(world, caplog):
+    named = '<collision>base_footprint_fixed_joint_lump__base_link_collision</collision>'
+    _, times = spawn(world, BUMPER, named, '')
+    world.run(30)
+    assert 'it names no <collision>; the collisions of' in caplog.text
+    assert 'base_footprint_fixed_joint_lump__base_link_collision' in caplog.text
+    assert times == [20]
+
+
+def test_a_scan_of_a_million_rays_comes_with_a_warning(world, caplog):
+    with caplog.at_level(logging.WARNING):
+        _, times = spawn(world, LASER, '<samples>720<', '<samples>1000000<')
+    assert '1000000 rays take long; the simulation waits for each scan' in caplog.text
+    world.run(30)
+    assert times == [25]
