@@ -24,10 +24,10 @@ def world():
         yield made
 
 
-def spawn(world, robot='bumper', rounded=500, **place):
+def spawn(world, robot='bumper', settled=500, **place):
     """Return the model, and a list that takes times [ms] and readings, once it stands."""
     model = world.spawn(ROBOTS / f'{robot}.urdf', 'bbot', **place)
-    world.run(rounded)
+    world.run(settled)
     found = []
     model.plugin('bumper').outputs['contacts'].connect(
         lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
@@ -78,7 +78,7 @@ def test_without_a_rate_each_step_is_a_message(world):
 
 
 def test_what_does_not_touch_is_sent_too(world):
-    _, found = spawn(world, rounded=0, z=0.3)
+    _, found = spawn(world, settled=0, z=0.3)
     world.run(400)
     counts = [len(touches) for _, touches in found]
     assert counts[:12] == [0] * 12
@@ -135,3 +135,25 @@ def test_defaults_are_those_of_gazebo(world):
     model, _ = spawn(world, 'bumper_defaults')
     assert model.plugin('bumper').params.values == {
         'bumperTopicName': 'bumper_states', 'frameName': 'world'}
+
+
+def test_the_bumper_of_a_reduced_link_feels_the_wall_that_it_is_pushed_against(world):
+    model, found = spawn(world, 'bumper_front', x=7.9 - 0.22)
+    world.apply_wrench(model.links['base_footprint'], (80.0, 0.0, 0.0))
+    world.run(500)
+    touches = [touch for _, reading in found[-10:] for touch in reading]
+    front = OWN.replace('base_link_collision', 'bumper_link_collision_1')
+    assert {(touch.first, touch.second) for touch in touches} == {(front, WALL)}
+    assert -80.0 <= total(touches)[0] / 200 < -55.0  # friction on the ground may bear the rest
+
+
+def test_a_fallen_box_has_a_state_for_each_step_since_it_has_landed(world):
+    """It falls 2.9 m, for 0.769 s; its link is not reduced, so neither is its name."""
+    _, found = spawn(world, 'bumper_free', settled=0, z=3.0)
+    world.run(2000)
+    counts = {time: len(touches) for time, touches in found}
+    assert {counts[time] for time in counts if time <= 760} == {0}
+    assert counts[780] == 11
+    assert {counts[time] for time in counts if time > 1500} == {20}
+    assert {(touch.first, touch.second) for touch in found[-1][1]} == {
+        ('bbot::base_link::base_link_collision', GROUND)}
