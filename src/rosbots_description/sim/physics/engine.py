@@ -244,7 +244,7 @@ class PhysicsEngine(Protocol):
     def joint_reaction(self, body: EngineBody, joint: str) -> Wrench:
         """Return the wrench of the parent on the child through a joint in the last step.
 
-        It includes the motor's effort, but not applied efforts, springs and dampers of the joint.
+        About its axis it is what acts in the joint: motor, applied effort, spring, damper and stop.
         The torque is about the origin of the joint's frame; both are in the axes of the child link.
         Zero unless `measure_reaction` was called before that step.
         """

@@ -57,6 +57,47 @@ def test_an_effort_on_a_joint_is_in_its_torque(world):
     assert math.hypot(*reading.force) == pytest.approx(4.9, abs=0.01)
 
 
+def test_at_the_elbows_stop_joints_bear_what_was_recorded(world):
+    model, found = spawn(world)
+    world.apply_effort(model.joint('elbow'), 1.0)  # [N m], more than the weight
+    model.joint('elbow').set_position(2.5)
+    model.joint('shoulder').set_position(3.0269811)
+    world.run(1500)
+    for topic, expected in (
+            ('ft_elbow', (-3.362324, 0.0, -3.5645097, 0.0, -0.67247247, 0.0)),
+            ('ft_shoulder', (1.6814816, 0.0, 14.604347, 0.24342872, 0.0, -0.028053357))):
+        force, torque = found[topic][-1][1]
+        assert (*force, *torque) == pytest.approx(expected, abs=CLOSE)
+
+
+ROD = """<robot name="rod"><link name="world"/><joint name="f" type="fixed"><parent link="world"/>
+<child link="base"/><origin xyz="0 0 1" rpy="0 0 0.7"/></joint>
+<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<link name="rod"><inertial><origin xyz="0.5 0 0"/><mass value="2"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial><collision><origin xyz="0.5 0 0"/><geometry>
+<box size="0.9 0.2 0.1"/></geometry></collision></link><joint name="j" type="revolute">
+<parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+<limit lower="{lower}" upper="0" effort="100" velocity="10"/></joint>
+<gazebo><plugin name="p" filename="libgazebo_ros_ft_sensor.so"><topicName>t</topicName>
+<jointName>j</jointName></plugin></gazebo></robot>"""
+LOAD = ('<sdf version="1.6"><model name="load"><link name="l"><inertial><mass>1</mass></inertial>'
+        '<collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision>'
+        '</link></model></sdf>')
+
+
+@pytest.mark.parametrize('lower', [-1, 0])  # 0: as of a fixed joint that is kept for its sensor
+def test_a_stop_bears_a_rod_and_what_lies_on_it(world, lower):
+    found = []
+    world.spawn(ROD.format(lower=lower)).plugins[0].outputs['wrench'].connect(found.append)
+    world.run(200)
+    assert (*found[-1].force, *found[-1].torque) == pytest.approx(
+        (0.0, 0.0, -19.6, 0.0, 9.8, 0.0), abs=0.01)
+    world.spawn(LOAD, x=0.8 * math.cos(0.7), y=0.8 * math.sin(0.7), z=1.1, yaw=0.7)
+    world.run(1000)
+    assert found[-1].force[2] == pytest.approx(-29.4, abs=0.05)
+    assert found[-1].torque[1] == pytest.approx(9.8 + 0.8 * 9.8, abs=0.05)
+
+
 def test_the_frame_is_that_of_the_child_and_nothing_is_measured_unread(world):
     model = world.spawn(ARM, 'arm')
     plugin = model.plugin('ft')

@@ -11,7 +11,7 @@ from typing import Any, cast
 from ...core import Pose, Vector
 from ...description import ModelSpec, PhysicsSettings
 from ...meshes import EngineFiles
-from ..engine import Contact, PhysicsEngine, Points, RayHits
+from ..engine import Contact, PhysicsEngine, Points, RayHits, Wrench
 from .body import Body
 from .body_maker import BodyMaker
 from .body_states import BodyStates
@@ -24,6 +24,7 @@ from .friction_slip import SlippingLinks
 from .snapshot import BulletSnapshot, Snapshots
 from .solver_iterations import CHECK, SolverEffort
 from .springs import Springs
+from .stop_reaction import is_at_stop, links_beyond, with_stop
 from .tuning import Tuning
 
 _MAX_BATCH = 20  # steps in one call, which is faster than a call for each
@@ -243,6 +244,19 @@ class Engine(BodyStates):
     def contacts(self, body: Body, link: str | None = None) -> list[Contact]:
         """Return the contacts of a model, or of one link, in the last step."""
         return self._queries.contacts(body, link)
+
+    def joint_reaction(self, body: Body, joint: str) -> Wrench:
+        """Return the wrench of the parent on the child through a joint in the last step."""
+        measured, (number, index) = super().joint_reaction(body, joint), body.joints[joint]
+        axis, turns = body.joint_axes[joint]
+        if not (turns and is_at_stop(self._client, number, index)):
+            return measured
+        beyond = links_beyond(self._client, number, index)
+        names = {part.index: name for name, part in body.parts.items() if part.body == number}
+        touches = [contact for link in beyond if link in names
+                   for contact in self.contacts(body, names[link])]
+        frame = self.link_pose(body, names[index])
+        return with_stop(self._client, number, beyond, frame, axis, measured, touches)
 
     def cast_rays(self, starts: Points, ends: Points, named: bool = False) -> RayHits:
         """Return the first hits of rays."""
