@@ -1,4 +1,4 @@
-"""What several tests need: the article's robot, small models, and worlds that close themselves."""
+"""Shared fixtures: the article's robot, small models, and worlds as context managers."""
 
 import os
 from collections.abc import Iterator
@@ -22,21 +22,21 @@ ROOT = Path(__file__).resolve().parents[2]
 LIBRARY = ROOT / 'src' / 'rosbots_description'
 XACRO = ROOT / 'urdf' / 'rosbots.xacro'
 SPAWN_POSE = Pose((0.0, 0.0, 0.5))  # of spawn.launch
-SETTLED = 2500  # steps after which the robot has fallen from there and stands
+SETTLED = 2500  # steps until the robot, spawned there, stands on the ground
 
 
 @cache
 def robot_urdf(**arguments: str) -> str:
-    """Return the URDF text for xacro arguments, with the package found where this file lies."""
+    """Return the URDF text for xacro arguments; the package is that of this file."""
     with pytest.MonkeyPatch.context() as patch:
         path = os.pathsep.join([str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')])
         patch.setenv('ROS_PACKAGE_PATH', path)
-        patch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+        patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
         return xacro.process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
 
 
 def package_directory(name: str) -> str | None:
-    """Find this package, and no other."""
+    """Return the folder of this package, None for any other."""
     return str(ROOT) if name == 'rosbots_description' else None
 
 
@@ -49,10 +49,10 @@ def robot_spec() -> ModelSpec:
 
 @contextmanager
 def empty_world(tuning: Tuning | None = None) -> Iterator[World]:
-    """Open a world with a ground plane; it is closed at the end.
+    """Yield a world with a ground plane; close it at the end.
 
     Args:
-        tuning: other choices of the engine than the usual ones.
+        tuning: engine settings; None for the defaults.
     """
     world = World(make_engine=partial(Engine, tuning=tuning))
     try:
@@ -63,12 +63,12 @@ def empty_world(tuning: Tuning | None = None) -> Iterator[World]:
 
 
 def urdf_spec(body: str, name: str = 'thing') -> ModelSpec:
-    """Return the model of a URDF given by what stands inside <robot>."""
+    """Return the model of a URDF, given the text inside <robot>."""
     return load_urdf(f'<robot name="{name}">{body}</robot>', name)[0]
 
 
 def box_urdf(size: str, mass: float, extra: str = '') -> str:
-    """Return a link `box` of `size` 'x y z' [m] with a plain inertia, and what `extra` adds."""
+    """Return a link `box` of `size` 'x y z' [m], followed by the text `extra`."""
     shape = f'<geometry><box size="{size}"/></geometry>'
     return (
         f'<link name="box"><inertial><mass value="{mass}"/>'

@@ -1,4 +1,4 @@
-"""The package that a reader of the article has made, of the name that ours has."""
+"""The package that readers of the article write, of the same name as ours."""
 
 import json
 import shutil
@@ -21,7 +21,7 @@ def write_article_package(folder: Path) -> None:
 
 
 def _robot() -> ElementTree.Element:
-    """Return the article's robot, written as plain as `cat` needs it."""
+    """Return the article's robot as plain URDF, so that `cat` can replace xacro."""
     article = json.loads((_DATA / 'article_robot.json').read_text(encoding='utf-8'))
     robot = _element('robot', {'name': article['name'],
                                'xmlns:xacro': 'http://www.ros.org/wiki/xacro'})

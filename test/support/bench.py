@@ -1,4 +1,4 @@
-"""The services and topics of a real world, called in this process: no master, no wire, no pace."""
+"""The services and topics of a real world, called in this process: no master, no connections."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,7 +28,7 @@ from rosbots_description.sim.runtime.world import World
 from . import SPAWN_POSE, box_urdf, empty_world, package_directory, robot_spec, urdf_spec
 
 BYSTANDER = 'bystander'
-PLACE = Pose((50.0, 50.0, 1.5))  # of the bystander, at rest there [m]
+PLACE = Pose((50.0, 50.0, 1.5))  # where the bystander rests [m]
 ALL = {**SERVICES, **EXTENSIONS}
 BOX = f'<robot name="b">{box_urdf("1 1 1", 1.0)}</robot>'
 DOOR = f"""<robot name="door"><link name="world"/><joint name="hinge" type="revolute">
@@ -37,7 +37,7 @@ DOOR = f"""<robot name="door"><link name="world"/><joint name="hinge" type="revo
 NESTED = """<sdf version="1.6"><model name="outer"><link name="base"/>
   <model name="inner"><pose>1 0 0 0 0 0</pose><link name="arm"/></model></model></sdf>"""
 LAMP = '<sdf version="1.6"><light name="lamp" type="point"/></sdf>'
-# What requests are to name often.
+# Names that requests contain often.
 NAMES = (
     'rosbots', 'rosbots::base_footprint', 'base_footprint', 'wheel_left_link', 'wheel_left_joint',
     'rosbots::wheel_right_joint', 'base_link', 'door', 'door::box', 'hinge', 'outer', 'inner',
@@ -47,7 +47,7 @@ NAMES = (
 
 
 class Bench:
-    """A server whose loop is the thread that calls; what it answers is checked like on the wire."""
+    """A server whose loop is the calling thread; responses are serialized as for a connection."""
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -58,7 +58,7 @@ class Bench:
             world, loop, registrar, package_directory, lambda _inner: None, _sandbox())
 
     def call(self, name: str, request: Message) -> Any:
-        """Return the response, or None for a call that failed with a sentence."""
+        """Return the response, or None if the call failed with an error message."""
         entry = ALL[name]
         try:
             response = respond(self.server, entry, request)
@@ -66,25 +66,25 @@ class Bench:
             assert str(error)
             return None
         assert isinstance(response, entry.type._response_class)
-        response.serialize(BytesIO())  # else the client's call would fail without a word
+        response.serialize(BytesIO())  # fails here as it would for a client
         if getattr(response, 'success', True) is False:
             assert response.status_message
         return response
 
     def names(self) -> list[str]:
-        """Return the models that there are, in world order."""
+        """Return the names of all models, in world order."""
         return list(self.world.models)
 
 
 @cache
 def _sandbox() -> CrashSandbox:
-    """Return one for all tests of this process."""
+    """Return the crash sandbox, one for all tests of this process."""
     return CrashSandbox(Engine(PhysicsSettings()))
 
 
 @contextmanager
 def furnished_world() -> Iterator[World]:
-    """Open a world with one of everything, and a box far away that nobody names."""
+    """Yield a world with one of everything, and a box far away that no request names."""
     with empty_world() as world:
         world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.spawn(urdf_spec(DOOR.partition('>')[2].removesuffix('</robot>')), 'door',

@@ -1,6 +1,6 @@
-"""Strategies for models that can be simulated, as URDF and SDF, with what must come out of them.
+"""Strategies for valid models in URDF and SDF, with their expected mass and centre of mass.
 
-The expected masses are computed here from plain matrices, not by the code that is tested.
+Expected values are computed here from 4x4 matrices, independent of the code under test.
 """
 
 import math
@@ -18,16 +18,16 @@ MOMENTS = st.floats(1e-4, 10.0)  # [kg m^2]
 NAMES = st.text(st.characters(whitelist_categories=('L', 'N'), whitelist_characters='_-/ .:'),
                 min_size=1, max_size=12)
 NAMES = NAMES.map(str.strip).filter(lambda name: name not in ('', 'world'))
-TIES = ('fixed', 'fixed', 'continuous', 'revolute', 'prismatic', 'floating', 'planar')
+JOINT_TYPES = ('fixed', 'fixed', 'continuous', 'revolute', 'prismatic', 'floating', 'planar')
 
 
 @dataclass
 class Description:
-    """A document, and what it says in all."""
+    """A document, and the totals of its model."""
 
     text: str
     mass: float = 0.0  # [kg]
-    moment: np.ndarray = field(default_factory=lambda: np.zeros(3))  # mass times place [kg m]
+    moment: np.ndarray = field(default_factory=lambda: np.zeros(3))  # sum of m * r [kg m]
     links: int = 0
 
     @property
@@ -35,22 +35,22 @@ class Description:
         """Return the centre of mass in the model's frame [m]."""
         return self.moment / self.mass
 
-    def weigh(self, frame: np.ndarray, mass: float, centre: tuple[float, ...]) -> None:
-        """Add a mass whose centre is given in a frame (a 4x4 matrix in the model)."""
+    def add_mass(self, frame: np.ndarray, mass: float, centre: tuple[float, ...]) -> None:
+        """Add a mass [kg] with its centre [m] in a frame, a 4x4 matrix in the model's frame."""
         self.mass += mass
         self.moment = self.moment + mass * (frame @ [*centre, 1.0])[:3]
 
 
 @dataclass(frozen=True)
-class Place:
-    """A pose as both formats write it."""
+class Origin:
+    """A pose as xyz [m] and rpy [rad], as in both formats."""
 
     xyz: tuple[float, float, float]
     rpy: tuple[float, float, float]
 
     @property
     def matrix(self) -> np.ndarray:
-        """Return it as a 4x4 matrix: turned about fixed x, y and z, then moved."""
+        """Return the 4x4 matrix: rotation about fixed x, y and z, then translation."""
         matrix = np.eye(4)
         for axis, angle in zip((0, 1, 2), self.rpy, strict=True):
             turn = np.eye(4)
@@ -62,16 +62,16 @@ class Place:
         return matrix
 
 
-PLACES = st.builds(Place, st.tuples(*[POSITIONS] * 3), st.tuples(*[ANGLES] * 3))
+ORIGINS = st.builds(Origin, st.tuples(*[POSITIONS] * 3), st.tuples(*[ANGLES] * 3))
 
 
 def words(numbers) -> str:
-    """Return numbers as a description writes them."""
+    """Return numbers as the text of an attribute."""
     return ' '.join(map(repr, numbers))
 
 
 def child(parent: etree._Element, tag: str, text: str | None = None, **attributes: str):
-    """Add an element."""
+    """Add an element and return it."""
     element = etree.SubElement(parent, tag, attributes)
     element.text = text
     return element
@@ -79,11 +79,11 @@ def child(parent: etree._Element, tag: str, text: str | None = None, **attribute
 
 @st.composite
 def urdfs(draw) -> Description:
-    """Return a URDF with a tree of links, of which every mass is simulated."""
+    """Return a URDF with a tree of links, in which every mass is simulated."""
     names = draw(st.lists(NAMES, min_size=1, max_size=8, unique=True))
     parents = [None] + [draw(st.integers(0, i - 1)) for i in range(1, len(names))]
-    ties = [''] + [draw(st.sampled_from(TIES)) for _ in names[1:]]
-    masses = _masses(draw, parents, ties)
+    kinds = [''] + [draw(st.sampled_from(JOINT_TYPES)) for _ in names[1:]]
+    masses = _masses(draw, parents, kinds)
     robot = etree.Element('robot', name='random')
     description = Description('', links=len(names))
     frames: list[np.ndarray] = []
@@ -91,20 +91,20 @@ def urdfs(draw) -> Description:
         link = child(robot, 'link', name=name)
         frame = np.eye(4)
         if i:
-            place = draw(PLACES)
-            _urdf_joint(draw, robot, f'joint of {name}', ties[i], names[parents[i]], name, place)
+            place = draw(ORIGINS)
+            _urdf_joint(draw, robot, f'joint of {name}', kinds[i], names[parents[i]], name, place)
             frame = frames[parents[i]] @ place.matrix
         frames.append(frame)
         if masses[i]:
-            centre = draw(PLACES)
+            centre = draw(ORIGINS)
             inertial = child(link, 'inertial')
             child(inertial, 'origin', xyz=words(centre.xyz), rpy=words(centre.rpy))
             child(inertial, 'mass', value=repr(masses[i]))
             child(inertial, 'inertia', **_tensor(draw))
-            description.weigh(frame, masses[i], centre.xyz)
+            description.add_mass(frame, masses[i], centre.xyz)
         for tag in draw(st.lists(st.sampled_from(('collision', 'visual')), max_size=3)):
             shape = child(link, tag)
-            place = draw(PLACES)
+            place = draw(ORIGINS)
             child(shape, 'origin', xyz=words(place.xyz), rpy=words(place.rpy))
             _urdf_shape(draw, child(shape, 'geometry'))
     _gazebo_blocks(draw, robot, names)
@@ -112,21 +112,21 @@ def urdfs(draw) -> Description:
     return description
 
 
-def _masses(draw, parents: list, ties: list[str]) -> list[float]:
-    """Return masses so that only leaves which are lumped, or what carries masses, have none."""
+def _masses(draw, parents: list, kinds: list[str]) -> list[float]:
+    """Return masses; 0 only for leaves on fixed joints and for links that fixed children weigh."""
     masses = [draw(st.just(0.0) | MASSES) for _ in parents]
     carried = list(masses)
     for i in range(len(parents) - 1, -1, -1):
         leaf = i not in parents
-        if carried[i] == 0.0 and not (leaf and ties[i] == 'fixed'):
+        if carried[i] == 0.0 and not (leaf and kinds[i] == 'fixed'):
             masses[i] = carried[i] = draw(MASSES)
-        if ties[i] == 'fixed':
+        if kinds[i] == 'fixed':
             carried[parents[i]] += carried[i]
     return masses
 
 
 def _tensor(draw) -> dict[str, str]:
-    """Return an inertia tensor without negative moments: its diagonal outweighs the rest."""
+    """Return an inertia tensor with positive moments: its diagonal dominates."""
     diagonal = draw(st.tuples(*[MOMENTS] * 3))
     products = draw(st.tuples(*[st.floats(-0.4, 0.4)] * 3))
     numbers = (*diagonal, *(min(diagonal) * product for product in products))
@@ -139,7 +139,7 @@ def _axis(draw) -> str:
     return words(vector)
 
 
-def _urdf_joint(draw, robot, name, kind, parent, link, place: Place) -> None:
+def _urdf_joint(draw, robot, name, kind, parent, link, place: Origin) -> None:
     joint = child(robot, 'joint', name=name, type=kind)
     child(joint, 'parent', link=parent)
     child(joint, 'child', link=link)
@@ -181,14 +181,14 @@ def _gazebo_blocks(draw, robot, names: list[str]) -> None:
 
 @st.composite
 def sdfs(draw) -> Description:
-    """Return an SDF model with any graph of joints, and perhaps a model within it."""
+    """Return an SDF model with any graph of joints, and perhaps a nested model."""
     root = etree.Element('sdf', version=draw(st.sampled_from(('1.4', '1.5', '1.6', '1.7'))))
     model = child(root, 'model', name='random')
     description = Description('')
     names = _sdf_model(draw, model, np.eye(4), description)
     if draw(st.booleans()):
         inner = child(model, 'model', name=draw(NAMES.filter(lambda name: name not in names)))
-        place = draw(PLACES)
+        place = draw(ORIGINS)
         child(inner, 'pose', words((*place.xyz, *place.rpy)))
         _sdf_model(draw, inner, place.matrix, description)
     description.text = etree.tostring(root, encoding='unicode', pretty_print=True)
@@ -196,11 +196,11 @@ def sdfs(draw) -> Description:
 
 
 def _sdf_model(draw, model, frame: np.ndarray, description: Description) -> list[str]:
-    """Fill a <model> that stands at `frame`; return the names of its links."""
+    """Fill a <model> whose pose is `frame`; return the names of its links."""
     names = draw(st.lists(NAMES.filter(lambda name: '::' not in name), min_size=1, max_size=5,
                           unique=True))
     for name in names:
-        link, place, centre = child(model, 'link', name=name), draw(PLACES), draw(PLACES)
+        link, place, centre = child(model, 'link', name=name), draw(ORIGINS), draw(ORIGINS)
         child(link, 'pose', words((*place.xyz, *place.rpy)))
         mass, inertial = draw(MASSES), child(link, 'inertial')
         child(inertial, 'pose', words((*centre.xyz, *centre.rpy)))
@@ -208,7 +208,7 @@ def _sdf_model(draw, model, frame: np.ndarray, description: Description) -> list
         inertia = child(inertial, 'inertia')
         for key, value in _tensor(draw).items():
             child(inertia, key, value)
-        description.weigh(frame @ place.matrix, mass, centre.xyz)
+        description.add_mass(frame @ place.matrix, mass, centre.xyz)
         if draw(st.booleans()):
             geometry = child(child(link, 'collision', name='shape'), 'geometry')
             size = draw(st.tuples(*[LENGTHS] * 3))

@@ -1,4 +1,4 @@
-"""Plugins on robots without physics: a real world and model over a fake engine."""
+"""Plugins on robots without physics: a real world and model on a fake engine."""
 
 import math
 
@@ -31,7 +31,7 @@ PERIOD_STEPS = 10
 
 
 def fake_model(wheel_collisions=(), names=('left', 'right')):
-    """Return a model of wheels in a world of its own; left ones are at y = 0.4 m."""
+    """Return a model with wheels in a new world; left ones are at y = 0.4 m, right ones at -0.4."""
     side = from_rpy(-math.pi / 2, 0.0, 0.0)
     links = [
         LinkSpec(f'{name}_link', Pose((0.1, -0.4 if 'right' in name else 0.4, 0.2), side),
@@ -46,7 +46,7 @@ def fake_model(wheel_collisions=(), names=('left', 'right')):
 
 
 def load_plugin(plugin_class, model, element):
-    """Return a plugin of that model, loaded with the tags of an element."""
+    """Return a plugin of the model, loaded with the tags of an element."""
     spec = PluginSpec('drive', 'libgazebo_ros_drive.so', element)
     plugin = plugin_class(model.world, model, spec)
     plugin.start()
@@ -56,12 +56,12 @@ def load_plugin(plugin_class, model, element):
 
 
 def make(wheel_collisions=(), **tags):
-    """Return a loaded diff drive with these tags beside TAGS; one that is None is left out."""
+    """Return a loaded diff drive with TAGS and these tags; a tag that is None is left out."""
     return make_drive(DiffDrive, fake_model(wheel_collisions), **(TAGS | tags))
 
 
 def make_drive(plugin_class, model, **tags):
-    """Return a loaded plugin of that model with these tags; one that is None is left out."""
+    """Return a loaded plugin of the model with these tags; a tag that is None is left out."""
     children = tuple(Element(tag, text) for tag, text in tags.items() if text is not None)
     return load_plugin(plugin_class, model, Element('plugin', children=children))
 
@@ -72,30 +72,30 @@ def run(plugin, steps):
 
 
 def place(plugin, pose, twist=None):
-    """Let the plugin's model be somewhere, moving so."""
+    """Set pose and twist of the plugin's model."""
     plugin.model.set_pose(pose)
     plugin.model.set_twist(twist or Twist())
 
 
 def turn(plugin, **speeds):
-    """Let joints turn at speeds [rad/s], whatever their motors are told."""
+    """Set velocities of joints [rad/s], whatever their motor targets."""
     for joint, speed in speeds.items():
         plugin.model.body.state[joint][1] = speed
 
 
 def rim_speeds(plugin):
-    """Return what the joints make of the rims, left and right [m/s]."""
+    """Return the rim speeds of the wheels, left and right [m/s]."""
     return tuple(joint.velocity * plugin.wheel_diameter / 2
                  for joint in plugin.model.joints.values())
 
 
 def collect(output):
-    """Return a list that gets what the output gives out."""
+    """Return a list to which the output appends its readings."""
     readings = []
     output.connect(readings.append)
     return readings
 
 
 def wheel_of(radius):
-    """Return the collisions of a wheel of that radius [m]."""
+    """Return the collisions of a wheel of a radius [m]."""
     return (Collision('c', Cylinder(radius, 0.2)),)

@@ -11,18 +11,18 @@ from rosbots_description.sim.physics.engine import JointState, Motion, PhysicsEn
 
 
 class FakeEngine(PhysicsEngine):
-    """Takes the place of an engine in a world; all its state is that of the bodies it made.
+    """Replaces the engine of a world; its only state is that of its bodies.
 
-    A body has `spec`, `pose`, `twist`, and by the name of a joint `state` (position and velocity),
-    which a test may change. Forces have no effect, and nothing touches. Methods that only command
-    are those of the protocol, which do nothing.
+    A body has `spec`, `pose`, `twist`, and by joint name `state` (position and velocity), which
+    tests may change. Forces have no effect, and there are no contacts. Other commands are the
+    empty methods of the protocol.
     """
 
     needs_rebuild = False
     placements = 0
 
     def __init__(self, physics):
-        self.steps = []  # how many each call of `step` has made
+        self.steps = []  # number of steps of each call of `step`
         self.slips = {}  # by link
         self.rigid = set()  # links that cannot slip
         self.bodies = []

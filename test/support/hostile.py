@@ -1,4 +1,4 @@
-"""The ways to hurt the simulator that test/data/hostile/cases.yaml lists, ready to be sent."""
+"""The malicious inputs that test/data/hostile/cases.yaml lists, ready to be sent."""
 
 import os
 import struct
@@ -15,16 +15,16 @@ _INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></iner
 _BALL = '<collision><geometry><sphere radius="0.01"/></geometry></collision>'
 _TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\n'
 
-Make = Callable[[Path], str | bytes]  # gets a folder for files that the case needs
+Make = Callable[[Path], str | bytes]  # its argument is a folder for files of the case
 _MADE: dict[str, tuple[str, Make]] = {}
 
 
 @dataclass(frozen=True)
 class Case:
-    """One entry of the table; see there."""
+    """An entry of the table; see there for the fields."""
 
     name: str
-    kind: str  # 'urdf', 'sdf', 'world', or the ending of a mesh file
+    kind: str  # 'urdf', 'sdf', 'world', or the suffix of a mesh file
     make: Make
     says: str = ''
     warns: str = ''
@@ -37,10 +37,10 @@ class Case:
     wire: bool = True
 
     def text(self, folder: Path) -> str | bytes:
-        """Return the description to send; that of a mesh names a file, which may lie in `folder`.
+        """Return the description to send; for a mesh, a robot that refers to the file.
 
         Args:
-            folder: an empty one that outlives the case.
+            folder: an empty folder for files of the case, which outlives it.
         """
         content = self.make(folder)
         if self.kind in DESCRIPTIONS:
@@ -103,31 +103,31 @@ def _include(uri: str) -> str:
 
 @_made('urdf')
 def deep_nesting(_: Path) -> str:
-    """Elements 201 deep."""
+    """Elements nested 201 deep."""
     return _robot('<a>' * 200 + '</a>' * 200)
 
 
 @_made('urdf')
 def deeper_than_the_stack(_: Path) -> str:
-    """Elements 20 000 deep."""
+    """Elements nested 20 000 deep."""
     return _robot('<a>' * 20_000 + '</a>' * 20_000)
 
 
 @_made('urdf')
 def many_attributes(_: Path) -> str:
-    """As many attributes as the text may have; libxml2 would be busy for hours."""
+    """As many attributes as the text may have; libxml2 would take hours."""
     return f'<robot {" ".join(f"a{i}={chr(34) * 2}" for i in range(800_000))}/>'
 
 
 @_made('urdf')
 def many_namespaces(_: Path) -> str:
-    """The same with declarations of prefixes."""
+    """The same with namespace declarations."""
     return f'<robot {" ".join(f"xmlns:a{i}={chr(34)}u{chr(34)}" for i in range(300_000))}/>'
 
 
 @_made('urdf')
 def attributes_never_closed(_: Path) -> str:
-    """The same in a tag that does not end."""
+    """The same in a tag that is never closed."""
     return f'<robot {" ".join(f"a{i}={chr(34) * 2}" for i in range(800_000))}'
 
 
@@ -139,32 +139,32 @@ def many_elements(_: Path) -> str:
 
 @_made('urdf')
 def hundred_megabytes_of_blanks(_: Path) -> str:
-    """A robot that is mostly nothing."""
+    """A robot of 100 MB of white space."""
     return _robot(' ' * 100_000_000)
 
 
 @_made('urdf')
 def hundred_megabytes_of_text(_: Path) -> str:
-    """No robot at all."""
+    """100 MB that are no XML."""
     return 'a' * 100_000_000
 
 
 @_made('urdf')
 def dollars_that_never_close(_: Path) -> str:
-    """What a search for ${...} could begin four million times over."""
+    """Four million times ${, so that a naive search for ${...} takes quadratic time."""
     return _robot(_link('a'), f'<a>{"${" * 4_000_000}</a>')
 
 
 @_made('urdf')
 def long_attribute(_: Path) -> str:
-    """A number of a million digits and a word; the sentence must not be as long."""
+    """A number of a million digits and a word; the error message must not quote it all."""
     return _robot(_link('a', _BALL.replace(
         '<geometry>', f'<origin xyz="{"9" * 1_000_000} x"/><geometry>')))
 
 
 @_made('urdf')
 def long_name(_: Path) -> str:
-    """A name that would overrun the engine's buffers."""
+    """A name longer than the engine's buffers."""
     return _robot(_link('a' * 1100))
 
 
@@ -177,7 +177,7 @@ def long_chain_of_joints(_: Path) -> str:
 
 @_made('urdf')
 def long_chain_of_fixed_links(_: Path) -> str:
-    """Ten thousand links that become one."""
+    """Ten thousand links on fixed joints, which are reduced to one."""
     return _robot(*(_link(f'l{i}') for i in range(10_000)),
                   *(_joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(9_999)))
 
@@ -190,26 +190,26 @@ def hundred_thousand_links(_: Path) -> str:
 
 @_made('sdf')
 def many_links_in_sdf(_: Path) -> str:
-    """Links that nothing connects."""
+    """Links without joints."""
     return _sdf(''.join(f'<link name="l{i}"/>' for i in range(20_000)))
 
 
 @_made('urdf')
 def many_free_links(_: Path) -> str:
-    """The same by joints that tie nothing."""
+    """Links on floating joints."""
     return _robot(_link('a'), *(
         _link(f'l{i}', _BALL) + _joint(f'j{i}', 'a', f'l{i}', 'floating') for i in range(5_000)))
 
 
 @_made('urdf')
 def many_shapes(_: Path) -> str:
-    """Collisions in one heap, each of which touches the ground."""
+    """Coincident collisions, each of which touches the ground."""
     return _robot(_link('a', _BALL * 20_000))
 
 
 @_made('urdf')
 def many_surfaces(_: Path) -> str:
-    """More surfaces on one link than the engine has joints to hang them on."""
+    """More surfaces on one link than the engine allows auxiliary links."""
     return _robot(_link('a'), *(
         _link(f'l{i}', _BALL) + _joint(f'j{i}', 'a', f'l{i}')
         + f'<gazebo reference="l{i}"><mu1>{0.001 * i:.3f}</mu1></gazebo>' for i in range(140)))
@@ -217,7 +217,7 @@ def many_surfaces(_: Path) -> str:
 
 @_made('sdf')
 def many_surfaces_that_stand(_: Path) -> str:
-    """The same in a model that does not move."""
+    """The same in a static model."""
     return _sdf('<static>1</static><link name="l">' + ''.join(
         f'<collision name="c{i}"><geometry><sphere><radius>0.01</radius></sphere></geometry>'
         f'<surface><friction><ode><mu>{0.001 * i:.3f}</mu></ode></friction></surface></collision>'
@@ -226,7 +226,7 @@ def many_surfaces_that_stand(_: Path) -> str:
 
 @_made('urdf')
 def thousands_of_unknown_references(_: Path) -> str:
-    """Names to which a similar one could be looked for among a thousand others, each time."""
+    """Unknown names; a search for a similar one, each time among a thousand, would be slow."""
     return _robot(_link('a'), *(
         _link(f'l{i}') + _joint(f'j{i}', 'a', f'l{i}') for i in range(1000)), *(
         f'<gazebo reference="k{i}"/>' for i in range(50_000)))
@@ -234,34 +234,34 @@ def thousands_of_unknown_references(_: Path) -> str:
 
 @_made('sdf')
 def models_in_models(_: Path) -> str:
-    """Models 190 deep, the innermost of which has the only link."""
+    """Models nested 190 deep; only the innermost has a link."""
     return _sdf('<model name="m">' * 190 + '<link name="l"/>' + '</model>' * 190)
 
 
 @_made('urdf')
 def pipe(folder: Path) -> str:
-    """A mesh that is a pipe, which nobody writes into."""
+    """A mesh that is a named pipe without a writer."""
     os.mkfifo(folder / 'pipe.dae')
     return _mesh(folder / 'pipe.dae')
 
 
 @_made('sdf')
 def pipe_to_include(folder: Path) -> str:
-    """A model that is a pipe."""
+    """A model that is a named pipe."""
     os.mkfifo(folder / 'pipe.sdf')
     return _include(f'file://{folder}/pipe.sdf')
 
 
 @_made('urdf')
 def link_out_of_package(folder: Path) -> str:
-    """A link to a mesh elsewhere, as workspaces of links have them: what is written counts."""
+    """A symbolic link to a mesh elsewhere, as in symlinked workspaces; this is permitted."""
     (folder / 'link.obj').symlink_to(FOLDER / 'triangle.obj')
     return _mesh(folder / 'link.obj')
 
 
 @_made('sdf')
 def model_that_climbs(folder: Path) -> str:
-    """A model of the model path that names a file beside itself."""
+    """A model of the model path that refers to a file outside its folder."""
     (folder / 'climber').mkdir()
     (folder / 'climber' / 'model.sdf').write_text(_sdf(
         '<link name="a"><collision name="c"><geometry><mesh><uri>../secret.obj</uri></mesh>'
@@ -272,7 +272,7 @@ def model_that_climbs(folder: Path) -> str:
 
 @_made('sdf')
 def manifest_that_climbs(folder: Path) -> str:
-    """A model.config that names a description beside its folder."""
+    """A model.config that refers to a description outside its folder."""
     (folder / 'climber').mkdir()
     (folder / 'climber' / 'model.config').write_text(
         '<model><sdf version="1.6">../../etc/passwd</sdf></model>')
@@ -281,7 +281,7 @@ def manifest_that_climbs(folder: Path) -> str:
 
 @_made('stl')
 def mesh_of_a_million_triangles(_: Path) -> bytes:
-    """Fifty megabytes of a fine wavy sheet, as scanners make them: legal, and thinned."""
+    """Fifty megabytes of a fine surface, as from a scanner; valid, and simplified."""
     import numpy as np
 
     count = 708
@@ -297,13 +297,13 @@ def mesh_of_a_million_triangles(_: Path) -> bytes:
 
 @_made('stl')
 def mesh_of_garbage(_: Path) -> bytes:
-    """Five megabytes of nothing that was ever written."""
+    """Five megabytes of random bytes."""
     return (b'\xff\x00garbage\x80' * 500_000)
 
 
 @_made('dae')
 def mesh_nested_deep(_: Path) -> str:
-    """Nodes 3000 deep."""
+    """Nodes nested 3000 deep."""
     return '<COLLADA>' + '<node>' * 3000 + '</node>' * 3000 + '</COLLADA>'
 
 
@@ -321,7 +321,7 @@ def mesh_of_many_materials(_: Path) -> str:
 
 @_made('urdf')
 def mesh_too_big(folder: Path) -> str:
-    """A file that takes no room and says that it has a terabyte."""
+    """A sparse file of a terabyte."""
     with open(folder / 'big.obj', 'wb') as file:
         file.truncate(10**12)
     return _mesh(folder / 'big.obj')
@@ -329,6 +329,6 @@ def mesh_too_big(folder: Path) -> str:
 
 @_made('world')
 def world_of_one_name(_: Path) -> str:
-    """Twenty thousand models of one name, which must all get another."""
+    """Twenty thousand models of one name, all of which must be renamed."""
     return ('<sdf version="1.6"><world name="w">'
             + '<model name="m"><link name="l"/></model>' * 20_000 + '</world></sdf>')

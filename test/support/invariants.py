@@ -1,4 +1,4 @@
-"""What holds of every model that a description becomes, and of every refusal."""
+"""Invariants of every loaded model, and of every error message."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -10,11 +10,11 @@ import numpy as np
 from rosbots_description.sim.description.model_spec import ModelSpec
 from rosbots_description.sim.physics.bullet.generated_urdf import kinematic_trees
 
-LONGEST_SENTENCE = 2000  # characters; a name may have 1000, and the places are told
+LONGEST_SENTENCE = 2000  # characters; a name may have 1000, and the location is given
 
 
 def numbers_in(value: Any) -> Iterator[float]:
-    """Yield every float of plain values that hold plain values."""
+    """Yield every float in nested dataclasses, mappings and sequences."""
     if isinstance(value, float):
         yield value
     elif is_dataclass(value):
@@ -29,7 +29,7 @@ def numbers_in(value: Any) -> Iterator[float]:
 
 
 def check_spec(spec: ModelSpec) -> None:
-    """Assert that a model can be simulated: finite, names unique, every link on one tree."""
+    """Assert that numbers are finite, names unique, and every link is in exactly one tree."""
     assert all(map(math.isfinite, numbers_in(spec)))
     names = [link.name for link in spec.links]
     assert names
@@ -48,15 +48,15 @@ def check_spec(spec: ModelSpec) -> None:
 
 
 def check_sentence(error: Exception) -> None:
-    """Assert that a refusal is one line that a person can read."""
+    """Assert that an error message is one readable line."""
     sentence = str(error)
     assert sentence.strip()
-    assert sentence.isprintable(), f'not one printable line: {sentence[:300]!r}'
+    assert sentence.isprintable(), f'not a printable line: {sentence[:300]!r}'
     assert len(sentence) <= LONGEST_SENTENCE, f'{len(sentence)} characters: {sentence[:300]}'
 
 
 def total(spec: ModelSpec) -> tuple[float, np.ndarray]:
-    """Return mass [kg] and centre of mass [m, model frame] of a model with all joints at zero."""
+    """Return mass [kg] and centre of mass [m, model frame] with all joints at zero."""
     mass, moment = 0.0, np.zeros(3)
     for link in spec.links:
         mass += link.inertial.mass

@@ -1,4 +1,4 @@
-"""A process of its own for what may crash, hang or chatter: each of these is a failed test."""
+"""Calls in a child process, for code that may crash, hang or print: each fails the test."""
 
 import contextlib
 import faulthandler
@@ -11,19 +11,19 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
-PATIENCE = 60.0  # [s, wall] for what takes milliseconds; slow machines are no failure
+PATIENCE = 60.0  # [s, wall] timeout of what takes milliseconds; a slow machine is no failure
 
 _FORK = multiprocessing.get_context('fork')
 
 
 class Child:
-    """A copy of this process that carries out calls on one object; for a `with` statement.
+    """A fork of this process that executes calls on one object; for a `with` statement.
 
-    It begins with everything as it is here, an open world included, and changes nothing here.
+    It starts with a copy of this process's memory, an open world included.
     """
 
     def __init__(self, make: Callable[[], Any]) -> None:
-        """Fork, and let the child make its object by `make()`."""
+        """Fork; the child creates its object by `make()`."""
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  closed by __exit__
         self._pipe, theirs = _FORK.Pipe()
         self._process = _FORK.Process(target=_serve, args=(make, theirs, self._output.fileno()))
@@ -44,7 +44,7 @@ class Child:
         """Return what the object's method returns.
 
         Raises:
-            AssertionError: it raised something, did not end, printed something, or the child died.
+            AssertionError: the call raised, did not return, printed, or ended the child.
         """
         self._pipe.send((method, arguments))
         if not self._pipe.poll(PATIENCE):
@@ -62,13 +62,13 @@ class Child:
         return result
 
     def printed(self) -> str:
-        """Return all that came out on the child's standard output and error."""
+        """Return the standard output and error of the child so far."""
         size = self._output.seek(0, os.SEEK_END)
         return os.pread(self._output.fileno(), size, 0).decode(errors='replace')
 
 
 def isolated(function: Callable[[], Any]) -> Any:
-    """Return what `function()` returns in a child; see `Child.call` for what is a failure."""
+    """Return what `function()` returns in a child; fail like `Child.call`."""
     with Child(lambda: _Once(function)) as child:
         return child.call('run')
 
@@ -79,8 +79,8 @@ class _Once:
 
 
 def _serve(make: Callable[[], Any], pipe: Any, output: int) -> None:
-    """Be the child: no exception and no output of it reaches the parent's terminal."""
-    faulthandler.disable()  # what happened is told by the signal
+    """Run the child; none of its exceptions and output reaches the parent's terminal."""
+    faulthandler.disable()  # the signal is reported by the parent
     os.dup2(output, sys.__stdout__.fileno())
     os.dup2(output, sys.__stderr__.fileno())
     target = None
@@ -90,7 +90,7 @@ def _serve(make: Callable[[], Any], pipe: Any, output: int) -> None:
             try:
                 target = make() if target is None else target
                 answer = (True, getattr(target, method)(*arguments))
-            except BaseException:  # whatever it is, the parent judges
+            except BaseException:  # reported by the parent
                 answer = (False, traceback.format_exc())
             pipe.send(answer)
-    os._exit(0)  # without what the parent registered for its own end
+    os._exit(0)  # without the parent's exit handlers

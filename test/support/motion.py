@@ -1,4 +1,4 @@
-"""Drive robots as they were driven in Gazebo, and measure their motion as it was there."""
+"""Repeat drives recorded in Gazebo, and measure the motion in the same way."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,24 +14,24 @@ from .recorded import DATA, Difference, load
 
 ROBOTS = ('article', 'burger', 'box4', 'skid4', 'planar', 'tricycle')
 REST = 3.0  # [s] after the end of a command
-STEADY_FROM = 1.0  # [s] after its beginning
+STEADY_FROM = 1.0  # [s] after the start of a command
 REACHED = 0.9  # share of the steady speed
 STOPPED = 0.05  # share of the steady speed
-ROW = 20  # steps between two rows of a recording
+ROW = 20  # steps between the rows of a recording
 IDLE = 20.0  # [s]
 
-# Tolerances: shares of what Gazebo's robot did, or floors where it did next to nothing.
-SPEED_SHARE = 0.03  # of a steady speed, of what was turned by, and of what a wheel turns at
+# Tolerances relative to Gazebo's values, with lower bounds (floors).
+SPEED_SHARE = 0.03  # of a steady speed, an angle turned, a wheel speed
 PLACE_SHARE = 0.04  # of the displacement
-TIME_SHARE, TIME_FLOOR = 0.05, 0.03  # of a time to speed up or slow down; [s], more than one row
-RIM_SHARE = 0.01  # of the fastest rim: floor of speeds along and across
-WAY_SHARE = 0.005  # of the way of the fastest rim: floor of places
-VEER_RATE, VEER = 0.002, 0.01  # [rad/s], [rad] in a straight drive where Gazebo's veers less
+TIME_SHARE, TIME_FLOOR = 0.05, 0.03  # of a rise or stopping time; [s], more than one row
+RIM_SHARE = 0.01  # of the fastest rim speed: floor of forward and lateral speeds
+WAY_SHARE = 0.005  # of the distance of the fastest rim: floor of positions
+VEER_RATE, VEER = 0.002, 0.01  # [rad/s], [rad] floor of the heading drift in a straight drive
 WHEEL_FLOOR = 0.05  # [rad/s]
 HEIGHT, PITCH = 0.001, 0.002  # [m], [rad]
 CREEP, CREEP_TURN = 0.0005, 0.0005  # [m], [rad] in 20 s at rest
 
-Command = tuple[float, float, float, float]  # when [s], forward, to the left [m/s], turning [rad/s]
+Command = tuple[float, float, float, float]  # time [s], vx, vy [m/s], yaw rate [rad/s]
 
 
 class Robot(NamedTuple):
@@ -40,19 +40,19 @@ class Robot(NamedTuple):
     spec: ModelSpec
     spawn_z: float  # [m]
     settled: int  # steps before the first command
-    arm: float  # what a speed of turning is multiplied with to give that of a rim [m]
+    arm: float  # lever arm: rim speed per yaw rate [m]
 
 
 class Sample(NamedTuple):
-    """Where a robot is, in its frame at the first command, and how it moves.
+    """Pose of a robot in its frame at the first command, and its velocity.
 
-    Odometry is the newest message's: x, y, forward, turning; wheels are in the order of the model.
+    Odometry is the latest reading: x, y, forward, turning. Wheels are in the order of the model.
     """
 
     time: float  # [s] since the first command
     x: float  # [m]
     y: float  # [m]
-    yaw: float  # [rad], without leaps
+    yaw: float  # [rad], unwrapped
     z: float  # [m], in the world
     pitch: float  # [rad]
     forward: float  # [m/s]
@@ -63,7 +63,7 @@ class Sample(NamedTuple):
 
 
 def robot(name: str) -> Robot:
-    """Return a recorded robot by its name."""
+    """Return a recorded robot by name."""
     data = load(name)
     if name == 'article':
         spec = robot_spec()
@@ -76,18 +76,18 @@ def robot(name: str) -> Robot:
 def drive(
     one: Robot, commands: Sequence[Command], duration: float, tuning: Tuning | None = None
 ) -> list[Sample]:
-    """Return the motion after each step from the first command on."""
+    """Return the motion after each step, from the first command on."""
     with empty_world(tuning) as world:
         model = world.spawn(one.spec, 'robot', Pose((0.0, 0.0, one.spawn_z)))
-        newest = [Pose(), (0.0, 0.0)]
+        latest = [Pose(), (0.0, 0.0)]
 
-        def remember(reading) -> None:
-            newest[:] = reading.pose, (reading.twist.linear[0], reading.twist.angular[2])
+        def on_odometry(reading) -> None:
+            latest[:] = reading.pose, (reading.twist.linear[0], reading.twist.angular[2])
 
         if model.plugins:
-            model.plugins[0].odometry.connect(remember)
+            model.plugins[0].odometry.connect(on_odometry)
         world.run(one.settled)
-        odometry_start = newest[0]
+        odometry_start = latest[0]
         start, yaw, samples, waiting = None, 0.0, [], list(commands)
         for k in range(round(duration * 1000) + 1):
             while waiting and k >= round(1000 * waiting[0][0]):
@@ -97,21 +97,21 @@ def drive(
             world.run(1)
             pose, ((vx, vy, _), (_, _, turning)) = model.state()
             start = start or pose
-            way, heading = relative(pose, start), yaw_of(pose.orientation)
-            yaw += math.remainder(yaw_of(way.orientation) - yaw, math.tau)
+            moved, heading = relative(pose, start), yaw_of(pose.orientation)
+            yaw += math.remainder(yaw_of(moved.orientation) - yaw, math.tau)
             cos, sin = math.cos(heading), math.sin(heading)
-            measured = relative(newest[0], odometry_start).position
+            measured = relative(latest[0], odometry_start).position
             samples.append(Sample(
-                k / 1000.0, *way.position[:2], yaw, pose.position[2],
+                k / 1000.0, *moved.position[:2], yaw, pose.position[2],
                 -math.asin(max(-1.0, min(1.0, rotate(pose.orientation, (1.0, 0.0, 0.0))[2]))),
-                cos * vx + sin * vy, cos * vy - sin * vx, turning, (*measured[:2], *newest[1]),
+                cos * vx + sin * vy, cos * vy - sin * vx, turning, (*measured[:2], *latest[1]),
                 {name: joint.velocity for name, joint in model.joints.items()},
             ))
         return samples
 
 
 def drive_as_recorded(name: str, command: str, tuning: Tuning | None = None) -> list[Sample]:
-    """Return the motion of a recorded robot for one of its commands, until it is at rest."""
+    """Return the motion of a recorded robot for a command, until it is at rest."""
     data = load(name)['drives'][command]
     seconds = data['seconds']
     commands = [(0.0, *data['command']), (seconds, 0.0, 0.0, 0.0)]
@@ -119,7 +119,7 @@ def drive_as_recorded(name: str, command: str, tuning: Tuning | None = None) -> 
 
 
 def measure(samples: Sequence[Sample], seconds: float) -> dict[str, float]:
-    """Return what a recording tells of a command that ended after `seconds`."""
+    """Return the quantities of a recording for a command that ended after `seconds`."""
     rows = samples[::ROW]
     steady = [row for row in rows if STEADY_FROM <= row.time < seconds]
     end, rest = next(row for row in rows if row.time >= seconds), rows[-1]
@@ -127,7 +127,7 @@ def measure(samples: Sequence[Sample], seconds: float) -> dict[str, float]:
     def mean(value) -> float:
         return sum(map(value, steady)) / len(steady)
 
-    told = {
+    found = {
         'v': mean(lambda row: row.forward),
         'lateral': mean(lambda row: row.lateral),
         'w': mean(lambda row: row.turning),
@@ -138,22 +138,22 @@ def measure(samples: Sequence[Sample], seconds: float) -> dict[str, float]:
         'odom_x': rest.odometry[0], 'odom_y': rest.odometry[1],
     }  # fmt: skip
     for key, field in (('v', 'forward'), ('w', 'turning')):
-        full = abs(told[key])
+        full = abs(found[key])
         speeds = [(row.time, abs(getattr(row, field))) for row in rows]
-        told[f't90_{key}'] = next(t for t, speed in speeds if speed >= REACHED * full)
-        told[f'stop_{key}'] = max(
+        found[f't90_{key}'] = next(t for t, speed in speeds if speed >= REACHED * full)
+        found[f'stop_{key}'] = max(
             (t - seconds for t, speed in speeds if t >= seconds and speed > STOPPED * full),
             default=0.0,
         )
     for joint in steady[0].wheels:
-        told[joint] = mean(lambda row, joint=joint: row.wheels[joint])
-    return told
+        found[joint] = mean(lambda row, joint=joint: row.wheels[joint])
+    return found
 
 
 def compare_drive(
     name: str, command: str, tuning: Tuning | None = None, samples: Sequence[Sample] = ()
 ) -> list[Difference]:
-    """Return every quantity that was recorded of a drive, there and here."""
+    """Return the differences in all recorded quantities of a drive."""
     data, arm = load(name)['drives'][command], load(name)['arm']
     samples = samples or drive_as_recorded(name, command, tuning)
     gazebo, ours = dict(data['quantities']), measure(samples, data['seconds'])
@@ -163,13 +163,13 @@ def compare_drive(
     floor = WAY_SHARE * rim * data['seconds']
     found = []
 
-    def add(quantity: str, unit: str, *told, least: bool = False) -> None:
-        found.append(Difference(scene, quantity, unit, *told, least))
+    def add(quantity: str, unit: str, *values, least: bool = False) -> None:
+        found.append(Difference(scene, quantity, unit, *values, least))
 
     for keys in (('end_x', 'end_y'), ('x', 'y'), ('odom_x', 'odom_y')):
         if keys[0] in gazebo:
-            theirs, own = ([told[key] for key in keys] for told in (gazebo, ours))
-            # Distance of the places, which lie about each other anyhow, told as one number.
+            theirs, own = ([values[key] for key in keys] for values in (gazebo, ours))
+            # The distance between both positions, as one number.
             reach = max(PLACE_SHARE * math.hypot(*theirs), floor)
             quantity = keys[0].removesuffix('_x').replace('x', 'rest') + ' place'
             add(quantity, 'm', 0.0, math.dist(theirs, own), reach)
@@ -202,7 +202,7 @@ def _tolerance(key: str, theirs: float, rim: float, turns: bool) -> tuple[str, f
 def _compare_paths(
     scene: str, data: dict, samples: Sequence[Sample], floor: float
 ) -> Iterator[Difference]:
-    """Yield how far the path and the heading are from the recorded ones, at most."""
+    """Yield the largest differences of path and heading."""
     apart = turned = 0.0
     for time, x, y, yaw in data['trace']:
         sample = samples[round(1000 * time)]
@@ -213,19 +213,19 @@ def _compare_paths(
     turns = bool(data['command'][2])
     tolerance = SPEED_SHARE * most
     yield Difference(scene, 'path', 'm', 0.0, apart, max(PLACE_SHARE * reach, floor))
-    if turns:  # else it is told by the yaw that is left
+    if turns:  # otherwise the final yaw is compared
         yield Difference(scene, 'heading', 'rad', 0.0, turned, tolerance)
 
 
 def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:
-    """Return how far a standing robot moves by itself; in Gazebo it creeps."""
+    """Return how far a standing robot drifts; in Gazebo it creeps."""
     idle = load(name).get('idle')
     if idle is None:
         return []
     samples = drive(robot(name), [], IDLE, tuning)
     last, scene = samples[-1], f'{name} idle 20 s'
     way = math.hypot(idle['dx'], idle['dy'])
-    most = max(CREEP, way)  # the tricycle coasts: its plugin asks for the speed that it measures
+    most = max(CREEP, way)  # the tricycle coasts: its plugin commands the measured speed
     return [
         Difference(scene, 'way', 'm', way, math.hypot(last.x, last.y), most, True),
         Difference(scene, 'yaw', 'rad', idle['dyaw'], last.yaw, CREEP_TURN, True),
@@ -235,10 +235,12 @@ def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:
 
 def ramp_delays(samples: Sequence[Sample], speeds: Sequence[Sequence[float]], start: float,
                 rising: bool) -> list[float]:
-    """Return by how much later than in Gazebo each of the recorded speeds is passed [s].
+    """Return the delays against Gazebo at which the recorded speeds are passed [s].
 
     Args:
-        speeds: pairs of a time since `start` [s] and a forward speed [m/s].
+        speeds: recorded pairs of time since `start` [s] and forward speed [m/s].
+        start: of the ramp [s].
+        rising: whether the speed increases.
     """
     passing = [sample for sample in samples if sample.time > start]
     return [

@@ -1,11 +1,11 @@
-"""Strategies that damage a description, as typing errors, converters and bad will do."""
+"""Strategies that damage a description, like typing errors, converters and attackers."""
 
 from copy import deepcopy
 
 from hypothesis import strategies as st
 from lxml import etree
 
-# What stands where a number, a name or a flag should be.
+# Replacements for numbers, names and flags.
 ADVERSARIAL = st.sampled_from((
     '', ' ', '0', '-0', '-1', '1e999', '-1e999', '1e308', '-1e308', '1e-320', '1e16', 'nan',
     'NaN', 'inf', '-inf', '1,5', '0x10', '1_000', '1e', '1.2.3', '١٢', '1 2', '1 2 3', '0 0 0',
@@ -20,12 +20,12 @@ RAW = st.text() | st.binary() | st.sampled_from((
     '<robot>' * 300, '<sdf version="x"><model/></sdf>', '<robot><link/></robot>', b'\xff\xfe<\x00',
     '<sdf><world><include/></world></sdf>', '\x00', '<robot name="&#0;"/>', '<robot>]]></robot>',
 ))
-_MARK = '@@{}@@'  # stands for a text that lxml would not write
+_MARK = '@@{}@@'  # placeholder of a text that lxml would not write
 
 
 @st.composite
 def damaged(draw, text: str) -> str:
-    """Return the document with one to four things wrong."""
+    """Return the document with one to four errors."""
     root = etree.fromstring(text.encode())
     texts: list[str] = []
     for _ in range(draw(st.integers(1, 4))):
@@ -43,7 +43,7 @@ def damaged(draw, text: str) -> str:
 
 @st.composite
 def spoiled(draw, text: str) -> str:
-    """Return the document with one attribute or text that is wrong, all others as they were."""
+    """Return the document with one wrong attribute or text."""
     root = etree.fromstring(text.encode())
     places = [(element, key) for element in root.iter(etree.Element)
               for key in (*sorted(element.attrib), *([] if len(element) else ['']))]
@@ -72,7 +72,7 @@ def _double(_draw, _root, element, _texts) -> None:
 
 
 def _move(draw, root, element, _texts) -> None:
-    """Put an element somewhere else, but not into itself."""
+    """Move an element elsewhere, but not into itself."""
     others = [other for other in root.iter(etree.Element)
               if element not in (other, *other.iterancestors())]
     if others and element is not root:
@@ -95,7 +95,7 @@ def _spoil_attribute(draw, _root, element, texts) -> None:
 
 
 def _borrow_attribute(draw, root, element, _texts) -> None:
-    """Let an attribute say what another one says: names twice, references gone astray."""
+    """Copy the value of another attribute: duplicate names, wrong references."""
     elements = root.iter(etree.Element)
     values = sorted({value for other in elements for value in other.attrib.values()})
     if element.attrib and values:

@@ -1,4 +1,4 @@
-"""Passive scenes: bodies that fall, slide, roll and swing as they did in Gazebo."""
+"""Passive scenes recorded in Gazebo: bodies that fall, slide, roll and swing."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ SCENES = (
     'push', 'mu_pairs', 'mu_pairs_diag', 'slope', 'roll', 'sleep', 'stack', 'bounce',
     'bounce_defaults', 'bounce_plate', 'pendulum', 'prismatic',
 )  # fmt: skip
-# Shares of the most that was recorded, and floors where next to nothing happened.
+# Tolerances relative to the largest recorded value, with lower bounds (floors).
 PLACE_SHARE, PLACE_FLOOR = 0.04, 0.002  # [m]
 SPEED_SHARE, SPEED_FLOOR = 0.03, 0.02  # [m/s]
 ANGLE_SHARE, ANGLE_FLOOR = 0.03, 0.01  # [rad]
@@ -28,7 +28,7 @@ JOINT_SHARE, JOINT_FLOOR = 0.03, 0.005  # [rad or m], and the same per second
 
 
 def compare_scene(name: str, tuning: Tuning | None = None) -> list[Difference]:
-    """Return every quantity that was recorded of a passive scene, there and here."""
+    """Return the differences in all recorded quantities of a passive scene."""
     data = load(name)
     ours = _run(name, tuning)
     found = []
@@ -40,7 +40,7 @@ def compare_scene(name: str, tuning: Tuning | None = None) -> list[Difference]:
 
 
 def _run(name: str, tuning: Tuning | None) -> dict[tuple[str, int], tuple]:
-    """Return the state of each recorded link and joint after the steps at which it was recorded."""
+    """Return the state of each link and joint at each step of the recording, by both."""
     data = load(name)
     world = World(make_engine=partial(Engine, tuning=tuning))
     try:
@@ -64,7 +64,7 @@ def _run(name: str, tuning: Tuning | None) -> dict[tuple[str, int], tuple]:
 
 
 def _events(world: World, events: list) -> Iterator[tuple[int, int, Callable[[], None]]]:
-    """Yield what happens from which step on to before which."""
+    """Yield events as (first step, step after the last, action)."""
     for kind, time, duration, target, values in events:
         thing, first = _find(world, target), round(1000 * time)
         last = first + max(1, round(1000 * duration))
@@ -79,7 +79,7 @@ def _events(world: World, events: list) -> Iterator[tuple[int, int, Callable[[],
         elif kind == 'jforce':
             yield first, last, lambda j=thing, v=values: j.apply_effort(v[0])
         else:
-            raise ValueError(f'no event is called {kind}')
+            raise ValueError(f'unknown event {kind!r}')
 
 
 def _find(world: World, target: str) -> Link | Joint:

@@ -1,4 +1,4 @@
-"""Scenes in which Gazebo's cameras were recorded, to do again here."""
+"""Scenes in which images of Gazebo's cameras were recorded, and the images."""
 
 from dataclasses import replace
 
@@ -14,20 +14,20 @@ FILES = RECORDED / 'sensors' / 'pictures'
 
 
 def recorded_picture(name):
-    """Return a picture (height, width, channels) as integers that may be subtracted."""
+    """Return an image (height, width, channels) as signed integers, for differences."""
     pixels = np.asarray(Image.open(FILES / f'{name}.png')).astype(int)
     return pixels.reshape(*pixels.shape[:2], -1)
 
 
 def recorded_world(name='scene_a', shadows=False):
-    """Return a world; the pictures were recorded where no shadows could be drawn. Close it."""
+    """Return a world, without shadows as in the recorded images; the caller closes it."""
     world = World.from_file(RECORDED / 'worlds' / f'{name}.world')
     world.scene = replace(world.scene, shadows=shadows)
     return world
 
 
 def spawn_robot(world, robot, x=0.0, yaw=0.0):
-    """Return a robot in the world, and its camera."""
+    """Spawn a recorded robot; return its model and its camera."""
     text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
     model = world.spawn(text, 'robot', Pose((x, 0.0, 0.0), from_rpy(0.0, 0.0, yaw)))
     return model, model.sensors[0]

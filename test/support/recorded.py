@@ -1,4 +1,4 @@
-"""What was recorded in Gazebo 11.1.0 (test/data/gazebo), and how far from it we are."""
+"""Recordings of Gazebo 11.1.0 (test/data/gazebo), and differences from them."""
 
 import json
 from collections.abc import Iterable
@@ -10,39 +10,39 @@ from . import ROOT
 DATA = ROOT / 'test' / 'data' / 'gazebo'
 
 
-Reason = tuple[str, str, str]  # beginning of a scene, of a quantity, and why we differ there
+Reason = tuple[str, str, str]  # prefix of a scene, prefix of a quantity, why we differ there
 
-_CALM = 'what slides or lies does not rock; in Gazebo with 0.07 rad/s, on and on'
-_LIES = 'a can that rolls is held back by 0.005 of its weight, so that one that lies stays'
-# Where mechanics wins over Gazebo. All is printed all the same.
+_CALM = 'sliding and resting bodies do not rock; in Gazebo at 0.07 rad/s, without end'
+_LIES = 'rolling resistance of 0.005 of the weight, so that a lying can stays'
+# Intended differences, where Gazebo contradicts mechanics. They are printed too.
 ON_PURPOSE: tuple[Reason, ...] = (
-    ('stack', 'a', 'five cubes that touch stand; Gazebo lets them collapse after 3.2 s'),
-    ('stack', 'p', 'a box whose weight is over the one below stays there'),
-    ('stack', 'g', 'cubes that lie on each other do not creep; in Gazebo by 6 cm'),
-    ('sleep', '', 'nothing sleeps here; in Gazebo a velocity moves no sleeping body'),
+    ('stack', 'a', 'a stack of five cubes stands; in Gazebo it collapses after 3.2 s'),
+    ('stack', 'p', 'a box with its centre of mass above the box below stays there'),
+    ('stack', 'g', 'stacked cubes do not creep; in Gazebo by 6 cm'),
+    ('sleep', '', 'no body sleeps; in Gazebo a set velocity does not move a sleeping body'),
     *((scene, f'{box}::link spin', _CALM) for scene, boxes in (
         ('mu_pairs', ('f3', 'f4', 'f5')), ('mu_pairs_diag', ('f1', 'f2', 'f3')),
         ('slope', ('b6',)), ('push', ('b_mu0.2_heavy',))) for box in boxes),
     ('roll', 'c::', _LIES),
-    ('push', 'b_mu1', '25 N at half the height of a cube of mu 1: between sliding and tipping'),
-    ('bounce', 'soft', '1e4 N/m give way by 1 mm under 1 kg; in Gazebo by 46'),
-    ('bounce', '', 'a floor without restitution gives nothing back; Gazebo parts by a leap'),
-    ('bounce_plate', 'r0.8_on0.5', 'restitution of 0.63, whose square is the height; see above'),
+    ('push', 'b_mu1', '25 N at half the height of a cube with mu 1: at the limit of tipping'),
+    ('bounce', 'soft', '1e4 N/m yield 1 mm under 1 kg; in Gazebo 46 mm'),
+    ('bounce', '', 'no bounce without restitution; in Gazebo bodies jump apart'),
+    ('bounce_plate', 'r0.8_on0.5', 'restitution 0.63: rebound to its square of the height'),
     ('bounce_plate', 'r0.8_on0::', 'as above'),
-    ('burger turn_w1.5', 'v', 'wheels that turn alike against each other do not go back'),
+    ('burger turn_w1.5', 'v', 'equal and opposite wheel speeds do not move the robot back'),
     ('burger turn_w1.5', 'odom', 'the same'),
     ('burger turn_w1.5', 'path', 'the same'),
     ('burger turn_w1.5', 'rest', 'the same'),
     ('burger turn_w1.5', 'end place', 'the same'),
-    ('burger', 'pitch', 'min_depth lets the wheels sink in, and the lighter caster not'),
-    ('planar turn_w1.0', 'w', 'Gazebo tells 0.904, and turns by 4.262 rad in 5 s'),
+    ('burger', 'pitch', 'min_depth: the wheels penetrate the ground, the lighter caster does not'),
+    ('planar turn_w1.0', 'w', 'Gazebo reports 0.904, but turns by 4.262 rad in 5 s'),
 )  # fmt: skip
 
 
 class Difference(NamedTuple):
-    """One quantity of a recorded scene, there and here, in the same unit.
+    """A quantity of a recorded scene, in Gazebo and here, in the same unit.
 
-    What should be least, and is no worse than Gazebo's for being less, is `least`.
+    `least` marks an error that should be small: being smaller than Gazebo's is no difference.
     """
 
     scene: str
@@ -55,32 +55,32 @@ class Difference(NamedTuple):
 
     @property
     def share(self) -> float:
-        """Return how much of the tolerance is used up; beyond 1 it is exceeded."""
+        """Return the difference relative to the tolerance; above 1 it is exceeded."""
         off = self.ours if self.least else self.ours - self.gazebo
         return abs(off) / self.tolerance
 
     @property
     def why(self) -> str:
-        """Return why this differs on purpose; empty if it does not."""
+        """Return the reason of an intended difference; empty if it is not intended."""
         return next((why for *where, why in ON_PURPOSE if self.is_at(*where)), '')
 
     def is_at(self, scene: str, quantity: str) -> bool:
-        """Tell whether this is of a scene and quantity that begin so."""
+        """Return whether scene and quantity begin with these words."""
         return f'{self.scene} '.startswith(f'{scene} ') and self.quantity.startswith(quantity)
 
 
 def worst_first(differences: Iterable[Difference]) -> list[Difference]:
-    """Return all differences, the one that uses up most of its tolerance first."""
+    """Return the differences, sorted by their share of the tolerance, largest first."""
     return sorted(differences, key=lambda one: -one.share)
 
 
 def exceeded(
     differences: Iterable[Difference], known: Iterable[tuple[str, str, float, str]] = ()
 ) -> list[str]:
-    """Return a line for each quantity that is beyond its tolerance, but for those on purpose.
+    """Return a line for each unintended difference outside its tolerance.
 
     Args:
-        known: beginnings of scene and quantity, how much of its tolerance that may use up, and why.
+        known: prefixes of scene and quantity, permitted share of the tolerance, reason.
     """
 
     def limit(one: Difference) -> float:
@@ -90,7 +90,7 @@ def exceeded(
 
 
 def line(one: Difference) -> str:
-    """Return a difference as a row of a table."""
+    """Return a difference as a row of the table."""
     sign = '<' if one.least else '±'
     return (
         f'{one.share:7.2f}  {one.scene:24} {one.quantity:26} {one.unit:5} {one.gazebo:9.4f} '
@@ -104,5 +104,5 @@ HEADER = (f'{"share":>7}  {"scene":24} {"quantity":26} {"unit":5} {"Gazebo":>9} 
 
 @cache
 def load(name: str) -> dict:
-    """Return what was recorded of a robot or of a passive scene."""
+    """Return the recording of a robot or of a passive scene."""
     return json.loads((DATA / f'{name}.json').read_text(encoding='utf-8'))

@@ -1,4 +1,4 @@
-"""Strategies for requests and messages, made from their definitions, as they arrive by the wire."""
+"""Strategies for requests and messages, built from their definitions and serialized once."""
 
 from functools import cache
 from io import BytesIO
@@ -25,7 +25,7 @@ def messages(message_class: type, names: tuple[str, ...]) -> st.SearchStrategy:
     """Return a strategy for a message or request.
 
     Args:
-        names: what strings are to be often, beside anything else: what is there to be named.
+        names: names of existing things, which strings take often.
     """
     fields = zip(message_class.__slots__, message_class._slot_types, strict=True)
     parts = {name: _values(kind, names) for name, kind in fields}
@@ -33,7 +33,7 @@ def messages(message_class: type, names: tuple[str, ...]) -> st.SearchStrategy:
 
 
 def as_sent(message: Message) -> Message:
-    """Return the message as it comes out of the other end of a connection."""
+    """Return the message serialized and deserialized, as after a connection."""
     stream = BytesIO()
     message.serialize(stream)
     return type(message)().deserialize(stream.getvalue())

@@ -1,6 +1,6 @@
-"""Robots and things in general, each with what mechanics says it must do: the error is returned.
+"""Scenes with a known analytic result; each returns the error against it.
 
-The engine's settings are chosen by these (benchmark/physics.py), and tests hold what was reached.
+The engine's settings were chosen by these (benchmark/physics.py); tests bound the errors.
 """
 
 import math
@@ -17,8 +17,8 @@ from . import SETTLED, empty_world, robot_spec, urdf_spec
 
 GRAVITY = 9.8  # [m/s^2]
 SPEED = 0.5  # [m/s] commanded
-HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.0)  # [rad] of straight drives; at 0 along the axes
-ABOVE = 1e-3  # height from which robots are let down [m]
+HEADINGS = (0.0, 0.4, math.pi / 4.0, 1.0)  # [rad] of straight drives
+ABOVE = 1e-3  # clearance at spawn [m]
 RADIUS = 0.1  # of the skid steer's wheels [m]
 DRIVE_PLUGIN = (
     '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
@@ -54,9 +54,9 @@ def ball(name: str, radius: float, mass: float) -> str:
 
 
 def wheel(name: str, joint: str, radius: float, width: float, mass: float, place: str) -> str:
-    """Return a wheel on a joint at `place` [m] of the link `base`, positive forward.
+    """Return a wheel on a joint at `place` [m] in the frame of `base`; positive is forward.
 
-    Radius and width are in m, the mass is in kg.
+    Radius and width are in m, the mass in kg.
     """
     across = mass * (3.0 * radius**2 + width**2) / 12.0
     shape = f'<cylinder radius="{radius}" length="{width}"/>'
@@ -69,7 +69,7 @@ def wheel(name: str, joint: str, radius: float, width: float, mass: float, place
 
 
 def surface(link_name: str, mu: float) -> str:
-    """Return the tags that give a link its friction."""
+    """Return the tags for the friction of a link."""
     return f'<gazebo reference="{link_name}"><mu1>{mu}</mu1><mu2>{mu}</mu2></gazebo>'
 
 
@@ -82,24 +82,25 @@ def castered(
     torque: float = 1.0,
     rear: float = 0.0,
 ) -> ModelSpec:
-    """Return a symmetric robot on two wheels and casters in front (2) and behind (1 and 2).
+    """Return a symmetric robot on two wheels and one caster (rear) or two (rear, front).
 
     Args:
-        mass: of all of it [kg].
-        size: length of its body [m]; everything scales with it.
-        mu: friction of its casters.
-        acceleration: at the rims, at most [m/s^2]; 0 for no limit.
-        torque: of each motor, in multiples of what lifts the robot by the rim of one wheel.
-        rear: share of the way from the axle to the caster behind at which its weight is.
+        mass: total [kg].
+        size: length of the body [m]; all lengths scale with it.
+        casters: 1 or 2.
+        mu: friction of the casters.
+        acceleration: limit at the rims [m/s^2]; 0 for none.
+        torque: limit of each motor, as a multiple of mass * g * wheel radius.
+        rear: centre of mass of the body, as a fraction of the way from the axle to the rear caster.
     """
     radius = size / 4.0
     caster = radius / 3.0
-    height = radius  # of the body's middle over the ground
+    height = radius  # of the body's centre above the ground
     body = box('base', (size, 0.7 * size, radius), 0.8 * mass).replace(
         '<inertial>', f'<inertial><origin xyz="{-0.4 * size * rear} 0 0"/>'
     )
     for k, x in enumerate((-0.4 * size, 0.4 * size)[:casters]):
-        # A ball that is part of the body: it drags, as the article's caster does.
+        # A sphere fixed to the body: it slides, as the article's caster does.
         body += ball(f'caster{k}', caster, 0.02 * mass)
         body += (
             f'<joint name="caster{k}_joint" type="fixed"><parent link="base"/>'
@@ -127,7 +128,7 @@ def forward_speed(model: Model) -> float:
 def drive(
     world: World, spec: ModelSpec, seconds: int = 4, yaw: float = 0.0, speed: float = SPEED
 ) -> Model:
-    """Return the model after it has driven straight on for so long, from heading `yaw` [rad].
+    """Return the model after a straight drive of `seconds` from heading `yaw` [rad].
 
     Args:
         speed: commanded [m/s].
@@ -141,13 +142,13 @@ def drive(
 
 
 def spec_height(spec: ModelSpec) -> float:
-    """Return how high the model frame of a robot on two wheels stands, or a little more [m]."""
+    """Return the spawn height of a robot whose last link is a wheel [m]."""
     wheel = spec.links[-1]
     return wheel.collisions[0].geometry.radius - wheel.pose.position[2] + ABOVE
 
 
 def speed_error(spec: ModelSpec) -> Scene:
-    """Return a scene: the share by which a robot's speed differs from the command."""
+    """Return a scene: relative error of a robot's speed."""
 
     def scene(tuning: Tuning | None = None) -> float:
         with empty_world(tuning) as world:
@@ -157,7 +158,7 @@ def speed_error(spec: ModelSpec) -> Scene:
 
 
 def heading_error(spec: ModelSpec) -> Scene:
-    """Return a scene: the share by which a robot's speed depends on where it drives to."""
+    """Return a scene: relative spread of a robot's speed over headings."""
 
     def speed(yaw: float, tuning: Tuning | None) -> float:
         with empty_world(tuning) as world:
@@ -171,7 +172,7 @@ def heading_error(spec: ModelSpec) -> Scene:
 
 
 def veer(spec: ModelSpec, speed: float = SPEED) -> Scene:
-    """Return a scene: by how much a robot turns at most in a straight drive of 20 s [rad]."""
+    """Return a scene: largest heading drift in a straight drive of 20 s [rad]."""
 
     def turned(yaw: float, tuning: Tuning | None) -> float:
         with empty_world(tuning) as world:
@@ -181,9 +182,9 @@ def veer(spec: ModelSpec, speed: float = SPEED) -> Scene:
 
 
 def mirrored(spec: ModelSpec) -> ModelSpec:
-    """Return the article's robot with what touches the ground made symmetric.
+    """Return the article's robot with symmetric wheels and caster.
 
-    Its wheels are broad, and a sixth of its weight rests on the caster that it drags.
+    The wheels are broad; the sliding caster carries a sixth of the weight.
     """
 
     def centred(pose: Pose) -> Pose:
@@ -211,7 +212,7 @@ def mirrored(spec: ModelSpec) -> ModelSpec:
 
 
 def skid_steer(mass: float = 14.0) -> ModelSpec:
-    """Return a robot of that mass [kg] on four driven wheels, without a plugin."""
+    """Return a robot of a mass [kg] on four driven wheels, without a plugin."""
     body = box('base', (0.5, 0.3, 0.1), 0.7 * mass)
     for side, y in (('left', 0.2), ('right', -0.2)):
         for end, x in (('front', 0.15), ('rear', -0.15)):
@@ -221,7 +222,7 @@ def skid_steer(mass: float = 14.0) -> ModelSpec:
 
 
 def skid(world: World, left: float, right: float, seconds: float) -> Model:
-    """Return the skid steer after its wheels' rims ran at these speeds [m/s] for so long."""
+    """Return the skid steer after `seconds` at left and right rim speeds [m/s]."""
     model = world.spawn(skid_steer(), 'robot', Pose((0.0, 0.0, RADIUS)))
     for name, joint in model.joints.items():
         joint.set_motor((left if name.startswith('left') else right) / RADIUS, 20.0)
@@ -230,13 +231,13 @@ def skid(world: World, left: float, right: float, seconds: float) -> Model:
 
 
 def skid_straight(tuning: Tuning | None = None) -> float:
-    """Return the share by which four driven wheels, turning alike, miss their speed."""
+    """Return the relative error of the speed of a skid steer that drives straight."""
     with empty_world(tuning) as world:
         return abs(forward_speed(skid(world, SPEED, SPEED, 4.0)) / SPEED - 1.0)
 
 
 def skid_turn(tuning: Tuning | None = None) -> float:
-    """Return the share of the rate without slip at which a skid steer turns on the spot."""
+    """Return the yaw rate of a skid steer turning on the spot, relative to that without slip."""
     with empty_world(tuning) as world:
         model = skid(world, -SPEED, SPEED, 1.0)
         turned = 0.0
@@ -247,7 +248,7 @@ def skid_turn(tuning: Tuning | None = None) -> float:
 
 
 def step_climbed(tuning: Tuning | None = None) -> float:
-    """Return how far short of 2 m the skid steer is after 5 s, a step of 3 cm before it [m]."""
+    """Return how far short of 2 m a skid steer is after 5 s with a step of 3 cm on its way [m]."""
     with empty_world(tuning) as world:
         ledge = replace(urdf_spec(box('ledge', (4.0, 2.0, 0.03), 1.0)), static=True)
         world.spawn(ledge, 'ledge', Pose((2.5, 0.0, 0.015)))
@@ -255,7 +256,7 @@ def step_climbed(tuning: Tuning | None = None) -> float:
 
 
 def slope(world: World, degrees: float = 10.0) -> Pose:
-    """Tilt a large board about y; return the frame in its upper face, x downhill."""
+    """Spawn a large board tilted about y; return the frame of its upper face, x downhill."""
     board = replace(urdf_spec(box('board', (40.0, 10.0, 1.0), 1.0)), static=True)
     tilt = from_rpy(0.0, math.radians(degrees), 0.0)
     s, c = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
@@ -265,12 +266,12 @@ def slope(world: World, degrees: float = 10.0) -> Pose:
 
 
 def on_slope(frame: Pose, height: float) -> Pose:
-    """Return the pose of something whose middle stands `height` [m] over the board."""
+    """Return the pose of a body whose centre is `height` [m] above the board."""
     return compose(frame, Pose((0.0, 0.0, height)))
 
 
 def parked_on_slope(spec: ModelSpec) -> Scene:
-    """Return a scene: how far a robot creeps in 10 s on a slope of 10 degrees, wheels held [m]."""
+    """Return a scene: drift of a parked robot in 10 s on a slope of 10 degrees [m]."""
 
     def scene(tuning: Tuning | None = None) -> float:
         with empty_world(tuning) as world:
@@ -284,7 +285,7 @@ def parked_on_slope(spec: ModelSpec) -> Scene:
 
 
 def sliding_on_slope(tuning: Tuning | None = None) -> float:
-    """Return the share by which a box of mu 0.1 slides down 10 degrees unlike g (sin - mu cos)."""
+    """Return the relative error of a sliding acceleration: g (sin 10° - mu cos 10°), mu 0.1."""
     with empty_world(tuning) as world:
         spec = urdf_spec(box('box', (0.2, 0.2, 0.1), 2.0) + surface('box', 0.1))
         model = world.spawn(spec, 'box', on_slope(slope(world), 0.05))
@@ -297,7 +298,7 @@ def sliding_on_slope(tuning: Tuning | None = None) -> float:
 
 
 def stack(tuning: Tuning | None = None) -> float:
-    """Return how far the topmost of five stacked boxes is from its place after 10 s [m]."""
+    """Return how far the topmost of five stacked boxes has moved after 10 s [m]."""
     with empty_world(tuning) as world:
         spec = urdf_spec(box('box', (0.2, 0.2, 0.2), 1.0))
         for k in range(5):
@@ -307,7 +308,7 @@ def stack(tuning: Tuning | None = None) -> float:
 
 
 def half_sunk(tuning: Tuning | None = None) -> float:
-    """Return how far above its rest a box of 0.2 m jumps that is spawned half sunk [m]."""
+    """Return how high a box jumps above rest that is spawned half inside the ground [m]."""
     with empty_world(tuning) as world:
         model = world.spawn(urdf_spec(box('box', (0.2, 0.2, 0.2), 1.0)), 'box', Pose())
         highest = 0.0
@@ -318,7 +319,7 @@ def half_sunk(tuning: Tuning | None = None) -> float:
 
 
 def rolling_ball(tuning: Tuning | None = None) -> float:
-    """Return the share by which a ball that was sliding at 1 m/s rolls unlike 5/7 m/s."""
+    """Return the relative error of the final speed of a ball that slides at 1 m/s: 5/7 m/s."""
     with empty_world(tuning) as world:
         model = world.spawn(urdf_spec(ball('ball', 0.1, 1.0)), 'ball', Pose((0.0, 0.0, 0.1)))
         world.run(100)
@@ -328,7 +329,7 @@ def rolling_ball(tuning: Tuning | None = None) -> float:
 
 
 def lying_can(tuning: Tuning | None = None) -> float:
-    """Return how far a can goes by itself in 10 s that was laid across the axes [m]."""
+    """Return how far a can lying oblique to the axes drifts in 10 s [m]."""
     with empty_world(tuning) as world:
         can = urdf_spec(link('can', '<cylinder radius="0.033" length="0.12"/>', 0.39,
                              (5.6e-4, 5.6e-4, 1.7e-4)))
@@ -339,8 +340,8 @@ def lying_can(tuning: Tuning | None = None) -> float:
         return math.dist(start, model.pose.position)
 
 
-# What each tells is an error that is best at 0, but for `skid steer turns`; a veer is that of 20 s
-# [rad].
+# Relative errors, or lengths where marked; a veer is the heading drift in 20 s [rad]. All are best
+# at 0, except for `skid steer turns`.
 SCENES: dict[str, Scene] = {
     'one dragging caster': speed_error(castered(casters=1)),
     'two casters, mu 1': speed_error(castered(mu=1.0)),

@@ -1,4 +1,4 @@
-"""Scenes in which Gazebo's sensors were recorded, to do again here."""
+"""Scenes in which Gazebo's sensors were recorded, and the recordings."""
 
 import json
 import math
@@ -12,7 +12,7 @@ from . import ROOT
 
 RECORDED = ROOT / 'test' / 'data' / 'gazebo'
 ROBOTS = RECORDED / 'sensors' / 'robots'
-# Where the laser of all recorded robots is, in their model: position [m], yaw [rad].
+# Pose of the laser in all recorded robots, in the model's frame: position [m], yaw [rad].
 LASER, HEADING = (0.12, 0.03, 0.35), 0.1
 CUBE = ('<sdf version="1.6"><model name="cube"><static>1</static><link name="l">'
         '<collision name="c"><geometry><box><size>.02 .02 .02</size></box></geometry>'
@@ -20,22 +20,22 @@ CUBE = ('<sdf version="1.6"><model name="cube"><static>1</static><link name="l">
 
 
 def recordings(name):
-    """Return what was recorded of a kind of sensor, by the name of the scene."""
+    """Return the recordings of a type of sensor, by name of the scene."""
     return json.loads((RECORDED / 'sensors' / f'{name}.json').read_text(encoding='utf-8'))
 
 
 def numbers(values):
-    """Return recorded numbers, of which inf and nan are words."""
+    """Return recorded numbers as an array; inf and nan are recorded as text."""
     return np.array([float(value) for value in values])
 
 
 def pose_of(recording):
-    """Return where the model was."""
+    """Return the recorded pose of the model."""
     return Pose(tuple(recording['position']), tuple(recording['orientation']))
 
 
 def recorded_scene(recording):
-    """Return a world and the robot in it, both as they were recorded; close the world."""
+    """Return the recorded world and its robot; the caller closes the world."""
     world = World.from_file(RECORDED / 'worlds' / 'scene_a.world')
     robot = world.spawn(ROBOTS / f'{recording["robot"]}.urdf', 'robot', pose_of(recording))
     if 'near' in recording:

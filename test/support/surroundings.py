@@ -1,18 +1,18 @@
-"""Surroundings that only one command sees: file systems, a network, a name of its own."""
+"""Namespaces of one command: its own mounts, network or host name."""
 
 import os
 import subprocess
 
 import pytest
 
-# Root may do it, unless in a container that forbids it; others need to become root of their own.
+# Root may unshare, unless a container forbids it; other users need a user namespace.
 _OWN = () if os.geteuid() == 0 else ('--map-root-user',)
 
 
 def unshare(*kinds: str) -> tuple[str, ...]:
-    """Return the beginning of a command that gets its own of each kind: mount, net, uts.
+    """Return the prefix of a command that runs it in new namespaces: mount, net, uts.
 
-    The test is skipped where the machine does not permit it.
+    Skips the test where the machine does not permit it.
     """
     command = ('unshare', *_OWN, *(f'--{kind}' for kind in kinds))
     done = subprocess.run([*command, 'true'], capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""Topics without a master: adapters advertise and subscribe here, and tests read and write."""
+"""Topics without a ROS master: adapters advertise and subscribe, tests read and write."""
 
 import struct
 from types import SimpleNamespace
@@ -11,7 +11,7 @@ from rosbots_description.ros_api.server.static_frames import StaticFrames
 
 
 class Wire:
-    """Takes rospy's place in the adapters' modules; `publishers` and `subscribers` are by name."""
+    """Replaces rospy in the adapters' modules; `publishers` and `subscribers` are by topic name."""
 
     def __init__(self, monkeypatch):
         self.publishers, self.subscribers = {}, {}
@@ -31,7 +31,7 @@ class Wire:
         return SimpleNamespace(unregister=lambda: self.subscribers.pop(name))
 
     def join(self, plugin):
-        """Return the adapter of a plugin, open and connected; its loop does all at once."""
+        """Return the adapter of a plugin, open and connected; its loop runs commands at once."""
         loop = SimpleNamespace(post=lambda command: command())
         server = SimpleNamespace(world=plugin.world, loop=loop, static_frames=StaticFrames())
         made = Adapter(server, plugin, topics_of(type(plugin)))
@@ -42,7 +42,7 @@ class Wire:
 
 
 class Topic:
-    """What was published on one topic is in `sent`, once it has a reader."""
+    """A topic; `sent` is a list of its messages since it has a reader."""
 
     def __init__(self, message_class, options):
         self.options, self.sent, self.message_class = options, [], message_class
@@ -50,13 +50,13 @@ class Topic:
             connections=[], subscriber_listeners=[], seq=0, message_data_sent=0)
 
     def read(self, name='/reader'):
-        """Let a node read."""
+        """Subscribe as a node."""
         self.impl.connections.append(SimpleNamespace(endpoint_id=name, write_data=self._take))
         for listener in self.impl.subscriber_listeners:
             listener.peer_subscribe('', None, None)
 
-    def remove_from_engine(self):
-        """Let all readers go."""
+    def unsubscribe(self):
+        """Unsubscribe all nodes."""
         self.impl.connections.clear()
         for listener in self.impl.subscriber_listeners:
             listener.peer_unsubscribe('', 0)
