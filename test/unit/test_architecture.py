@@ -1,4 +1,4 @@
-"""The rooms: who may import what, only by public names, and that the simulator needs no ROS."""
+"""Packages: permitted imports, public names only, and a simulator without ROS."""
 
 import ast
 import os
@@ -14,7 +14,7 @@ SOURCE = Path(__file__).resolve().parents[2] / 'src'
 PACKAGE = SOURCE / 'rosbots_description'
 MESSAGES = re.compile(r'\w+_(msgs|srvs)')
 
-# Which folder may import from which others; an import for type checking alone counts, too.
+# Permitted imports between folders; imports for type checking count too.
 ARROWS = {
     'sim/core': '',
     'sim/description': 'sim/core',
@@ -103,15 +103,15 @@ def imports():
 
 
 def room_of(imported):
-    """Return the folder that a module lies in, or that a package is."""
+    """Return the folder of a module, or of a package."""
     return folder_of(imported) if imported in modules() else imported
 
 
 @cache
 def arrows():
-    """Return the pairs of folders of which one imports from the other.
+    """Return the pairs (importing folder, imported folder).
 
-    The face of a room, its __init__.py, also shows or registers what the rooms within it hold.
+    An __init__.py may also import from its subfolders, to register or to re-export.
     """
     pairs = {(module, folder_of(module), room_of(imported)) for module, imported, _ in imports()}
     return {(a, b) for module, a, b in pairs
@@ -120,7 +120,7 @@ def arrows():
 
 @cache
 def public_names(room):
-    """Return what the __init__.py of a room offers to others."""
+    """Return the public names of a room's __init__.py."""
     for node in modules()[f'{room}/__init__'].body:
         if isinstance(node, ast.Assign) and node.targets[0].id == '__all__':
             return set(ast.literal_eval(node.value))
@@ -128,7 +128,7 @@ def public_names(room):
 
 
 def imported_packages(tree):
-    """Return the packages that a module imports from outside, at its top or later."""
+    """Return the external packages that a module imports, within functions too."""
     names = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -138,28 +138,28 @@ def imported_packages(tree):
     return names
 
 
-def test_every_folder_is_in_the_table_and_says_what_it_is_for():
+def test_every_folder_is_in_the_table_and_has_a_docstring():
     assert {folder_of(module) for module in modules()} == set(ARROWS)
     for folder in ARROWS:
         assert ast.get_docstring(modules()[f'{folder}/__init__'.lstrip('/')])
 
 
 @pytest.mark.parametrize('folder', ARROWS)
-def test_a_folder_imports_only_from_those_that_the_table_names(folder):
+def test_folder_imports_only_from_those_in_the_table(folder):
     found = {b for a, b in arrows() if a == folder}
     assert found <= set(ARROWS[folder].split())
 
 
-def test_who_is_outside_sees_no_room_within_a_room_of_the_simulator():
+def test_other_rooms_do_not_import_from_nested_rooms_of_the_simulator():
     inner = [(a, b) for a, b in arrows() if not a.startswith('sim') and b.count('/') > 1]
-    assert inner == []  # let the outer room name what others may use
+    assert inner == []  # re-export names in the outer room instead
 
 
-def test_there_are_no_circles_of_folders():
+def test_imports_between_folders_have_no_cycles():
     below = {a: {b for x, b in arrows() if x == a} for a in ARROWS}
     while below:
         lowest = {folder for folder, others in below.items() if not others & set(below)}
-        assert lowest, f'these import each other: {sorted(below)}'
+        assert lowest, f'import cycle among {sorted(below)}'
         below = {folder: others for folder, others in below.items() if folder not in lowest}
 
 
@@ -177,14 +177,14 @@ def test_folders_use_each_others_public_names_only():
         own, room = folder_of(module), room_of(imported)
         if own == room or own.startswith(f'{room}/') or (
                 module.endswith('__init__') and room.startswith(f'{own}/')):
-            continue  # a room within another one sees the files of that
+            continue  # a nested room may use the modules of the outer one
         wanted = name if imported == room else imported.rpartition('/')[2]
         if wanted is not None and wanted not in public_names(room):
             private.append(f'{module}: {imported} {name or ""}')
     assert private == []
 
 
-def test_all_that_is_public_is_there():
+def test_public_names_exist():
     for module, tree in modules().items():
         room = folder_of(module)
         if module.endswith('/__init__'):
@@ -198,11 +198,11 @@ def _last_name(base: ast.expr) -> str:
     return ast.unparse(base).rpartition('.')[2]
 
 
-def test_no_two_classes_have_one_name():
+def test_class_names_are_unique():
     where = {}
     for module, tree in modules().items():
         for node in tree.body:
-            # One that extends the other is the same thing to its users.
+            # A subclass may have the name of its base class.
             if isinstance(node, ast.ClassDef) and node.name not in map(_last_name, node.bases):
                 where.setdefault(node.name, []).append(module)
     assert {name: found for name, found in where.items() if len(found) > 1} == {}
@@ -248,7 +248,7 @@ def test_the_simulator_imports_no_messages():
 def test_no_module_imports_this_library_by_a_name():
     using = [name for name, tree in modules().items()
              if imported_packages(tree) & {'rosbots_description', 'rosbots_simulator'}]
-    assert using == []  # a user's own package may have the one, and the other is only a link
+    assert using == []  # a user's package may have the same name, and the other is a symbolic link
 
 
 def test_the_simulator_needs_no_ros():

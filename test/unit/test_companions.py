@@ -7,14 +7,14 @@ from xml.etree import ElementTree
 import pytest
 
 COMPANIONS = sorted((Path(__file__).resolve().parents[2] / 'companions').iterdir())
-# How a file of a package may ask for another package or its Python module.
+# References of a file to another package or its Python module.
 ASKING = re.compile(
     r'(import|from|\$\(find|pkg="|package://|rosrun|roslaunch|find_package\(catkin.*) ?'
     r'rosbots_description\b')
 
 
 @pytest.mark.parametrize('folder', COMPANIONS, ids=lambda folder: folder.name)
-def test_a_companion_never_asks_for_the_package_at_the_root(folder):
+def test_companions_do_not_refer_to_the_package_at_the_root(folder):
     manifest = ElementTree.parse(folder / 'package.xml').getroot()
     assert not [element.tag for element in manifest
                 if element.tag.endswith('depend') and element.text == 'rosbots_description']
@@ -23,7 +23,7 @@ def test_a_companion_never_asks_for_the_package_at_the_root(folder):
     assert asking == []
 
 
-def test_the_simulator_is_there_under_both_names():
+def test_simulator_is_importable_under_both_names():
     (folder,) = (folder for folder in COMPANIONS if folder.name == 'rosbots_simulator')
     linked = folder / 'src' / 'rosbots_simulator'
     assert linked.resolve() == folder.parents[1] / 'src' / 'rosbots_description'

@@ -40,7 +40,7 @@ def table(section):
 
 
 def offered(section):
-    """Return the names that a section says are there."""
+    """Return the supported names of a section."""
     return {name for name, state in table(section).items() if state in OFFERED}
 
 
@@ -50,20 +50,20 @@ def global_name(name):
 
 @pytest.fixture(scope='module')
 def registered():
-    """Return the names of services, topics and parameters that the node uses in two steps."""
+    """Return the services, topics and parameters that the node uses in two steps."""
     names = {kind: set() for kind in ('services', 'topics', 'parameters')}
 
     def endpoint(kind):
         def make(name, *_arguments, **_options):
             names[kind].add(global_name(name))
-            # everybody listens, so that also what is only done for listeners is done
+            # every topic has subscribers, so that all of them are published
             return SimpleNamespace(publish=lambda _message: None, get_num_connections=lambda: 1)
 
         return make
 
     def parameter(name, default=None):
         names['parameters'].add(global_name(name))
-        return True if default is False else default  # what is off by default is looked at, too
+        return True if default is False else default  # switches on all options
 
     world = World()
     with pytest.MonkeyPatch.context() as patch, closing(world):
@@ -93,22 +93,22 @@ def test_each_name_has_one_row_with_a_known_state(section):
     assert [name for name, count in counts.items() if count > 1] == []
     for name, state, how in rows(section):
         assert state in (*OFFERED, MISSING), name
-        assert how or state == 'same', f'{name}: say how, or why not'
+        assert how or state == 'same', f'{name}: the remark is missing'
 
 
 @pytest.mark.parametrize('section', ['Services', 'Topics', 'Parameters'])
-def test_the_node_offers_what_its_table_says_and_nothing_else(section, registered):
+def test_node_offers_exactly_what_its_table_lists(section, registered):
     found = registered[section.lower()]
     if section == 'Services':
         found = found | OF_EVERY_NODE
     assert found == offered(section)
 
 
-def test_every_plugin_has_a_row_that_says_it_is_there():
+def test_every_plugin_has_a_row_as_supported():
     assert set(known_filenames()) == offered('Plugins')
 
 
-def test_every_library_that_is_known_but_not_built_in_has_a_row_that_says_so():
+def test_every_known_but_unsupported_library_has_a_row():
     rows = table('Plugins')
     assert set(missing_libraries()) == {name for name, state in rows.items() if state == MISSING}
 

@@ -1,4 +1,4 @@
-"""What the documents point to is there."""
+"""Links in the documents have existing targets."""
 
 import re
 from pathlib import Path
@@ -11,13 +11,13 @@ LINK = re.compile(r'\[[^]]*\]\(([^)\s]+)\)')
 
 
 def anchors(document: Path) -> set[str]:
-    """Return the names by which its headings can be linked to, as GitHub makes them."""
+    """Return the anchors of a document's headings, as GitHub makes them."""
     titles = re.findall('^#+ (.*)', document.read_text(encoding='utf-8'), re.M)
     return {re.sub(r'[^\w\- ]', '', title.lower()).replace(' ', '-') for title in titles}
 
 
 @pytest.mark.parametrize('document', DOCUMENTS, ids=lambda path: path.name)
-def test_every_link_leads_to_a_file_and_heading_that_is_there(document):
+def test_every_link_has_an_existing_target(document):
     targets = [target for target in LINK.findall(document.read_text(encoding='utf-8'))
                if '://' not in target]
     for target in targets:

@@ -64,14 +64,14 @@ def test_arguments_and_defaults_are_those_of_gazebo(name):
 
 
 @pytest.mark.parametrize('name', [name for name, taken in ARGUMENTS.items() if not taken])
-def test_a_world_without_arguments_hands_on_fixed_ones(name):
+def test_launch_file_without_arguments_passes_fixed_ones(name):
     (include,) = root(name).findall('include')
     assert include.get('file') == '$(dirname)/empty_world.launch'
     given = {arg.get('name'): arg.get('value') for arg in include.findall('arg')}
     assert given == FIXED | {'world_name': f'worlds/{name.removesuffix("_world")}.world'}
 
 
-def test_the_range_world_hands_every_argument_on():
+def test_range_world_passes_every_argument():
     (include,) = root('range_world').findall('include')
     given = {arg.get('name'): arg.get('value') for arg in include.findall('arg')}
     world = given.pop('world_name')
@@ -80,6 +80,6 @@ def test_the_range_world_hands_every_argument_on():
 
 
 @pytest.mark.parametrize('name', ['empty_world', 'elevator_world'])
-def test_server_and_window_have_the_names_that_others_rely_on(name):
+def test_nodes_have_gazebos_names(name):
     nodes = [(node.get('name'), node.get('pkg')) for node in root(name).findall('node')]
     assert nodes == [('gazebo', 'gazebo_ros'), ('gazebo_gui', 'gazebo_ros')]

@@ -1,4 +1,4 @@
-"""Check that gazebo_msgs speaks Gazebo's wire format.
+"""gazebo_msgs has the MD5 sums of Gazebo's messages.
 
 A client and a server understand each other only if the MD5 sums of their message definitions are
 equal. The sums below are those of gazebo_msgs 2.9.2; rosbags and binaries of other people carry
@@ -83,6 +83,6 @@ def test_service_has_gazebos_md5_sum(name, search_path):
     assert _md5(load_srv_from_file, 'srv', name, search_path) == SERVICES[name]
 
 
-def test_no_definition_is_missing_or_too_many():
+def test_definitions_are_exactly_gazebos():
     assert {file.stem for file in (PACKAGE / 'msg').iterdir()} == set(MESSAGES)
     assert {file.stem for file in (PACKAGE / 'srv').iterdir()} == set(SERVICES)

@@ -1,4 +1,4 @@
-"""Every launch file loads without a master, explains its arguments, and starts what it says."""
+"""Launch files load without a master, document their arguments, and start the right nodes."""
 
 import os
 import re
@@ -29,7 +29,7 @@ def load(monkeypatch):
     # `env python3` of the xacro script must be the interpreter that runs the tests
     interpreter = str(Path(sys.executable).parent)
     monkeypatch.setenv('PATH', os.pathsep.join([interpreter, os.environ['PATH']]))
-    monkeypatch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+    monkeypatch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
     monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:1')
 
     def load_file(path, *arguments):
@@ -52,12 +52,12 @@ def arguments(config, node_name: str) -> str:
     return ' '.join(text.split())
 
 
-def test_the_launch_files_are_there():
+def test_there_are_launch_files():
     assert {'load_description', 'rviz', 'simulation', 'spawn'} <= {path.stem for path in FILES}
 
 
 def test_roslaunch_finds_each_file_once():
-    for path in ROOT.glob('launch/*.launch'):  # it looks through the whole package
+    for path in ROOT.glob('launch/*.launch'):  # it searches the whole package
         assert list(ROOT.glob(f'[!.]*/**/{path.name}')) == [path]
 
 
@@ -67,14 +67,14 @@ def test_launch_file_loads(load, path):
 
 
 @pytest.mark.parametrize('path', FILES, ids=name)
-def test_every_argument_is_explained(path):
+def test_every_argument_is_documented(path):
     silent = [arg.get('name') for arg in ElementTree.parse(path).getroot().findall('arg')
               if not (arg.get('doc') or '').strip()]
     assert silent == []
 
 
 @pytest.mark.parametrize('path', FILES, ids=name)
-def test_the_help_calls_no_argument_required(load, capsys, path):
+def test_no_argument_is_required(load, capsys, path):
     dump_args([str(path)])
     assert 'Required' not in capsys.readouterr().out
 
@@ -99,7 +99,7 @@ def test_rviz_shows_the_robot(load):
         'rviz': 'rviz/rviz'}
 
 
-def test_rviz_can_be_left_out_and_sliders_be_had(load):
+def test_rviz_and_sliders_are_optional(load):
     assert set(nodes(load('rviz.launch', 'rviz:=false', 'gui:=true'))) == {
         'joint_state_publisher_gui', 'robot_state_publisher'}
 
@@ -144,7 +144,7 @@ def test_spawn_passes_every_argument_on(load):
         ' -robot_namespace /r1')
 
 
-def test_simulation_has_one_tf_tree_and_no_rviz_unless_wanted(load):
+def test_simulation_has_one_tf_tree_and_rviz_is_optional(load):
     config = load('simulation.launch', 'gui:=false', 'x:=-1')
     assert {'gazebo', 'mybot_spawn', 'robot_state_publisher'} == set(nodes(config))
     assert '<robotBaseFrame>base_footprint<' in config.params['/robot_description'].value
@@ -152,7 +152,7 @@ def test_simulation_has_one_tf_tree_and_no_rviz_unless_wanted(load):
     assert 'rviz' in nodes(load('simulation.launch', 'rviz:=true'))
 
 
-def test_see_shows_what_all_sensors_sense(load):
+def test_see_shows_the_data_of_all_sensors(load):
     config = load('see.launch')
     assert set(nodes(config)) == {'gazebo', 'mybot_spawn', 'robot_state_publisher', 'rviz'}
     assert arguments(config, 'gazebo').endswith(' "worlds/rooms.world"')
@@ -168,7 +168,7 @@ def test_see_shows_what_all_sensors_sense(load):
         'rviz/Image': 'camera1/image_raw'}
 
 
-def test_simulation_hands_its_arguments_to_the_simulator(load):
+def test_simulation_passes_its_arguments_to_the_simulator(load):
     config = load('simulation.launch', 'paused:=true', 'world_name:=my.world',
                   'use_sim_time:=false')
     assert arguments(config, 'gazebo').startswith('-u ')

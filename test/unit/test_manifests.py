@@ -22,7 +22,7 @@ def manifest(folder: Path) -> ElementTree.Element:
 
 
 def imports(folder: Path) -> set[str]:
-    """Return what the modules of a folder import that is neither Python's nor ours."""
+    """Return the third-party packages that a folder's modules import."""
     modules = list(folder.rglob('*.py'))
     names: set[str] = set()
     for module in modules:
@@ -41,14 +41,14 @@ def imports(folder: Path) -> set[str]:
     (ROOT / 'src', SIMULATOR, ('exec_depend',)),
     (ROOT / 'test', ROOT, ('exec_depend', 'test_depend', 'buildtool_depend')),
 ])
-def test_what_is_imported_is_declared(folder, package, kinds):
+def test_imports_are_declared(folder, package, kinds):
     declared = {each.text for kind in kinds for each in manifest(package).iter(kind)}
     missing = {name for name in imports(folder) - FROM_PYPI
                if not {name, f'python3-{name.replace("_", "-").lower()}'} & declared}
     assert missing == set()
 
 
-def test_the_version_is_that_of_the_last_release_in_the_changelog():
+def test_version_is_that_of_the_latest_release_in_the_changelog():
     changelog = get_changelog_from_path(str(ROOT / 'CHANGELOG.rst'), 'rosbots_description')
     version, date, _ = next(changelog.foreach_version())
     assert date is not None
@@ -56,6 +56,6 @@ def test_the_version_is_that_of_the_last_release_in_the_changelog():
     assert {manifest(folder).findtext('version') for folder in ours} == {version}
 
 
-def test_what_is_not_released_yet_stands_before_all_releases():
+def test_unreleased_changes_are_first_in_the_changelog():
     titles = re.findall(r'^(.+)\n-+$', (ROOT / 'CHANGELOG.rst').read_text(encoding='utf-8'), re.M)
     assert 'Forthcoming' not in titles[1:]

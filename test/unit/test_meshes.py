@@ -1,4 +1,4 @@
-"""The meshes have the article's measures, are sound, and are what the script makes."""
+"""The meshes have the article's dimensions, are closed, and are those that the script makes."""
 
 import json
 import subprocess
@@ -48,14 +48,14 @@ def corners(name: str) -> tuple:
 
 @pytest.fixture(scope='module')
 def made(tmp_path_factory):
-    """Return a folder into which the script has written its meshes."""
+    """Return a folder with the meshes that the script makes."""
     folder = tmp_path_factory.mktemp('meshes')
     subprocess.run([sys.executable, '-B', str(SCRIPT), str(folder)], check=True, timeout=60)
     return folder
 
 
 @pytest.mark.parametrize('name', BOXES)
-def test_mesh_is_what_the_script_makes_byte_for_byte(made, name):
+def test_mesh_is_identical_to_that_of_the_script(made, name):
     assert (made / f'{name}.dae').read_bytes() == (ROOT / 'meshes' / f'{name}.dae').read_bytes()
 
 
@@ -77,7 +77,7 @@ def test_wheel_is_round():
 
 
 @pytest.mark.parametrize('name', BOXES)
-def test_mesh_is_light_and_has_colours(name):
+def test_mesh_has_few_triangles_and_has_colours(name):
     root = document(name)
     assert 100 < len(corners(name)[0]) < MAX_TRIANGLES
     colours = {colour.text for colour in root.findall('.//c:diffuse/c:color', COLLADA)}
@@ -85,7 +85,7 @@ def test_mesh_is_light_and_has_colours(name):
 
 
 @pytest.mark.parametrize('name', BOXES)
-def test_triangles_have_area_and_normals_that_agree(name):
+def test_triangles_have_area_and_matching_normals(name):
     points, normals = corners(name)
     area = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     size = np.linalg.norm(area, axis=1)
@@ -93,7 +93,7 @@ def test_triangles_have_area_and_normals_that_agree(name):
     assert size.min() > 0.0
     np.testing.assert_allclose(np.linalg.norm(normals, axis=2), 1.0, atol=1e-5)
     cosine = np.einsum('ij,ikj->ik', area / size[:, None], normals)
-    assert cosine.min() > 0.7  # smooth shading may tilt a normal, never turn it round
+    assert cosine.min() > 0.7  # smooth shading may tilt a normal but not reverse it
 
 
 @pytest.mark.parametrize('name', BOXES)
@@ -111,13 +111,13 @@ def test_every_part_is_closed_and_faces_outwards(name, monkeypatch):
 
 
 @pytest.mark.parametrize('name', BOXES)
-def test_file_says_metres_and_which_axis_is_up(name):
+def test_file_declares_metres_and_up_axis(name):
     asset = document(name).find('c:asset', COLLADA)
     assert asset.find('c:unit', COLLADA).get('meter') == '1'
     assert asset.find('c:up_axis', COLLADA).text == ('Y_UP' if name == 'camera' else 'Z_UP')
 
 
-# Where the article's meshes land in base_link [m]: link; ranges of x, y, z (None: not measured).
+# Extents of the article's meshes in base_link [m]: link; ranges of x, y, z (None: not measured).
 LANDINGS = [
     ('base_link', (-0.52, 0.58), (-0.40, 0.60), (0.43, 0.48)),
     ('base_second_link', (-0.52, 0.58), (-0.40, 0.60), (0.68, 0.73)),
@@ -130,7 +130,7 @@ LANDING_TOLERANCE = 0.008  # [m]; the measures are rounded, and quarter turns ar
 
 
 @pytest.mark.parametrize(('link', 'ranges'), [(link, ranges) for link, *ranges in LANDINGS])
-def test_mesh_lands_where_the_articles_does(link, ranges):
+def test_extents_in_base_link_are_those_of_the_article(link, ranges):
     # test_robot.py proves that the URDF places the meshes as this file says
     article = json.loads((ROOT / 'test/data/article_robot.json').read_text(encoding='utf-8'))
     joint = next((each for each in article['joints'].values() if each['child'] == link), None)

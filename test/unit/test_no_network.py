@@ -1,4 +1,4 @@
-"""Nothing that a description or a command line names makes us open a connection."""
+"""No address in a description or command line makes the simulator open a connection."""
 
 import os
 import subprocess
@@ -7,8 +7,8 @@ import sys
 import pytest
 from support import ROOT
 
-# Ends the program at the first connection and at the first question for an address. libxml2 would
-# go past Python; its parsers are made with no_network.
+# Ends the program at the first connection or name lookup. libxml2 would
+# bypass this; its parsers are created with no_network.
 GUARD = """
 import sys
 
@@ -35,7 +35,7 @@ OBJECT = 'mtllib http://example.org/m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 
 
 def run(code, text=''):
-    """Run code with TEXT under the guard; return the last line of its complaint."""
+    """Run code with TEXT under the guard; return the last line of its error output."""
     python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
     done = subprocess.run(
         [sys.executable, '-c', f'{GUARD}\nTEXT = {text!r}\n{code}'], capture_output=True, text=True,
@@ -58,14 +58,14 @@ def test_the_guard_notices_a_connection():
     (LOAD_SDF, SDF.format('model://coke_can'),
      "'model://coke_can' is not to be found along the model path"),
 ], ids=['mesh', 'document type', 'included address', 'unknown model'])
-def test_an_address_is_refused_without_a_look_at_the_network(load, text, said):
+def test_address_is_rejected_without_network_access(load, text, said):
     assert said in run(load, text)
 
 
 @pytest.mark.parametrize(('name', 'content', 'said'), [
     ('m.dae', COLLADA, 'm.dae\' '), ('m.obj', OBJECT, ''),
 ])
-def test_a_mesh_file_leads_nowhere_else(tmp_path, name, content, said):
+def test_mesh_file_does_not_open_other_addresses(tmp_path, name, content, said):
     path = tmp_path / name
     path.write_text(content, encoding='utf-8')
     complaint = run(LOAD_URDF, f'<robot name="r">{MESH.format(path)}</robot>')
@@ -75,7 +75,7 @@ def test_a_mesh_file_leads_nowhere_else(tmp_path, name, content, said):
 
 
 @pytest.mark.parametrize('model', ['coke_can', 'http://example.org/coke_can'])
-def test_a_model_of_the_database_is_looked_for_on_the_model_path_only(model):
+def test_model_of_the_database_is_searched_on_the_model_path_only(model):
     code = (
         'import argparse\n'
         'from rosbots_description.ros_api.clients.spawn_model import _fetch\n'

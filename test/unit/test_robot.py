@@ -1,4 +1,4 @@
-"""The robot's xacro says what the article says, and gives the TF trees it promises."""
+"""The robot's xacro agrees with the article and gives the documented TF trees."""
 
 import json
 import math
@@ -22,11 +22,11 @@ TOLERANCE = 1e-9  # in the unit of each number
 
 @cache
 def expanded(**arguments: str) -> str:
-    """Return the URDF text for xacro arguments, with the package found where this file lies."""
+    """Return the URDF text for xacro arguments; the package is that of this file."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(
             [str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')]))
-        patch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+        patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
         return xacro.process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
 
 
@@ -221,12 +221,12 @@ def tf_parents(tree: ElementTree.Element) -> dict:
     return parents
 
 
-def test_default_gives_base_link_and_wheels_a_second_parent_as_the_article_does():
+def test_base_link_and_wheels_have_two_parents_by_default_as_in_the_article():
     twice = {frame for frame, parents in tf_parents(robot()).items() if len(parents) > 1}
     assert twice == {'base_link', 'wheel_left_link', 'wheel_right_link'}
 
 
-def test_one_tf_tree_hangs_every_frame_once_below_odom():
+def test_one_tf_tree_gives_every_frame_one_parent_below_odom():
     tree = robot(one_tf_tree='true')
     parents = tf_parents(tree)
     assert all(len(several) == 1 for several in parents.values())
@@ -259,7 +259,7 @@ def test_every_mesh_of_the_robot_is_in_the_package():
         assert (ROOT / path).is_file(), name
 
 
-def test_what_rviz_shows_red_for_want_of_a_colour_is_red_in_the_simulator():
+def test_links_without_colour_are_red_as_in_rviz():
     urdf = robot()
     red = {block.get('reference') for block in urdf.findall('gazebo')
            if block.findtext('material') == 'Gazebo/Red'}

@@ -1,4 +1,4 @@
-"""./rosbots passes exit codes on and says in one sentence what it does not know."""
+"""./rosbots passes on exit codes, and reports unknown commands in one sentence."""
 
 import os
 import re
@@ -35,13 +35,13 @@ def rosbots(*arguments, script='', prefix=(), **environment):
         (['link', '/nowhere'], 2, 'there is no folder /nowhere/src'),
     ],
 )
-def test_exit_codes_and_complaints(arguments, code, said):
+def test_exit_codes_and_error_messages(arguments, code, said):
     result = rosbots(*arguments)
     assert result.returncode == code
     assert said in result.stderr
 
 
-def test_the_environment_knows_the_packages_and_the_right_python():
+def test_environment_has_the_packages_and_the_system_python():
     result = rosbots(
         'exec', 'sh', '-c', 'rospack find gazebo_msgs && python3 -c "import rospy, pybullet"'
     )
@@ -49,7 +49,7 @@ def test_the_environment_knows_the_packages_and_the_right_python():
     assert 'gazebo_msgs' in result.stdout
 
 
-def test_a_shell_reads_commands_and_knows_roscd():
+def test_shell_reads_commands_and_has_roscd():
     result = rosbots('shell', script='roscd rosbots_description\npwd -P\nexit 3\n')
     assert result.returncode == 3, result.stderr
     assert result.stdout.strip() == str(ROOT)
@@ -57,14 +57,14 @@ def test_a_shell_reads_commands_and_knows_roscd():
 
 @pytest.fixture
 def theirs(tmp_path):
-    """A workspace that the caller has sourced, with a package of the name that ours has."""
+    """Return a sourced workspace with a package of the same name as ours."""
     package = tmp_path / 'src' / 'rosbots_description'
     package.mkdir(parents=True)
     (package / 'package.xml').write_text('<package><name>rosbots_description</name></package>')
     return package
 
 
-def test_every_package_is_linked_but_those_that_the_user_has(tmp_path):
+def test_packages_are_linked_except_those_that_the_user_has(tmp_path):
     packages = {path.parent.name for path in ROOT.glob('companions/*/package.xml')}
     source = tmp_path / 'src'
     own = source / 'robots' / 'speech'
@@ -82,7 +82,7 @@ def test_every_package_is_linked_but_those_that_the_user_has(tmp_path):
     assert 'nothing new' in rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='').stdout
 
 
-def test_a_link_by_hand_goes_where_the_user_has_a_package_of_that_name(theirs):
+def test_link_is_removed_where_the_user_has_a_package_of_that_name(theirs):
     by_hand = theirs.parent / 'anything'
     by_hand.symlink_to(ROOT)
     said = rosbots('link', str(theirs.parents[1]), ROS_PACKAGE_PATH='').stdout
@@ -91,14 +91,14 @@ def test_a_link_by_hand_goes_where_the_user_has_a_package_of_that_name(theirs):
     assert (theirs / 'package.xml').exists()
 
 
-def test_what_is_in_the_way_of_a_link_is_named(tmp_path):
+def test_error_names_what_is_in_the_way_of_a_link(tmp_path):
     (tmp_path / 'src' / 'xacro').mkdir(parents=True)
     result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')
     assert (result.returncode, result.stderr) == (
         2, f'rosbots: {tmp_path}/src/xacro is in the way, and no package of that name\n')
 
 
-def test_a_workspace_over_one_with_a_robot_of_the_user_gets_no_other(theirs, tmp_path):
+def test_workspace_over_one_with_the_users_robot_gets_no_second_one(theirs, tmp_path):
     source = tmp_path / 'over' / 'src'
     source.mkdir(parents=True)
     (source / 'rosbots_description').symlink_to(ROOT)
@@ -108,7 +108,7 @@ def test_a_workspace_over_one_with_a_robot_of_the_user_gets_no_other(theirs, tmp
     assert (source / 'rosbots_simulator').exists()
 
 
-def test_the_optional_packages_are_installed_by_the_command_that_their_list_gives(tmp_path):
+def test_command_in_the_list_installs_the_optional_packages(tmp_path):
     (tmp_path / 'sudo').write_text('#!/bin/sh\necho "$@"\n')
     (tmp_path / 'sudo').chmod(0o755)
     text = (ROOT / 'apt-optional.txt').read_text()
@@ -123,9 +123,9 @@ def test_the_optional_packages_are_installed_by_the_command_that_their_list_give
     (('exec', 'rospack'), True), (('launch',), True), (('shell', '-c', ':'), True),
     (('demo',), False), (('test',), False),
 ])
-def test_a_users_package_wins_but_where_ours_is_shown_or_tested(
+def test_users_package_takes_precedence_except_in_demo_and_test(
         arguments, sees_theirs, theirs, tmp_path):
-    # what becomes of the script in the end says which package it would see
+    # the final exec is replaced to show which package it would use
     instead = tmp_path / 'instead.bash'
     instead.write_text('exec() { rospack find rosbots_description; }')
     result = rosbots(*arguments, BASH_ENV=str(instead), ROS_PACKAGE_PATH=str(theirs.parent))
@@ -133,7 +133,7 @@ def test_a_users_package_wins_but_where_ours_is_shown_or_tested(
     assert found == str(theirs if sees_theirs else ROOT), result.stderr
 
 
-def test_an_interactive_shell_keeps_ours_behind_the_workspace_that_bashrc_sources(theirs, tmp_path):
+def test_interactive_shell_keeps_the_workspace_of_bashrc_before_ours(theirs, tmp_path):
     (tmp_path / '.bashrc').write_text(
         f'unset CMAKE_PREFIX_PATH PYTHONPATH; ROS_PACKAGE_PATH={theirs.parent}')
     shell = ('bash', '--rcfile', str(ROOT / 'tools' / 'shell.bashrc'), '-i', '-c',
@@ -145,27 +145,27 @@ def test_an_interactive_shell_keeps_ours_behind_the_workspace_that_bashrc_source
     assert os.path.realpath(gazebo) == str(ROOT / 'companions' / 'gazebo_ros')
 
 
-def test_logs_have_a_folder_without_a_home():
+def test_logs_have_a_folder_without_home():
     nothing = '/dev/null/home'
     result = rosbots('exec', 'sh', '-c', 'test -w "$ROS_HOME/log"', HOME=nothing, ROS_HOME='')
     assert result.returncode == 0, result.stderr
 
 
-def test_names_and_files_are_utf8_in_every_locale():
+def test_file_names_and_text_are_utf8_in_every_locale():
     program = 'import sys; print(sys.getfilesystemencoding(), open(0).encoding)'
     result = rosbots('exec', 'python3', '-c', program, LC_ALL='C', PYTHONUTF8='0')
     assert result.stdout.split() == ['utf-8', 'utf-8']
 
 
 @pytest.mark.parametrize(('name', 'address'), [('localhost', ''), ('leads.nowhere', 'localhost')])
-def test_a_machine_whose_name_leads_nowhere_is_called_localhost(name, address):
+def test_unresolvable_hostname_is_replaced_by_localhost(name, address):
     rename = f'hostname {name} && exec "$@"'
     renamed = (*unshare('uts'), 'sh', '-c', rename, 'sh')
     result = rosbots('exec', 'printenv', 'ROS_HOSTNAME', prefix=renamed, ROS_HOSTNAME='', ROS_IP='')
     assert result.stdout.strip() == address, result.stderr
 
 
-# Mounts a full disk on each of the folders given before --, in a private view of the file system.
+# Mounts a full disk on each folder before --, in a private mount namespace.
 FILL = """
 while [ "$1" != -- ]; do
   mount -t tmpfs -o size=4k full "$1" && head -c 4k /dev/zero > "$1/x" || exit 77
@@ -186,17 +186,17 @@ def on_full_disks(places, *command, **environment):
 
 
 @pytest.mark.parametrize('others', [(), ('/dev/shm',)])
-def test_a_full_folder_for_temporary_files_costs_nothing(tmp_path, others):
+def test_full_temporary_folder_does_no_harm(tmp_path, others):
     result = on_full_disks([tmp_path, *others], ROOT / 'rosbots', 'exec', 'sh', '-c',
                            'rospack find gazebo_ros && echo "$TMPDIR"', TMPDIR=str(tmp_path))
     assert result.returncode == 0, result.stderr
     found, temporary = result.stdout.splitlines()
     assert found.endswith('gazebo_ros')
-    assert temporary == str(tmp_path)  # programs go where their user wants them to
+    assert temporary == str(tmp_path)  # the user's setting is passed on to programs
     assert result.stderr == ''
 
 
-def test_where_nothing_can_be_written_a_sentence_names_the_places(tmp_path):
+def test_error_without_any_writable_folder_names_all_of_them(tmp_path):
     temporary, workspace = tmp_path / 'tmp', tmp_path / 'workspace'
     for place in (temporary, workspace):
         place.mkdir()

@@ -1,4 +1,4 @@
-"""What pip installs is what ./rosbots sets up."""
+"""pip installs the same packages as ./rosbots."""
 
 import runpy
 
@@ -7,7 +7,7 @@ from support import ROOT
 
 
 def arguments(monkeypatch, folder):
-    """Return what the setup.py of a folder calls setup with."""
+    """Return the arguments of setup() in the setup.py of a folder."""
     called = {}
     monkeypatch.setattr(setuptools, 'setup', lambda **given: called.update(given))
     monkeypatch.chdir(folder)
@@ -32,7 +32,7 @@ def test_the_companion_installs_the_same_packages_under_its_own_name(monkeypatch
     assert [folder for folder, _ in theirs['data_files']] == ['share/rosbots_simulator/']
 
 
-def test_the_robot_goes_where_its_addresses_lead(monkeypatch):
+def test_robot_is_installed_where_its_uris_point(monkeypatch):
     files = dict(arguments(monkeypatch, ROOT)['data_files'])
     assert 'urdf/rosbots.xacro' in files['share/rosbots_description/urdf']
     assert 'meshes/base.dae' in files['share/rosbots_description/meshes']

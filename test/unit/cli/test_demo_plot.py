@@ -1,4 +1,4 @@
-"""The demo's picture of the path."""
+"""The demo's plot of the path."""
 
 from matplotlib import image
 
@@ -7,7 +7,7 @@ from rosbots_description.cli.demo_report import DRIVE
 from rosbots_description.ros_api.clients.planar_sample import PlanarSample
 
 
-def test_each_segment_is_drawn_in_a_colour_of_its_own(tmp_path):
+def test_each_segment_is_drawn_in_its_own_colour(tmp_path):
     drive = [(segment, [PlanarSample(0.0, 0.0, i, i, 0.0), PlanarSample(3.0, 3.0, i + 1.0, i, 0.0)])
              for i, segment in enumerate(DRIVE)]
     path = tmp_path / 'path.png'

@@ -1,4 +1,4 @@
-"""The demo's arithmetic on drives whose answer is known."""
+"""The demo's evaluation of drives with known results."""
 
 import math
 
@@ -34,14 +34,14 @@ def circle(speed, turn_rate, duration=3.0, step=0.05, heading=3.0):
     return samples
 
 
-def test_steady_motion_of_a_circle_is_exact_across_the_jump_of_yaw():
+def test_steady_motion_on_a_circle_is_exact_where_yaw_wraps():
     motion = steady_motion(circle(0.5, 0.8))
     # the chord is shorter than the arc by (step angle)^2 / 24
     assert motion.speed == pytest.approx(0.5, rel=1e-4)
     assert motion.turn_rate == pytest.approx(0.8, rel=1e-9)
 
 
-def test_steady_motion_keeps_the_signs_of_backward_and_clockwise():
+def test_backward_speed_and_clockwise_rate_are_negative():
     motion = steady_motion(circle(-0.3, -0.6))
     assert motion.speed == pytest.approx(-0.3, rel=1e-4)
     assert motion.turn_rate == pytest.approx(-0.6, rel=1e-9)
@@ -74,7 +74,7 @@ def test_expected_motion_comes_from_the_true_geometry():
     ('turn', -0.0311, 1.0711),
     ('stop', 0.0, 0.0),
 ])
-def test_what_gazebo_measured_passes_without_complaint(name, speed, turn_rate):
+def test_motion_measured_in_gazebo_gives_no_warning(name, speed, turn_rate):
     segment = next(segment for segment in DRIVE if segment.name == name)
     motion = MeanMotion(speed, turn_rate)
     assert complaint(Row(segment, motion, motion, 1.0)) is None
@@ -83,7 +83,7 @@ def test_what_gazebo_measured_passes_without_complaint(name, speed, turn_rate):
 @pytest.mark.parametrize('truth', [
     MeanMotion(0.0, 0.0), MeanMotion(-0.44, 0.55), MeanMotion(0.44, -0.55),
 ])
-def test_standing_still_and_wrong_signs_are_named(truth):
+def test_standing_still_and_wrong_signs_are_reported(truth):
     segment = Segment('arc', 0.5, 0.5, 4.0)
     assert 'part "arc"' in complaint(Row(segment, truth, truth, 1.0))
 

@@ -1,4 +1,4 @@
-"""The executable gazebo: server and window live and end together."""
+"""The executable gazebo: server and window start and end together."""
 
 import os
 import signal
@@ -24,13 +24,13 @@ while not (pathlib.Path(__file__).parent / 'gzserver.arguments').exists():
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder that takes the place of the one with the executables."""
+    """Return a folder that replaces that of the executables."""
     monkeypatch.setattr(sys, 'argv', [str(tmp_path / 'gazebo')])
     monkeypatch.setattr(gazebo, 'display_works', lambda: True)
     return tmp_path
 
 
-def test_closing_the_window_ends_the_server_with_ctrl_c(folder):
+def test_closing_the_window_interrupts_the_server(folder):
     (folder / 'gzserver').write_text(RUN_UNTIL_CTRL_C.format(code=7))
     (folder / 'gzclient').write_text(WAIT_FOR_SERVER_THEN_END)
     assert gazebo.main(['-u', '--verbose', 'my.world']) == 7
@@ -45,7 +45,7 @@ def test_the_end_of_the_server_closes_the_window(folder):
     assert time.monotonic() - start < 10.0
 
 
-def test_without_a_display_the_server_runs_on(folder, monkeypatch):
+def test_server_keeps_running_without_a_display(folder, monkeypatch):
     monkeypatch.setattr(gazebo, 'display_works', lambda: False)
     (folder / 'gzserver').write_text('import time; time.sleep(0.5); raise SystemExit(5)')
     (folder / 'gzclient').write_text('')
@@ -53,8 +53,8 @@ def test_without_a_display_the_server_runs_on(folder, monkeypatch):
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_right_after_the_start_leaves_nobody_behind(folder, monkeypatch, number):
-    def told_before_the_first_look():
+def test_a_signal_right_after_the_start_ends_all_processes(folder, monkeypatch, number):
+    def signalled_before_the_first_poll():
         deadline = time.monotonic() + 20.0
         while not (folder / 'gzserver.arguments').exists():
             assert time.monotonic() < deadline
@@ -62,7 +62,7 @@ def test_a_signal_right_after_the_start_leaves_nobody_behind(folder, monkeypatch
         os.kill(os.getpid(), number)
         return True
 
-    monkeypatch.setattr(gazebo, 'display_works', told_before_the_first_look)
+    monkeypatch.setattr(gazebo, 'display_works', signalled_before_the_first_poll)
     for name in ('gzserver', 'gzclient'):
         (folder / name).write_text(RUN_UNTIL_CTRL_C.format(code=7))
     assert gazebo.main([]) == 7

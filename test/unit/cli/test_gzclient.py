@@ -1,4 +1,4 @@
-"""The window as a process: it listens to no robot's TF, says little, and ends when told."""
+"""The window as a process: it reads no robot's TF, prints little, and ends on request."""
 
 import os
 import signal
@@ -21,7 +21,7 @@ MAIN = ('import sys; from rosbots_description.cli import gzclient; '
         'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))')
 
 
-# Dies as Debian's RViz does, {times} times and then stays until it is told to go.
+# Crashes {times} times like Debian's RViz, then runs until it is ended.
 CRASHES = """#!/bin/sh
 echo >> {folder}/starts
 test $(wc -l < {folder}/starts) -gt {times} && exec sleep 60
@@ -30,7 +30,7 @@ kill -{signal} $$
 
 
 def open_window(folder, text):
-    """Start gzclient with a program of this text in the place of RViz."""
+    """Start gzclient with a program of this text instead of RViz."""
     program = folder / 'rviz'
     program.write_text(text)
     program.chmod(0o755)
@@ -47,7 +47,7 @@ def count_starts(folder):
 
 @pytest.fixture
 def window(tmp_path):
-    """A gzclient with a program in the place of RViz; and that one's number and arguments."""
+    """Return a gzclient with a program instead of RViz, and that program's PID and arguments."""
     process = open_window(tmp_path, WINDOW.format(folder=tmp_path))
     try:
         deadline, arguments = time.monotonic() + 20.0, tmp_path / 'arguments'
@@ -60,7 +60,7 @@ def window(tmp_path):
         process.wait()
 
 
-def test_the_window_has_frames_of_its_own_and_ends_when_told(window):
+def test_window_has_its_own_tf_topics_and_ends_on_request(window):
     process, words = window
     assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} \
         <= set(words)
@@ -68,12 +68,12 @@ def test_the_window_has_frames_of_its_own_and_ends_when_told(window):
     assert process.wait(10.0) == 0
 
 
-def test_the_window_ends_when_its_parent_is_killed(window):
+def test_window_ends_when_its_parent_is_killed(window):
     process, words = window
     process.kill()
     process.wait()
     deadline = time.monotonic() + 10.0
-    while Path('/proc', words[0]).exists():  # a zombie until somebody takes it
+    while Path('/proc', words[0]).exists():  # a zombie until it is reaped
         if ' Z ' in Path('/proc', words[0], 'stat').read_text():
             break
         assert time.monotonic() < deadline
@@ -81,7 +81,7 @@ def test_the_window_ends_when_its_parent_is_killed(window):
 
 
 @pytest.mark.parametrize(('number', 'times'), [('SEGV', 1), ('ABRT', STARTS - 1)])
-def test_rviz_that_crashes_as_it_opens_is_started_again(tmp_path, number, times):
+def test_rviz_that_crashes_at_its_start_is_restarted(tmp_path, number, times):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal=number, times=times))
     deadline = time.monotonic() + 20.0
     while count_starts(tmp_path) <= times:
@@ -95,7 +95,7 @@ def test_rviz_that_crashes_as_it_opens_is_started_again(tmp_path, number, times)
         f'gzclient: RViz crashed as it opened (SIG{number}); restarting it'] * times
 
 
-def test_rviz_that_crashes_each_time_is_given_up(tmp_path):
+def test_restarts_of_a_crashing_rviz_are_limited(tmp_path):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='SEGV', times=99))
     _, said = process.communicate(timeout=20.0)
     assert (process.returncode, count_starts(tmp_path)) == (128 + signal.SIGSEGV, STARTS)
@@ -103,13 +103,13 @@ def test_rviz_that_crashes_each_time_is_given_up(tmp_path):
         f'gzclient: RViz crashed as it opened (SIGSEGV); no window after {STARTS} starts')
 
 
-def test_rviz_that_somebody_ends_stays_closed(tmp_path):
+def test_rviz_that_the_user_closes_is_not_restarted(tmp_path):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='KILL', times=9))
     _, said = process.communicate(timeout=10.0)
     assert (process.returncode, count_starts(tmp_path), said) == (128 + signal.SIGKILL, 1, '')
 
 
-def test_rviz_gets_a_folder_and_log_levels_unless_the_user_has_given_them(tmp_path, monkeypatch):
+def test_rviz_gets_default_folder_and_log_levels_unless_the_user_sets_them(tmp_path, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     made = rviz_environment({}, Path('/levels'))
     assert made['ROSCONSOLE_CONFIG_FILE'] == '/levels'
@@ -125,7 +125,7 @@ def test_the_layouts_have_time_displays_and_views_and_the_window_can_follow_a_mo
         assert layout['Window Geometry']['Time'] == {'collapsed': False}
     shown = yaml.safe_load(config_file().read_text())['Visualization Manager']
     red, _, blue = map(int, shown['Global Options']['Background Color'].split(';'))
-    assert blue > red > 100  # a sky by day
+    assert blue > red > 100  # light blue
     views = shown['Views']
     assert views['Current']['Pitch'] > 0.3  # [rad], from above
     assert views['Saved'][0]['Target Frame'] == 'rosbots'

@@ -1,4 +1,4 @@
-"""gzserver's command line: Gazebo's options are taken, and what does nothing here is said."""
+"""gzserver's command line: Gazebo's options are accepted; those without effect are reported."""
 
 import logging
 import os
@@ -19,7 +19,7 @@ def _read(line):
     return given, remarks(given, unknown)
 
 
-def test_the_line_of_the_launch_file_leaves_nothing_to_say():
+def test_command_line_of_the_launch_file_gives_no_message():
     given, said = _read('-u --verbose -e ode worlds/empty.world')
     assert given.pause
     assert given.world == 'worlds/empty.world'
@@ -35,7 +35,7 @@ def test_plugins_and_lockstep_are_accepted():
     '-p state.log', '--play state.log', '-o fast', '--profile fast', '--record_path /tmp/log',
     '--record_period 0.1', '--record_encoding zlib', '--record_filter robot',
 ])
-def test_the_value_of_an_option_is_not_taken_for_the_world(option):
+def test_value_of_an_option_is_not_taken_as_the_world(option):
     given, ((level, text),) = _read(f'{option} my.world')
     assert given.world == 'my.world'
     assert level == logging.WARNING
@@ -43,7 +43,7 @@ def test_the_value_of_an_option_is_not_taken_for_the_world(option):
 
 
 @pytest.mark.parametrize('option', ['-v', '--version'])
-def test_the_version_is_one_line(option, capsys):
+def test_version_is_one_line(option, capsys):
     with pytest.raises(SystemExit) as ended:
         main([option])
     assert ended.value.code == 0
@@ -51,14 +51,14 @@ def test_the_version_is_one_line(option, capsys):
     assert 'PyBullet' in line
 
 
-def test_the_seed_is_that_of_the_run_and_needs_no_remark():
+def test_seed_is_used_without_a_message():
     given, unknown = parser().parse_known_args(['--seed', '7'])
     assert (given.seed, remarks(given, unknown)) == (7, ())
     assert parser().parse_args([]).seed == 0
 
 
 
-def test_another_engine_is_an_information():
+def test_another_engine_gives_an_info_message():
     _, ((level, text),) = _read('-e bullet')
     assert level == logging.INFO
     assert "'bullet'" in text
@@ -72,12 +72,12 @@ def test_recording_and_unknown_options_are_warnings():
     assert 'rosbag' in said[1][1]
 
 
-def test_remappings_are_told_from_options():
+def test_remappings_are_not_options():
     assert split_remappings(['-u', '__name:=gazebo', 'a.world', 'a:=b']) == (
         ['-u', 'a.world'], ['__name:=gazebo', 'a:=b'])
 
 
-def test_a_world_that_is_not_there_ends_with_one_sentence(capsys):
+def test_missing_world_is_one_error_line(capsys):
     assert main(['worlds/mud.world']) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert "'worlds/mud.world'" in line
@@ -88,7 +88,7 @@ REQUIRED = [line for line in REQUIREMENTS.read_text().splitlines()
 
 
 @pytest.mark.parametrize('requirement', REQUIRED)
-def test_a_missing_module_is_one_sentence(requirement):
+def test_missing_module_is_one_error_line(requirement):
     module = requirement.split('==')[0].replace('pycollada', 'collada')
     program = (
         f"import sys; sys.modules['{module}'] = None; "

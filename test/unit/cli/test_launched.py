@@ -15,7 +15,7 @@ from rosbots_description.cli.launched import Launched, descendants
      '[gazebo-2] process has died [pid 7, exit code 1] (see {log})'),
     ('done\n', 'see {log}'),
 ])
-def test_complaint_is_the_last_error_without_colours(tmp_path, output, sentence):
+def test_reported_error_is_the_last_one_without_colours(tmp_path, output, sentence):
     log = tmp_path / 'launch.log'
     with Launched(['--version'], log, {'PATH': '/usr/bin'}) as launched:
         launched.wait(10.0)
@@ -23,7 +23,7 @@ def test_complaint_is_the_last_error_without_colours(tmp_path, output, sentence)
     assert launched.error() == sentence.format(log=log)
 
 
-def testdescendants_are_found_across_sessions():
+def test_descendants_are_found_across_sessions():
     parent = subprocess.Popen(
         [sys.executable, '-c',
          'import subprocess; p = subprocess.Popen(["sleep", "60"], start_new_session=True); '

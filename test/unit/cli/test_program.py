@@ -1,4 +1,4 @@
-"""Our programs begin wherever they are: with any locale, any standard streams."""
+"""Programs start with any locale and any standard streams."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ import textwrap
 import pytest
 from support import ROOT
 
-# Prints what it sees; the word behind is for the file system.
+# Prints its arguments and encodings; its argument is a file to write.
 PROGRAM = textwrap.dedent("""\
     import os, sys
     from rosbots_description.cli.program import run
@@ -26,7 +26,7 @@ PROGRAM = textwrap.dedent("""\
 
 @pytest.fixture
 def run(tmp_path):
-    """Return a function (redirections, variables) -> (exit code, output, errors, what it saw)."""
+    """Return a function (redirections, variables) -> (exit code, output, errors, file content)."""
     program, seen = tmp_path / 'program.py', tmp_path / 'gesehen ä'
     program.write_text(PROGRAM, encoding='utf-8')
 
@@ -50,21 +50,21 @@ SEEN = 'utf-8 open'
     {}, {'LANG': 'C'}, {'LC_ALL': 'C'}, {'LC_ALL': 'POSIX'}, {'LC_ALL': 'C.UTF-8'},
     {'LC_ALL': 'C', 'PYTHONUTF8': '0'}, {'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'},
 ], ids=str)
-def test_names_and_texts_are_utf8_in_every_locale(run, variables):
+def test_file_names_and_text_are_utf8_in_every_locale(run, variables):
     code, output, errors, seen = run(**variables)
     assert (code, seen) == (7, SEEN)
     assert output.startswith(UTF8)
     assert errors == 'Kürbis\n'.encode()
 
 
-def test_an_output_that_takes_only_ascii_gets_the_rest_by_number(run):
+def test_output_with_ascii_encoding_gets_escapes(run):
     code, output, errors, seen = run(PYTHONIOENCODING='ascii')
     assert (code, seen) == (7, SEEN)
     assert output.startswith(b"gr\\xf6\\xdfe ['")
     assert errors == b'K\\xfcrbis\n'
 
 
-def test_the_process_has_the_name_of_the_program(tmp_path):
+def test_process_is_named_after_the_program(tmp_path):
     program = tmp_path / 'gzserver'
     program.write_text(textwrap.dedent("""\
         import sys
@@ -95,7 +95,7 @@ INTERRUPTED = textwrap.dedent("""\
     """)
 
 
-def test_ctrl_c_that_nobody_expects_ends_without_a_word():
+def test_unexpected_ctrl_c_ends_silently():
     done = subprocess.run(
         [sys.executable, '-c', INTERRUPTED], env={'PYTHONPATH': str(ROOT / 'src')},
         capture_output=True, timeout=60, check=False)
@@ -106,7 +106,7 @@ def test_ctrl_c_that_nobody_expects_ends_without_a_word():
     '>&-', '2>&-', '<&-', '<&- >&-', '<&- >&- 2>&-', '>/dev/full', '>/dev/full 2>&1',
     '2>&1 | true',
 ])
-def test_streams_that_take_nothing_change_nothing(run, redirections):
+def test_closed_or_full_streams_do_not_stop_the_program(run, redirections):
     code, _, errors, seen = run(redirections)
     assert (code, seen) == (7, SEEN)
     assert b'Error' not in errors

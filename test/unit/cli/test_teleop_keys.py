@@ -47,7 +47,7 @@ def test_move_key_gives_its_velocity(key, expected):
     assert _velocity_after(key) == expected
 
 
-def test_the_table_above_is_complete():
+def test_the_table_of_keys_is_complete():
     assert len(MOVES) == 18
 
 
@@ -65,7 +65,7 @@ def test_speed_key_scales_and_keeps_the_direction(key, linear, angular):
     assert (velocity.x, velocity.yaw) == pytest.approx((linear, angular))
 
 
-def test_speed_key_at_standstill_moves_nothing():
+def test_speed_key_at_standstill_does_not_move_the_robot():
     assert _velocity_after('q') == Velocity()
 
 
@@ -75,7 +75,7 @@ def test_speed_key_shows_the_speeds():
     assert driver.press('q') == ['currently:\tspeed 0.6050000000000001\tturn 1.2100000000000002 ']
 
 
-def test_speed_keys_stop_at_the_limit_and_say_so_whichever_key_it_was():
+def test_speed_keys_stop_at_the_limit_with_a_message():
     driver = Driver(Speeds(linear_limit=0.5, angular_limit=1.05))
     assert driver.press('q') == ['Linear speed limit reached!', 'Angular speed limit reached!',
                                  'currently:\tspeed 0.5\tturn 1.05 ']
@@ -88,13 +88,13 @@ def test_starting_speed_above_the_limit_is_kept_until_a_speed_key():
     assert _velocity_after('ix', speeds) == Velocity(x=1.0)
 
 
-def test_banner_comes_again_after_every_fifteenth_speed_key():
+def test_banner_is_repeated_after_every_fifteenth_speed_key():
     driver = Driver()
     shown = [BANNER in driver.press('e') for _ in range(2 * BANNER_EVERY)]
     assert [number for number, there in enumerate(shown, 1) if there] == [15, 30]
 
 
-def test_silence_stops_a_moving_robot_once():
+def test_robot_is_stopped_once_when_no_key_is_pressed():
     driver = Driver()
     driver.press('i')
     assert driver.fall_silent()
@@ -102,11 +102,11 @@ def test_silence_stops_a_moving_robot_once():
     assert not driver.fall_silent()
 
 
-def test_banner_names_every_key():
+def test_banner_lists_every_key():
     assert all(key in BANNER for key in [*MOVES, *SPEED_STEPS])
     assert BANNER.startswith('\n') and BANNER.endswith('\n')
 
 
-def test_help_and_readme_say_that_a_key_is_to_be_held():
+def test_help_and_readme_tell_to_hold_a_key():
     for text in (BANNER, (ROOT / 'README.md').read_text(encoding='utf-8')):
         assert re.search(r'\bhold a key\b.*\blet go\b', text)

@@ -23,7 +23,7 @@ def _always():
 
 @pytest.fixture
 def terminal():
-    """The two ends of a pseudo-terminal: the keyboard's and the program's."""
+    """Return both ends of a pseudo-terminal: the keyboard's and the program's."""
     keyboard, program = pty.openpty()
     yield keyboard, program
     for end in (keyboard, program):
@@ -31,7 +31,7 @@ def terminal():
             os.close(end)
 
 
-def test_keys_come_at_once_one_by_one_and_ctrl_c_is_one_of_them(terminal):
+def test_each_key_is_read_at_once_ctrl_c_too(terminal):
     keyboard, program = terminal
     with single_keys(program):
         os.write(keyboard, b'iq\x03')
@@ -47,7 +47,7 @@ def test_terminal_is_restored_even_after_an_error(terminal):
     assert termios.tcgetattr(program) == before
 
 
-def test_no_key_gives_none_after_the_timeout(terminal):
+def test_timeout_without_a_key_returns_none(terminal):
     _, program = terminal
     start = time.monotonic()
     with single_keys(program):
@@ -55,20 +55,20 @@ def test_no_key_gives_none_after_the_timeout(terminal):
     assert 0.03 <= time.monotonic() - start < 1.0
 
 
-def test_waiting_ends_when_told_to(terminal):
+def test_wait_for_a_key_can_be_interrupted(terminal):
     _, program = terminal
     with single_keys(program):
         assert read_key(program, float('inf'), iter([True, False]).__next__) is None
 
 
-def test_a_terminal_that_hangs_up_is_an_end_of_file(terminal):
+def test_hangup_of_the_terminal_is_end_of_file(terminal):
     keyboard, program = terminal
     os.close(keyboard)
     with pytest.raises(EOFError):
         read_key(program, 1.0, _always)
 
 
-def test_without_a_terminal_the_program_says_so_and_fails():
+def test_missing_terminal_is_an_error():
     program = subprocess.run(
         [sys.executable, '-c', 'import sys; sys.modules["rospy"] = None\n'
          'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())'],
@@ -82,7 +82,7 @@ def test_without_a_terminal_the_program_says_so_and_fails():
     {'speed': 'fast'}, {'turn': True}, {'speed': float('inf')}, {'key_timeout': -1},
     {'repeat_rate': float('nan')},
 ])
-def test_wrong_parameter_is_named(wrong):
+def test_error_names_the_invalid_parameter(wrong):
     (name, value), = wrong.items()
     with pytest.raises(ValueError, match=f'~{name} must be .*{value!r}'):
         Settings(**wrong)

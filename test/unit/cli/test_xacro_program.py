@@ -1,4 +1,4 @@
-"""The executable xacro expands what is written for Noetic's xacro, and for older ones."""
+"""The executable xacro expands files for the xacro of Noetic and of older releases."""
 
 import os
 import subprocess
@@ -39,13 +39,13 @@ def expand(request, tmp_path):
     ('len([1, 2]) + python.max(1, 4) + sorted([9, 7])[0]', '13'),
     ('sin(pi / 2)', '1.0'),
 ])
-def test_expressions_of_noetic(expand, expression, value):
+def test_expression_of_noetic_is_evaluated(expand, expression, value):
     code, output, errors = expand(f'<link name="${{{expression}}}"/>')
     assert (code, errors) == (0, '')
     assert f'<link name="{value}"/>' in output
 
 
-def test_an_optional_include_may_be_missing_and_others_may_not(expand):
+def test_only_an_optional_include_may_be_missing(expand):
     code, output, errors = expand(
         '<xacro:include filename="nothing.xacro" optional="true"/><link name="a"/>')
     assert (code, errors) == (0, '')
@@ -54,7 +54,7 @@ def test_an_optional_include_may_be_missing_and_others_may_not(expand):
     assert expand('<xacro:include filename="nothing.xacro"/>')[0] == 2
 
 
-def test_a_missing_file_or_key_is_named(expand):
+def test_error_names_the_missing_file_or_key(expand):
     code, _, errors = expand('<link name="${xacro.load_yaml(\'no.yaml\')}"/>')
     assert code == 2
     assert 'No such file' in errors

@@ -1,4 +1,4 @@
-"""Topics of plugins: those that cannot be are left out with a sentence, and the rest works."""
+"""Topics of plugins: invalid ones are left out with an error message, the others work."""
 
 from types import SimpleNamespace
 
@@ -47,7 +47,7 @@ def adapter(server):
     {'commandTopic': ''},
     {'odometryTopic': '~odom'},
 ])
-def test_a_plugin_whose_topics_have_no_ros_name_has_none(server, caplog, tags):
+def test_plugin_with_invalid_topic_names_has_no_topics(server, caplog, tags):
     model, adapters = _model(make(**tags)), Adapters(server)
     caplog.clear()
     adapters.model_spawned(model)
@@ -58,7 +58,7 @@ def test_a_plugin_whose_topics_have_no_ros_name_has_none(server, caplog, tags):
     assert not server.jobs
 
 
-def test_a_topic_that_the_node_has_with_another_type_is_left_out(adapter, caplog):
+def test_topic_with_a_conflicting_type_is_left_out(adapter, caplog):
     there = rospy.Publisher('/clock', Clock, queue_size=1)
     caplog.clear()
     assert adapter.advertise('/clock', Odometry, 1) is None
@@ -69,7 +69,7 @@ def test_a_topic_that_the_node_has_with_another_type_is_left_out(adapter, caplog
     there.unregister()
 
 
-def test_messages_of_another_type_never_come_as_commands(adapter, caplog):
+def test_topic_with_a_conflicting_type_is_not_subscribed(adapter, caplog):
     there = rospy.Subscriber('/commands', Clock, queue_size=1)
     caplog.clear()
     assert adapter.subscribe('/commands', Twist, pytest.fail, 1) is None
@@ -78,7 +78,7 @@ def test_messages_of_another_type_never_come_as_commands(adapter, caplog):
 
 
 class Sonar(PeriodicPlugin):
-    """Measures 0.5 m at 100 Hz, and nothing else unless it is asked for."""
+    """Measures 0.5 m at 100 Hz; its other output is optional."""
 
     def load(self):
         self.params.read('frameName', 'sonar')
@@ -104,7 +104,7 @@ def sonar(monkeypatch):
     return plugin, wire, wire.join(plugin), closed
 
 
-def test_a_topic_has_its_header_queue_and_latch_and_none_is_there_unasked_for(sonar):
+def test_topic_has_header_queue_and_latch_and_optional_ones_are_off(sonar):
     plugin, wire, _, _ = sonar
     assert list(wire.publishers) == ['/front/range']
     topic = wire.publishers['/front/range']
@@ -117,14 +117,14 @@ def test_a_topic_has_its_header_queue_and_latch_and_none_is_there_unasked_for(so
     assert message.header.stamp.to_nsec() == 11_000_000
 
 
-def test_an_output_has_a_reader_while_its_topic_has_one(sonar):
+def test_output_has_a_reader_while_its_topic_has_a_subscriber(sonar):
     plugin, wire, adapter, _ = sonar
     topic = wire.publishers['/front/range']
     for _ in range(2):
         assert not plugin.range.wanted
         topic.read()
         assert plugin.range.wanted
-        topic.remove_from_engine()
+        topic.unsubscribe()
     topic.read()
     adapter.disconnect()
     assert not plugin.range.wanted
@@ -132,7 +132,7 @@ def test_an_output_has_a_reader_while_its_topic_has_one(sonar):
     assert not plugin.range.wanted
 
 
-def test_what_was_opened_is_closed(sonar):
+def test_closing_unregisters_all_topics(sonar):
     _, wire, adapter, closed = sonar
     assert not closed
     adapter.close()
@@ -140,7 +140,7 @@ def test_what_was_opened_is_closed(sonar):
     assert wire.publishers['/front/range'].impl is None
 
 
-def test_who_goes_is_not_told_of_readers_of_a_topic_that_others_go_on_with(server):
+def test_closed_adapter_is_not_notified_of_subscribers_of_a_shared_topic(server):
     watched = [Adapter(server, make()) for _ in range(2)]
     publishers = [one.advertise('/shared', Clock, 1) for one in watched]
     listeners = publishers[0].impl.subscriber_listeners
@@ -150,11 +150,11 @@ def test_who_goes_is_not_told_of_readers_of_a_topic_that_others_go_on_with(serve
     watched[1].close()
 
 
-def test_transforms_of_the_robot_move_what_others_hold_by_its_root(monkeypatch):
+def test_published_transforms_move_external_static_frames(monkeypatch):
     wire = Wire(monkeypatch)
     plugin = make()
     adapter = wire.join(plugin)
-    monkeypatch.setattr(adapter_module, 'find_tf_prefix', lambda _: 'never asked for again')
+    monkeypatch.setattr(adapter_module, 'find_tf_prefix', lambda _: 'must not be looked up again')
     wire.publishers['/tf'].read()
     run(plugin, 11)
     held = TransformStamped(child_frame_id='base_footprint')

@@ -1,4 +1,4 @@
-"""What the plugins of state and force have on the wire: names, types, frames, covariances."""
+"""Topics of state and force plugins: names, types, frames, covariances."""
 
 import pytest
 from genpy import Duration, Time
@@ -30,7 +30,7 @@ def p3d(**tags):
     return make_drive(P3D, fake_model(), bodyName='base', topicName='gt', **tags)
 
 
-def test_p3d_has_its_frames_and_the_square_of_its_noise_on_both_diagonals(wire):
+def test_p3d_has_its_frames_and_the_variance_of_its_noise_in_both_covariances(wire):
     plugin = p3d(robotNamespace='a', gaussianNoise='0.01', frameName='left_link')
     wire.join(plugin)
     topic = wire.publishers['/a/gt']
@@ -46,7 +46,7 @@ def test_p3d_has_its_frames_and_the_square_of_its_noise_on_both_diagonals(wire):
         assert list(covariance) == pytest.approx(expected)
 
 
-def test_p3d_with_an_unknown_frame_has_a_topic_on_which_nothing_comes(wire):
+def test_p3d_with_an_unknown_frame_publishes_nothing(wire):
     plugin = p3d(frameName='odom')
     wire.join(plugin)
     wire.publishers['/gt'].read()
@@ -54,7 +54,7 @@ def test_p3d_with_an_unknown_frame_has_a_topic_on_which_nothing_comes(wire):
     assert not wire.publishers['/gt'].sent
 
 
-def test_p3d_tells_pose_and_twist_in_the_worlds_axes(wire):
+def test_p3d_publishes_pose_and_twist_in_world_axes(wire):
     plugin = p3d(frameName='/world')
     wire.join(plugin)
     wire.publishers['/gt'].read()
@@ -82,7 +82,7 @@ def test_joint_states_have_no_frame_and_no_efforts(wire, joints):
     assert list(message.effort) == []
 
 
-def test_a_trajectory_is_read_with_times_in_nanoseconds():
+def test_trajectory_is_converted_with_times_in_nanoseconds():
     message = JointTrajectory(Header(stamp=Time(3, 5), frame_id='a'), ['j'], [
         JointTrajectoryPoint(positions=[0.5], time_from_start=Duration(1, 7))])
     assert read_trajectory(message) == ('a', 3_000_000_005, ['j'], [([0.5], 1_000_000_007)])
@@ -91,7 +91,7 @@ def test_a_trajectory_is_read_with_times_in_nanoseconds():
         read_trajectory(message)
 
 
-def test_a_wrench_is_read_as_two_vectors_of_finite_numbers():
+def test_wrench_is_converted_to_two_finite_vectors():
     message = Wrench(Vector3(1.0, 2.0, 3.0), Vector3(4.0, 5.0, 6.0))
     assert read_wrench(message) == ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0))
     message.torque.y = NAN
@@ -111,6 +111,6 @@ STEP = Pose((1.0, 0.0, 0.0))
     ({'goal': ('odom', STEP)}, None),
     ({'goal': ('a', STEP), 'a': ('goal', STEP)}, None),
 ])
-def test_a_frame_is_found_by_what_connects_it(edges, x):
+def test_transform_is_looked_up_along_the_tf_tree(edges, x):
     pose = pose_between('world', 'goal', edges)
     assert (pose and pose.position[0]) == x

@@ -1,4 +1,4 @@
-"""Who looks at the window is told when the simulator goes, and when it is there again."""
+"""The window shows a notice when the simulator ends, and removes it when it is back."""
 
 import socket
 
@@ -10,7 +10,7 @@ from rosbots_description.ros_api.clients.server_watch import ServerWatch
 
 @pytest.fixture
 def place(monkeypatch):
-    """Where the master says the simulator is; None is nowhere."""
+    """Return the address of the simulator in the master's registry; None: not registered."""
     found = {'address': None}
     monkeypatch.setattr(server_watch, 'node_address', lambda *_: found['address'])
     return found
@@ -18,7 +18,7 @@ def place(monkeypatch):
 
 @pytest.fixture
 def simulator(place):
-    """Return a function that starts something that takes connections as the simulator does."""
+    """Return a function that starts a listener for connections, like the simulator."""
     sockets = []
 
     def start():
@@ -31,7 +31,7 @@ def simulator(place):
         opened.close()
 
 
-def test_before_there_is_a_simulator_nothing_is_told(place):
+def test_no_notice_before_the_first_simulator(place):
     told = []
     watch = ServerWatch(told.append)
     watch.poll()
@@ -39,18 +39,18 @@ def test_before_there_is_a_simulator_nothing_is_told(place):
     assert told == []
 
 
-def test_the_end_of_the_simulator_and_the_next_one_are_told_once(place, simulator):
+def test_end_and_return_of_the_simulator_are_notified_once(place, simulator):
     told = []
     watch = ServerWatch(told.append)
     first = simulator()
     watch.poll()
     watch.poll()
     assert told == []
-    first.close()  # killed: the master still names its address
+    first.close()  # killed: still registered with the master
     watch.poll()
     watch.poll()
     assert told == [False]
-    place['address'] = None  # the master has forgotten it
+    place['address'] = None  # no longer registered
     watch.poll()
     simulator()
     watch.poll()
@@ -58,7 +58,7 @@ def test_the_end_of_the_simulator_and_the_next_one_are_told_once(place, simulato
     assert told == [False, True]
 
 
-def test_a_simulator_that_is_replaced_has_not_gone(place, simulator):
+def test_replaced_simulator_gives_no_notice(place, simulator):
     told = []
     watch = ServerWatch(told.append)
     first = simulator()
@@ -69,7 +69,7 @@ def test_a_simulator_that_is_replaced_has_not_gone(place, simulator):
     assert told == []
 
 
-def test_without_a_master_there_is_no_simulator(monkeypatch):
+def test_no_simulator_without_a_master(monkeypatch):
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
     ServerWatch(pytest.fail).poll()
     assert server_watch.NOTICE == 'the simulator has gone'

@@ -23,7 +23,7 @@ def test_defaults_are_gazebos():
     assert not (flags.sdf or flags.unpause or flags.bond or flags.package_to_model)
 
 
-def test_the_articles_command_line_with_roslaunch_remappings():
+def test_command_line_of_the_article_with_remappings_of_roslaunch():
     flags = parse_arguments(['-urdf', '-param', 'robot_description', '-model', 'rosbots', '-x', '0',
                              '-y', '-1.5', '-z', '0.5', '__name:=mybot_spawn', '__log:=/x.log'])
     assert (flags.model, flags.y, flags.z) == ('rosbots', -1.5, 0.5)
@@ -45,7 +45,7 @@ def test_joints_may_be_repeated():
     assert flags.joints == [['a', '1'], ['b', '-2']]
 
 
-def test_a_model_of_the_database_is_looked_for_on_the_model_path(tmp_path):
+def test_model_of_the_database_is_searched_on_the_model_path(tmp_path):
     (tmp_path / 'model.sdf').write_text(
         '<sdf version="1.6"><model name="d"><static>true</static><link name="leaf"/></model></sdf>')
     flags = parse_arguments(['-sdf', '-database', 'door', '-model', 'my_door'])
@@ -65,14 +65,14 @@ def test_a_model_of_the_database_is_looked_for_on_the_model_path(tmp_path):
     ([*MINIMAL, '-gazebo'], '-gazebo'),
     ([*MINIMAL, 'robot.urdf'], 'unrecognized arguments: robot.urdf'),
 ])
-def test_wrong_usage_ends_with_2_and_names_the_flag(arguments, complaint, capsys):
+def test_wrong_usage_exits_with_2_and_names_the_flag(arguments, complaint, capsys):
     with pytest.raises(SystemExit) as end:
         parse_arguments(arguments)
     assert end.value.code == 2
     assert complaint in capsys.readouterr().err
 
 
-def test_help_ends_with_0(capsys):
+def test_help_exits_with_0(capsys):
     with pytest.raises(SystemExit) as end:
         parse_arguments(['-h'])
     assert end.value.code == 0
@@ -85,7 +85,7 @@ def test_xml_is_sent_as_ascii_without_declaration_and_comments():
     assert canonical_xml(text) == canonical_xml(text.encode())
 
 
-def test_package_to_model_touches_only_meshes():
+def test_package_to_model_changes_only_meshes():
     text = ('<robot><mesh filename="package://p/a.dae"/><mesh filename="file:///package://b"/>'
             '<texture filename="package://p/t.png"/></robot>')
     sent = canonical_xml(text, package_to_model=True)
@@ -99,12 +99,12 @@ def test_package_to_model_touches_only_meshes():
     (b'hello world', 'Invalid XML: syntax error: line 1, column 0'),
     (b'<?xml version="1.0" encoding="klingon"?><a b="\xe9"/>', 'Invalid XML: unknown encoding'),
 ])
-def test_what_is_no_xml_is_refused_with_the_place(text, complaint):
+def test_invalid_xml_is_rejected_with_its_location(text, complaint):
     with pytest.raises(SourceError, match=complaint):
         canonical_xml(text)
 
 
-def test_files_that_cannot_be_read_are_named(tmp_path):
+def test_error_names_an_unreadable_file(tmp_path):
     empty = tmp_path / 'empty.urdf'
     empty.touch()
     with pytest.raises(SourceError, match=f'^Error: file {empty} is empty$'):

@@ -25,7 +25,7 @@ def test_a_stamp_is_exact_to_the_nanosecond():
     assert (time.secs, time.nsecs) == (12, 345)
 
 
-def test_a_pose_goes_there_and_back():
+def test_pose_survives_conversion_to_a_message_and_back():
     message = PoseMessage()
     fill_pose(message, POSE)
     assert (message.orientation.x, message.orientation.w) == (HALF, HALF)
@@ -33,13 +33,13 @@ def test_a_pose_goes_there_and_back():
     assert read_pose(message).orientation == pytest.approx(POSE.orientation)
 
 
-def test_a_twist_is_written_component_by_component():
+def test_twist_is_converted_component_by_component():
     message = TwistMessage()
     fill_twist(message, TWIST)
     assert (message.linear.y, message.angular.z) == (0.2, 0.6)
 
 
-def test_a_quaternion_of_zeros_means_no_rotation():
+def test_zero_quaternion_is_the_identity():
     assert read_pose(PoseMessage()).orientation == (0.0, 0.0, 0.0, 1.0)
 
 
@@ -49,7 +49,7 @@ def test_a_quaternion_is_normalised():
 
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
-def test_a_pose_that_is_not_finite_is_refused(bad):
+def test_pose_that_is_not_finite_is_rejected(bad):
     with pytest.raises(ValueError, match='not finite'):
         read_pose(PoseMessage(Point(0.0, bad, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0)))
     with pytest.raises(ValueError, match='not finite'):

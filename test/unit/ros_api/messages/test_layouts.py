@@ -1,4 +1,4 @@
-"""Messages laid out by hand have the bytes that rospy gives them."""
+"""Messages serialized by hand have the same bytes as with rospy."""
 
 import io
 import math
@@ -107,7 +107,7 @@ def test_joint_states_have_positions_only(names):
     assert JointStatesLayout(reading).pack(SEQ, NOW_NS, reading) == on_the_wire(message)
 
 
-def test_joint_states_have_velocities_and_efforts_where_they_are_told():
+def test_joint_states_have_velocities_and_efforts_if_given():
     told = ('steering', 'left'), (0.5, 1.5), (0.1, 0.2), (0.0, 3.0)
     message = JointState(None, *told)
     message.header.stamp = STAMP
@@ -125,12 +125,12 @@ def test_odometry_has_the_covariance_of_its_twist():
     assert layout.pack(SEQ, NOW_NS, Odometry(POSE, TWIST)) == on_the_wire(message)
 
 
-def test_numbers_follow_those_that_rospy_gave_and_begin_again_when_there_is_no_room():
+def test_sequence_numbers_continue_those_of_rospy_and_wrap_around():
     publisher = SimpleNamespace(impl=SimpleNamespace(seq=7))
     assert [next_number(publisher), next_number(publisher)] == [8, 9]
     publisher.impl.seq = 2**32 - 1
     assert next_number(publisher) == 0
 
 
-def test_a_publisher_that_was_closed_counts_nothing():
+def test_closed_publisher_has_no_sequence_number():
     assert next_number(SimpleNamespace(impl=None)) == 0

@@ -1,4 +1,4 @@
-"""Where worlds are looked for by name, and what a user reads when one is not there or is wrong."""
+"""Search for worlds by name, and error messages for missing or invalid ones."""
 
 import logging
 import os
@@ -20,7 +20,7 @@ EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'
 
 @pytest.fixture(autouse=True)
 def places(monkeypatch, tmp_path):
-    """Let the search path consist of our package alone; return a function that adds packages."""
+    """Limit the search path to our package; return a function that adds packages."""
     monkeypatch.delenv('GAZEBO_RESOURCE_PATH', raising=False)
     monkeypatch.delenv('GAZEBO_MODEL_PATH', raising=False)
     monkeypatch.chdir(tmp_path)
@@ -67,7 +67,7 @@ def test_all_our_own_worlds_can_be_read():
         assert read_world(name).faults == ()
 
 
-def test_our_own_worlds_need_no_package(tmp_path, monkeypatch, places):
+def test_our_own_worlds_are_found_without_a_ros_package(tmp_path, monkeypatch, places):
     write(tmp_path / 'theirs' / 'package.xml',
           '<package><name>rosbots_description</name></package>')
     for path in ('', str(tmp_path / 'theirs')):
@@ -76,7 +76,7 @@ def test_our_own_worlds_need_no_package(tmp_path, monkeypatch, places):
         assert read_world('worlds/shapes.world').models
 
 
-def test_a_path_is_taken_as_given(tmp_path):
+def test_a_path_is_used_as_given(tmp_path):
     write(tmp_path / 'mine.world', EMPTY.format('mine'))
     assert read_world(str(tmp_path / 'mine.world')).name == 'mine'
     assert read_world('mine.world').name == 'mine'
@@ -88,7 +88,7 @@ def test_the_resource_path_comes_before_our_own_worlds(tmp_path, monkeypatch):
     assert read_world('worlds/empty.world').name == 'theirs'
 
 
-def test_packages_export_worlds_and_models(tmp_path, places):
+def test_exported_worlds_and_models_of_packages_are_found(tmp_path, places):
     folder = tmp_path / 'packages' / 'houses'
     exporting(folder, 'gazebo_media_path="${prefix}" gazebo_model_path="${prefix}/models"')
     write(folder / 'worlds' / 'house.world', '<sdf version="1.6"><world name="house"><include>'
@@ -104,7 +104,7 @@ def test_packages_export_worlds_and_models(tmp_path, places):
     ('a@b.example', 'you@todo'), ('<version>1.0.0</version>', ''), ('<name>houses', '<name>A B'),
     ('<license>BSD</license>', ''),
 ])
-def test_a_manifest_that_catkin_refuses_still_exports(tmp_path, places, flaw):
+def test_exports_of_a_manifest_that_catkin_rejects_are_found(tmp_path, places, flaw):
     folder = tmp_path / 'packages' / 'houses'
     exporting(folder, 'gazebo_media_path="${prefix}"')
     manifest = folder / 'package.xml'
@@ -114,7 +114,7 @@ def test_a_manifest_that_catkin_refuses_still_exports(tmp_path, places, flaw):
 
 
 @pytest.mark.parametrize('text', ['<package><name>houses', '<package/>', ''])
-def test_a_manifest_that_nobody_can_read_is_one_sentence(tmp_path, places, text):
+def test_unreadable_manifest_is_one_error_message(tmp_path, places, text):
     write(tmp_path / 'packages' / 'houses' / 'package.xml', text)
     places(tmp_path / 'packages')
     with pytest.raises(NotFoundError, match=r'a package\.xml on ROS_PACKAGE_PATH is broken'):
@@ -128,7 +128,7 @@ def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):
     assert packages.find_model('door') == str(tmp_path / '.gazebo' / 'models' / 'door')
 
 
-def test_an_unknown_world_is_one_sentence_with_what_there_is():
+def test_error_about_an_unknown_world_lists_the_known_ones():
     with pytest.raises(NotFoundError) as caught:
         read_world('worlds/mud.world')
     sentence = str(caught.value)
@@ -144,7 +144,7 @@ def test_an_unknown_world_is_one_sentence_with_what_there_is():
     ('<robot name="r"/>', '<robot>'),
     ('', 'empty'),
 ])
-def test_a_broken_world_is_one_sentence_with_its_file(tmp_path, text, said):
+def test_error_about_an_invalid_world_names_its_file(tmp_path, text, said):
     path = write(tmp_path / 'broken.world', text)
     with pytest.raises(ModelError) as caught:
         read_world(str(path))
@@ -153,7 +153,7 @@ def test_a_broken_world_is_one_sentence_with_its_file(tmp_path, text, said):
     assert '\n' not in str(caught.value)
 
 
-def test_what_is_said_while_reading_is_kept_for_the_node(tmp_path, caplog):
+def test_messages_while_reading_are_kept_for_the_node(tmp_path, caplog):
     path = write(tmp_path / 'w.world', '<sdf version="1.6"><world name="w"><include>'
                  '<uri>model://nowhere</uri></include></world></sdf>')
     with held_records() as records:

@@ -15,18 +15,18 @@ from rosbots_description.ros_api.server.loop import BATCH, MAX_LAG, Loop, LoopEr
 from rosbots_description.sim.core.errors import NotFoundError
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 
-JOIN = 30.0  # [s] for what takes milliseconds; slow machines are no failure
+JOIN = 30.0  # [s] timeout of what takes milliseconds
 
 
 class WallClock:
-    """A wall clock that moves only while the loop waits or something takes time.
+    """A fake wall clock that advances only while the loop waits or works.
 
-    It is the loop's queue as well, so that a command comes exactly when a test wants it to.
+    It is the loop's queue as well, so that tests choose the exact time of a command.
     """
 
     def __init__(self):
         self._now = 100.0
-        self._coming = []  # (time, command), in that order
+        self._coming = []  # (time, command), sorted
 
     def monotonic(self):
         return self._now
@@ -35,7 +35,7 @@ class WallClock:
         self._now += seconds
 
     def at(self, when, command):
-        """Let a command come `when` [s] from now on."""
+        """Add a command at `when` [s] from now."""
         bisect.insort(self._coming, (self._now + when, command), key=lambda item: item[0])
 
     def put(self, command):
@@ -55,10 +55,10 @@ class WallClock:
 
 
 class CountingWorld:
-    """A world that only counts its steps, and can be made slow.
+    """A world that counts its steps; they can be made slow.
 
-    `interest` is the number of steps after which somebody wants to be called; `sleep` is how a step
-    takes its time.
+    `interest` is the number of steps from one hook to the next; `sleep` is how a step
+    spends its time.
     """
 
     def __init__(self, rate, step_time=0.0, interest=1, sleep=time.sleep):
@@ -88,7 +88,7 @@ class CountingWorld:
 
 @pytest.fixture
 def start():
-    """Run loops on threads of their own, and stop them at the end."""
+    """Return a function that runs a loop on a new thread; stop all at the end."""
     running = []
 
     def begin(world, **limits):
@@ -107,7 +107,7 @@ def start():
 
 @pytest.fixture
 def clock(monkeypatch):
-    """Give loops a wall clock that does not depend on how busy the machine is."""
+    """Give loops a fake wall clock, independent of the load of the machine."""
     clock = WallClock()
     monkeypatch.setattr('rosbots_description.ros_api.server.loop.time', clock)
     monkeypatch.setattr('rosbots_description.ros_api.server.loop.SimpleQueue', lambda: clock)
@@ -115,18 +115,18 @@ def clock(monkeypatch):
 
 
 def run_for(clock, loop, seconds):
-    """Let a loop run for some time on the clock."""
+    """Run a loop for `seconds` of the fake clock."""
     clock.at(seconds, loop.stop)
     loop.run()
 
 
-def test_makes_as_many_steps_as_time_has_passed(clock):
+def test_step_count_follows_wall_time(clock):
     world = CountingWorld(rate=1000.0)
     run_for(clock, Loop(world), 0.3)
     assert world.steps == pytest.approx(300, abs=1)
 
 
-def test_steps_that_interest_nobody_are_made_in_one_go_but_a_command_finds_them_made(clock):
+def test_steps_without_hooks_are_batched_and_done_before_the_next_command(clock):
     world, found = CountingWorld(1000.0, 1e-6, interest=100, sleep=clock.sleep), []
     loop = Loop(world)
     clock.at(0.25, lambda: found.append(world.steps))
@@ -135,7 +135,7 @@ def test_steps_that_interest_nobody_are_made_in_one_go_but_a_command_finds_them_
     assert world.batches <= 300 / 5
 
 
-def test_what_surrounds_a_batch_is_there_while_the_world_runs():
+def test_batch_context_is_active_while_the_world_runs():
     world, inside = CountingWorld(rate=0.0), []
 
     @contextlib.contextmanager
@@ -148,7 +148,7 @@ def test_what_surrounds_a_batch_is_there_while_the_world_runs():
     assert inside == [0, 1]
 
 
-def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(clock):
+def test_unthrottled_loop_still_serves_commands(clock):
     world, served = CountingWorld(0.0, 1e-5, sleep=clock.sleep), []
     begin = clock.monotonic()
     clock.at(0.1, lambda: served.append(clock.monotonic() - begin))
@@ -158,7 +158,7 @@ def test_without_a_rate_runs_as_fast_as_it_can_and_still_serves(clock):
     assert world.longest_batch > 1
 
 
-def test_a_faster_rate_counts_at_once_also_after_a_very_slow_one(clock):
+def test_new_rate_takes_effect_at_once_even_after_a_very_slow_one(clock):
     world = CountingWorld(rate=0.01)  # after the first step the next one is due in 100 s
     clock.at(1.0, lambda: world.set_rate(1000.0))
     run_for(clock, Loop(world), 1.05)
@@ -166,14 +166,14 @@ def test_a_faster_rate_counts_at_once_also_after_a_very_slow_one(clock):
 
 
 @pytest.mark.parametrize(('lag', 'made_up_for'), [(0.5 * MAX_LAG, True), (2.0 * MAX_LAG, False)])
-def test_a_short_delay_is_made_up_for_and_a_long_one_is_not(clock, lag, made_up_for):
+def test_short_delay_is_caught_up_and_a_long_one_is_not(clock, lag, made_up_for):
     world = CountingWorld(rate=1000.0)
     clock.at(0.1, lambda: clock.sleep(lag))
     run_for(clock, Loop(world), 0.2 + lag)
     assert world.steps == pytest.approx(200 + 1000 * lag * made_up_for, abs=2)
 
 
-def test_makes_no_step_while_paused_but_serves(clock):
+def test_paused_loop_makes_no_step_but_serves_commands(clock):
     world, found = CountingWorld(rate=1000.0), []
     world.paused = True
     clock.at(0.1, lambda: found.append(world.steps))
@@ -184,7 +184,7 @@ def test_makes_no_step_while_paused_but_serves(clock):
 
 
 @pytest.mark.parametrize('pause', [0.75 * MAX_LAG, 2.0 * MAX_LAG])
-def test_a_pause_is_not_made_up_for(clock, pause):
+def test_pause_is_not_caught_up(clock, pause):
     world = CountingWorld(rate=1000.0)
     clock.at(0.05, lambda: setattr(world, 'paused', True))
     clock.at(0.05 + pause, lambda: setattr(world, 'paused', False))
@@ -192,13 +192,13 @@ def test_a_pause_is_not_made_up_for(clock, pause):
     assert world.steps == pytest.approx(100, abs=2)
 
 
-def test_ends_after_the_steps_asked_for():
+def test_ends_after_the_requested_steps():
     world = CountingWorld(rate=0.0)
     Loop(world).run(steps=1234)
     assert world.steps == 1234
 
 
-def test_a_command_raises_in_the_thread_that_gave_it(start):
+def test_exception_of_a_command_is_raised_in_the_calling_thread(start):
     loop = start(CountingWorld(rate=1000.0))
 
     def fail():
@@ -209,12 +209,12 @@ def test_a_command_raises_in_the_thread_that_gave_it(start):
     assert loop.call(lambda: 1) == 1
 
 
-def test_a_command_from_the_loop_itself_runs_at_once(start):
+def test_command_from_the_loops_thread_runs_at_once(start):
     loop = start(CountingWorld(rate=1000.0))
     assert loop.call(lambda: loop.call(lambda: 7)) == 7
 
 
-def test_a_command_that_waited_too_long_is_never_carried_out(start):
+def test_command_whose_caller_timed_out_is_not_executed(start):
     loop = start(CountingWorld(rate=1000.0))
     release, done = threading.Event(), []
     loop.post(lambda: release.wait(JOIN))
@@ -225,7 +225,7 @@ def test_a_command_that_waited_too_long_is_never_carried_out(start):
     assert done == []
 
 
-def test_a_fault_in_a_posted_command_is_logged_and_the_loop_lives(start, caplog):
+def test_exception_in_a_posted_command_is_logged_and_the_loop_continues(start, caplog):
     loop = start(CountingWorld(rate=1000.0))
     loop.post(lambda: 1 / 0)
     assert loop.call(lambda: 'alive') == 'alive'
@@ -233,7 +233,7 @@ def test_a_fault_in_a_posted_command_is_logged_and_the_loop_lives(start, caplog)
 
 
 @pytest.mark.parametrize('paused', [False, True])
-def test_periodic_tasks_run_also_while_paused(clock, paused):
+def test_periodic_tasks_also_run_while_paused(clock, paused):
     world, runs = CountingWorld(rate=1000.0), []
     world.paused = paused
     begin, loop = clock.monotonic(), Loop(world)
@@ -243,7 +243,7 @@ def test_periodic_tasks_run_also_while_paused(clock, paused):
 
 
 def _run_beside(clock, task, period):
-    """Let a loop run 1000 steps of 1 ms, and a task each period; return when it began."""
+    """Run 1000 steps of 1 ms and a task each period; return the start times of the task [s]."""
     world, begun = CountingWorld(0.0, 0.001, sleep=clock.sleep), []
     loop = Loop(world)
     loop.every(period, lambda: (begun.append(clock.monotonic()), task(len(begun))))
@@ -251,14 +251,14 @@ def _run_beside(clock, task, period):
     return begun
 
 
-def test_a_periodic_task_that_takes_time_keeps_its_pace(clock):
+def test_slow_periodic_task_keeps_its_period(clock):
     begun = _run_beside(clock, lambda _: clock.sleep(0.005), 0.01)
-    begun = begun[50:]  # by then the loop knows what a step costs
+    begun = begun[50:]  # the loop has measured the cost of a step
     assert len(begun) > 100
     assert begun[-1] - begun[0] == pytest.approx(0.01 * (len(begun) - 1), abs=0.005)
 
 
-def test_runs_that_a_periodic_task_missed_are_left_out(clock):
+def test_missed_runs_of_a_periodic_task_are_skipped(clock):
     def task(number):
         if number == 3:
             clock.sleep(0.5)
@@ -270,7 +270,7 @@ def test_runs_that_a_periodic_task_missed_are_left_out(clock):
 
 
 @pytest.mark.parametrize('paused', [False, True])
-def test_stops_at_once_and_then_refuses(paused):
+def test_stops_at_once_and_rejects_later_commands(paused):
     world = CountingWorld(rate=1.0)
     world.paused = paused
     loop = Loop(world)
@@ -283,7 +283,7 @@ def test_stops_at_once_and_then_refuses(paused):
         loop.call(lambda: None)
 
 
-def test_work_beside_the_steps_gives_its_result_or_its_fault(start):
+def test_work_beside_the_loop_returns_its_result_or_raises(start):
     world = CountingWorld(rate=1000.0)
     loop = start(world)
     threads = loop.run_in_thread(threading.get_ident), loop.call(threading.get_ident)
@@ -296,7 +296,7 @@ def _fail():
     raise NotFoundError('no such model')
 
 
-def test_nobody_waits_for_work_beside_when_the_loop_has_ended():
+def test_caller_does_not_wait_for_work_beside_an_ended_loop():
     loop, begun, end = Loop(CountingWorld(rate=1000.0)), threading.Event(), threading.Event()
     thread = threading.Thread(target=loop.run)
     thread.start()
@@ -314,7 +314,7 @@ def test_nobody_waits_for_work_beside_when_the_loop_has_ended():
     with pytest.raises(LoopError, match='the simulator is shutting down'):
         loop.run_in_thread(work)
     assert time.monotonic() - begin < JOIN
-    with pytest.raises(LoopError):  # nor does one that comes later
+    with pytest.raises(LoopError):  # later calls neither
         loop.run_in_thread(lambda: end.wait(JOIN))
     end.set()
     thread.join(JOIN)

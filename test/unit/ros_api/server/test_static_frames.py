@@ -1,4 +1,4 @@
-"""Frames that others hold still: which edge then moves the whole tree, and who is forgotten."""
+"""External static transforms: the edge that moves the whole tree; publishers that end."""
 
 import math
 from types import SimpleNamespace
@@ -33,13 +33,13 @@ def frames():
     return StaticFrames()
 
 
-def test_an_edge_stays_where_nobody_holds_its_child(frames):
+def test_edge_stays_without_external_transforms_of_its_child(frames):
     frames.add('/rsp', message(('base_link', 'laser', HELD)))
     edge = FrameTransform('odom', 'base_link', MOVED)
     assert from_root(edge, frames.parents) is edge
 
 
-def test_what_is_held_together_is_moved_by_its_root(frames):
+def test_external_static_tree_is_moved_by_its_root(frames):
     frames.add('/rsp', message(('base_footprint', 'base_link', HELD), ('base_link', 'laser', HELD)))
     for child, chain in (('base_link', HELD), ('laser', compose(HELD, HELD))):
         edge = from_root(FrameTransform('odom', child, MOVED), frames.parents)
@@ -55,13 +55,13 @@ def test_what_is_held_together_is_moved_by_its_root(frames):
     [('odom', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
     [('base_link', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
 ])
-def test_an_edge_stays_where_others_hold_its_child_in_its_parent_or_in_a_circle(frames, edges):
+def test_edge_stays_if_external_transforms_contain_it_or_form_a_loop(frames, edges):
     frames.add('/other', message(*edges))
     edge = FrameTransform('odom', 'base_link', MOVED)
     assert from_root(edge, frames.parents) is edge
 
 
-def test_who_has_gone_holds_nothing(frames):
+def test_transforms_of_an_ended_node_are_forgotten(frames):
     frames.add('/rsp', message(('base_footprint', 'base_link', HELD)))
     frames.add('/camera', message(('base_link', 'camera', HELD)))
     frames.retain({'/camera'})
@@ -69,7 +69,7 @@ def test_who_has_gone_holds_nothing(frames):
     assert set(frames.parents) == {'camera'}
 
 
-def test_what_is_no_pose_is_left_out(frames):
+def test_transform_that_is_not_finite_is_left_out(frames):
     frames.add('/rsp', message(('a', 'b', Pose((math.nan, 0.0, 0.0)))))
     assert not frames.parents
 
@@ -79,7 +79,7 @@ def test_what_is_no_pose_is_left_out(frames):
     ({'/rsp'}, '/rsp', False),
     ({'/plotter'}, '/camera', True),  # one reads joint states, another holds a camera
 ])
-def test_wheels_are_left_to_who_reads_joint_states_and_holds_frames(
+def test_wheel_transforms_are_left_to_a_state_publisher(
     monkeypatch, readers, holder, wanted
 ):
     wire = Wire(monkeypatch)
@@ -98,7 +98,7 @@ def test_wheels_are_left_to_who_reads_joint_states_and_holds_frames(
     assert bool(wheels) is wanted
 
 
-def test_a_state_publisher_that_has_come_counts_before_anybody_was_told(monkeypatch):
+def test_new_state_publisher_counts_before_its_notification(monkeypatch):
     wire = Wire(monkeypatch)
     plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
     frames = wire.join(plugin).server.static_frames
@@ -112,7 +112,7 @@ def test_a_state_publisher_that_has_come_counts_before_anybody_was_told(monkeypa
 
 
 @pytest.mark.parametrize('watching', [True, False])
-def test_a_node_counts_before_anything_has_come_from_it_if_anything_is_listened_to(
+def test_connected_node_counts_before_its_first_message(
         frames, watching, monkeypatch):
     monkeypatch.setattr('rospy.Subscriber', lambda *_: SimpleNamespace(impl=None))
     if watching:

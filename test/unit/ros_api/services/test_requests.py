@@ -1,4 +1,4 @@
-"""What services compute from requests: refusals, wrenches, limits, factor."""
+"""Checks and conversions of requests: rejections, wrenches, joint limits, real-time factor."""
 
 import math
 
@@ -35,40 +35,40 @@ QUARTER = from_rpy(0.0, 0.0, math.pi / 2)
 
 
 @pytest.mark.parametrize('number', [math.nan, math.inf, -math.inf])
-def test_a_number_that_is_not_finite_is_named(number):
+def test_error_names_a_number_that_is_not_finite(number):
     message = ModelState()
     message.twist.angular.y = number
     with pytest.raises(RequestError, match=f'twist.angular.y is {number}; it must be a finite'):
         require_finite(message)
 
 
-def test_a_number_in_a_list_is_named():
+def test_error_names_the_index_in_a_list():
     request = SetModelConfigurationRequest(joint_positions=[0.0, math.nan])
     with pytest.raises(RequestError, match=r'joint_positions\[1\] is nan'):
         require_finite(request)
 
 
-def test_texts_and_finite_numbers_pass():
+def test_texts_and_finite_numbers_are_accepted():
     require_finite(SpawnModelRequest(model_name='nan', model_xml='inf'))
 
 
-def test_without_a_frame_a_wrench_is_in_world_axes_and_the_point_is_its_arm():
+def test_wrench_without_a_frame_is_in_world_axes_with_the_point_as_lever_arm():
     body = Pose((5.0, 0.0, 0.0), QUARTER)
     force, torque = world_wrench((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 2.0, 0.0), None, body)
     assert force == (1.0, 0.0, 0.0)
     assert torque == pytest.approx((0.0, 0.0, -1.0))
 
 
-def test_in_a_frame_a_wrench_is_turned_and_acts_where_the_frame_stands():
+def test_wrench_in_a_frame_is_rotated_and_acts_at_its_origin():
     frame, body = Pose((1.0, 0.0, 0.0), QUARTER), Pose((0.0, 0.0, 0.0))
     force, torque = world_wrench(
         (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), frame, body)
     assert force == pytest.approx((0.0, 1.0, 0.0))
-    # Its own torque turned, -2 of the point's arm, +1 of the frame's.
+    # The rotated torque, -2 by the point's lever arm, +1 by the frame's.
     assert torque == pytest.approx((0.0, 1.0, -1.0))
 
 
-def test_limits_and_damping_of_a_joint_change_alone():
+def test_limits_and_damping_of_a_joint_change_independently():
     assert changed_spec(HINGE, {'upper': 2.0}).upper == 2.0
     assert changed_spec(HINGE, {'upper': 2.0}).lower == -1.0
     assert changed_spec(HINGE, {'damping': 0.5}).damping == 0.5
@@ -84,7 +84,7 @@ def test_limits_and_damping_of_a_joint_change_alone():
         ({'damping': -1.0}, 'damping'),
     ],
 )
-def test_limits_that_cross_and_damping_that_drives_are_refused(changes, words):
+def test_crossed_limits_and_negative_damping_are_rejected(changes, words):
     with pytest.raises(RequestError, match=words):
         changed_spec(HINGE, changes)
 
@@ -103,7 +103,7 @@ def _set_joint(**fields):
     return joint, ''
 
 
-def test_of_motor_and_limits_what_is_given_counts():
+def test_given_motor_and_limits_are_applied():
     assert _set_joint(vel=[3.0])[0].motor == (3.0, 2.0)
     assert _set_joint(fmax=[4.0, 5.0])[0].motor == (1.0, 4.0)
     joint, _ = _set_joint(vel=[3.0], hiStop=[1.5])
@@ -116,13 +116,13 @@ def test_of_motor_and_limits_what_is_given_counts():
     ({'vel': [3.0], 'damping': [-1.0]}, 'damping'),
     ({'fmax': [3.0], 'loStop': [2.0]}, 'loStop 2'),
 ])
-def test_a_refused_change_of_a_joint_changes_nothing(fields, words):
+def test_rejected_change_of_a_joint_changes_nothing(fields, words):
     joint, sentence = _set_joint(**fields)
     assert words in sentence
     assert (joint.motor, joint.spec) == ((1.0, 2.0), HINGE)
 
 
-def test_pace_is_simulated_per_wall_time_and_survives_a_reset():
+def test_real_time_factor_survives_a_reset():
     factor = RealTimeFactor(10.0, 100.0)
     assert factor.update(11.0, 102.0) == 0.5
     assert factor.update(11.0, 103.0) == 0.0
@@ -145,12 +145,12 @@ def test_pace_is_simulated_per_wall_time_and_survives_a_reset():
         ({'max_contacts': 4_000_000_000}, 'max_contacts is'),
     ],
 )
-def test_settings_that_no_world_can_have_are_refused(changes, words):
+def test_invalid_settings_are_rejected(changes, words):
     with pytest.raises(SimError, match=words):
         check_physics(PhysicsSettings(**changes))
 
 
-def test_unusual_settings_are_taken():
+def test_unusual_settings_are_accepted():
     check_physics(PhysicsSettings())
     check_physics(PhysicsSettings(step_size=10.0, max_update_rate=0.0, gravity=(0.0, 0.0, 0.0),
                                   sor_pgs_iters=0, max_contacts=0))

@@ -1,4 +1,4 @@
-"""The table of services and what faults become on the wire; every plugin has its adapter."""
+"""The table of services, and their responses to exceptions; every plugin has its adapter."""
 
 from types import SimpleNamespace
 
@@ -39,30 +39,30 @@ def _refuse(_server, _request):
     raise CallError('not like this')
 
 
-def test_a_service_answers_with_what_was_prepared():
+def test_service_answers_from_the_prepared_value():
     entry = Service('s', DeleteModel, lambda _server, value: DeleteModelResponse(True, value),
                     lambda _server, request: request.upper(), registers=False)
     assert respond(SERVER, entry, 'text').status_message == 'TEXT'
 
 
-def test_a_response_from_the_preparation_is_final():
+def test_response_of_the_preparation_is_final():
     entry = Service('s', DeleteModel, _fail, lambda *_: DONE, registers=False)
     assert respond(SERVER, entry, 'text') is DONE
 
 
 @pytest.mark.parametrize(('answer', 'prepare'), [(_fail, None), (lambda *_: DONE, _fail)])
-def test_a_fault_is_a_failure_with_its_sentence(answer, prepare):
+def test_exception_becomes_a_failure_with_its_message(answer, prepare):
     response = respond(SERVER, Service('s', DeleteModel, answer, prepare, registers=False), None)
     assert not response.success
     assert response.status_message == 'DeleteModel: Failure - link a is missing'
 
 
-def test_a_fault_of_a_service_without_success_is_an_error_of_the_call():
+def test_exception_in_a_service_without_success_field_fails_the_call():
     with pytest.raises(CallError, match=r'^reset_world: Failure - link a is missing'):
         respond(SERVER, Service('reset_world', Empty, _fail, None, registers=False), None)
 
 
-def test_a_service_off_the_loop_is_answered_on_the_callers_thread():
+def test_service_off_the_loop_runs_on_the_callers_thread():
     busy = SimpleNamespace(loop=SimpleNamespace(call=_fail))
     entry = Service('s', DeleteModel, lambda _server, value: DeleteModelResponse(True, value),
                     None, registers=False, on_loop=False)
@@ -70,19 +70,19 @@ def test_a_service_off_the_loop_is_answered_on_the_callers_thread():
 
 
 @pytest.mark.parametrize('told', [True, False])
-def test_a_master_that_was_not_told_in_time_is_complained_of(told, caplog):
+def test_slow_registration_with_the_master_is_a_warning(told, caplog):
     server = SimpleNamespace(loop=SERVER.loop, registrar=SimpleNamespace(wait=lambda _: told))
     entry = Service('s', DeleteModel, lambda *_: DONE, None, registers=True)
     assert respond(server, entry, None) is DONE
     assert ('has not registered all topics within 5 s' in caplog.text) != told
 
 
-def test_a_refused_call_is_an_error_of_the_call():
+def test_call_error_fails_the_call():
     with pytest.raises(CallError, match='not like this'):
         respond(SERVER, Service('s', DeleteModel, _refuse, None, registers=False), None)
 
 
-def test_a_service_is_answered_by_one_function():
+def test_each_service_has_one_function():
     name = next(iter(SERVICES))
     with pytest.raises(ValueError, match=name):
         service(name, Empty)(lambda *_: None)
@@ -93,7 +93,7 @@ def test_every_plugin_has_its_topics(filename):
     assert topics_of(plugin_class(filename) or sensor_plugin_class(filename))
 
 
-def test_relative_velocity_is_turned_but_has_no_share_of_the_frames_rotation():
+def test_relative_velocity_is_rotated_and_ignores_the_frames_rotation_rate():
     frame = Pose((1.0, 0.0, 0.0), from_rpy(0.0, 0.0, 1.5707963267948966))
     pose, twist = relative_state(
         (Pose((1.0, 2.0, 0.0)), Twist((0.0, 1.0, 0.0), (0.0, 0.0, 2.0))),
@@ -110,7 +110,7 @@ def test_relative_velocity_is_turned_but_has_no_share_of_the_frames_rotation():
     ({'ground_plane': 0.2, 'box': 0.034, 'wall': 0.001},
      "inside 'ground_plane' (0.2 m deep) and 'box' (0.034 m deep), which"),
 ])
-def test_a_spawn_into_something_is_one_line(caplog, depths, named):
+def test_spawn_with_overlap_is_one_line(caplog, depths, named):
     warn_overlap(SimpleNamespace(overlaps=lambda _: depths), SimpleNamespace(name='robot'))
     assert len(caplog.records) == (named is not None)
     if named:

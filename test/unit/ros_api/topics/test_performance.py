@@ -1,4 +1,4 @@
-"""Rates of sensors, as performance metrics tell them."""
+"""Rates of sensors in the performance metrics."""
 
 from types import SimpleNamespace
 
@@ -37,7 +37,7 @@ def test_rates_are_those_since_the_last_update():
     assert rates(sensor_rates.update('w', [camera], 3.9)) == [pytest.approx((30.0, 12.0, 12.0))]
 
 
-def test_a_slow_sensor_keeps_its_rate_between_readings_until_nobody_reads_it():
+def test_slow_sensor_keeps_its_rate_between_readings_while_subscribed():
     sensor, sensor_rates = FakeSensor(), SensorRates()
     for second in range(3):
         sensor.give(1, 1000 * second)
@@ -47,7 +47,7 @@ def test_a_slow_sensor_keeps_its_rate_between_readings_until_nobody_reads_it():
     assert rates(sensor_rates.update('w', [sensor], 3.2)) == [(0.0, 0.0, -1.0)]
 
 
-def test_the_time_without_readers_is_no_period():
+def test_time_without_readers_is_not_a_period():
     sensor, sensor_rates = FakeSensor(due=NEVER, count=5, last_ns=1_000_000_000), SensorRates()
     sensor_rates.update('w', [sensor], 0.0)
     sensor.due = 1
@@ -57,7 +57,7 @@ def test_the_time_without_readers_is_no_period():
     assert rates(sensor_rates.update('w', [sensor], 0.4)) == [pytest.approx((40.0, 20.0, -1.0))]
 
 
-def test_after_a_reset_of_time_no_rate_is_negative():
+def test_no_rate_is_negative_after_a_reset_of_time():
     sensor, sensor_rates = FakeSensor(count=7, last_ns=1_000_000_000), SensorRates()
     sensor_rates.update('w', [sensor], 0.0)
     sensor.give(2, 50)

@@ -1,4 +1,4 @@
-"""Connections that do not speak TCPROS are told apart and keep nobody else waiting."""
+"""Connections that do not speak TCPROS are recognised and delay no other connection."""
 
 import errno
 import os
@@ -27,7 +27,7 @@ def ends():
         end.close()
 
 
-def test_a_header_is_recognised_and_left_to_be_read(ends):
+def test_header_is_recognised_without_consuming_it(ends):
     ours, theirs = ends
     header = struct.pack('<II', 7, 3) + b'a=b'
     theirs.sendall(header)
@@ -36,7 +36,7 @@ def test_a_header_is_recognised_and_left_to_be_read(ends):
     assert ours.recv(100) == header
 
 
-def test_a_header_that_is_there_is_taken_without_a_pause(ends, monkeypatch):
+def test_available_header_is_accepted_without_a_pause(ends, monkeypatch):
     class Poll:
         def register(self, _connection, _events):
             pass
@@ -49,7 +49,7 @@ def test_a_header_that_is_there_is_taken_without_a_pause(ends, monkeypatch):
     assert speaks_tcpros(ends[0], TIMEOUT)
 
 
-def test_silence_is_not_waited_for(ends):
+def test_silent_connection_times_out(ends):
     assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
@@ -58,19 +58,19 @@ def test_http_is_not_tcpros(ends):
     assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
-def test_a_connection_that_ends_at_once_is_not_tcpros(ends):
+def test_connection_closed_at_once_is_not_tcpros(ends):
     ends[1].close()
     assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
-def test_a_header_that_does_not_come_is_not_waited_for(ends):
+def test_missing_header_times_out(ends):
     ends[1].sendall(struct.pack('<I', 7) + b'a=')
     begin = time.monotonic()
     assert not speaks_tcpros(ends[0], TIMEOUT)
     assert time.monotonic() - begin >= TIMEOUT
 
 
-def test_the_rest_of_a_header_is_not_waited_for_from_one_who_has_gone(ends):
+def test_partial_header_of_a_closed_connection_ends_the_wait(ends):
     ends[1].sendall(struct.pack('<I', 7) + b'a=')
     ends[1].close()
     begin = time.monotonic()
@@ -78,7 +78,7 @@ def test_the_rest_of_a_header_is_not_waited_for_from_one_who_has_gone(ends):
     assert time.monotonic() - begin < 10.0
 
 
-def test_a_header_in_pieces_is_recognised_when_it_is_whole(ends):
+def test_header_in_pieces_is_recognised_when_complete(ends):
     ours, theirs = ends
     header = struct.pack('<I', 7) + b'abc=def'
     begin = time.monotonic()
@@ -95,14 +95,14 @@ def test_a_header_in_pieces_is_recognised_when_it_is_whole(ends):
 
 @pytest.mark.parametrize(
     ('length', 'taken'), [(MAX_HEADER_SIZE, True), (MAX_HEADER_SIZE + 1, False)])
-def test_a_header_has_a_greatest_length(ends, length, taken):
+def test_length_of_a_header_is_limited(ends, length, taken):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', length) + b'x' * length)
     assert speaks_tcpros(ours, 100 * TIMEOUT) == taken
 
 
 class Listener:
-    """A server of rospy's whose listening socket gives what it is told to, then shuts down."""
+    """A rospy server whose listening socket returns the given outcomes, then shuts down."""
 
     def __init__(self, *outcomes):
         self.server_sock, self.is_shutdown = self, False
@@ -130,7 +130,7 @@ def received(listener, count):
     return listener.received
 
 
-def test_a_silent_connection_keeps_nobody_waiting(ends):
+def test_silent_connection_delays_no_other(ends):
     silent, _ = ends
     ours, theirs = socket.socketpair()
     with ours, theirs:
@@ -140,7 +140,7 @@ def test_a_silent_connection_keeps_nobody_waiting(ends):
         assert received(listener, 1) == [ours]
 
 
-def test_after_a_shortage_of_files_connections_are_accepted_again(ends, caplog):
+def test_connections_are_accepted_again_after_running_out_of_files(ends, caplog):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', 3) + b'a=b')
     shortage = OSError(errno.EMFILE, os.strerror(errno.EMFILE))

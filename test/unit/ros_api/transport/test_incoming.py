@@ -1,4 +1,4 @@
-"""What arrives on a connection and is too long, broken, or from someone who has gone."""
+"""Incoming data that is too long, malformed, or from a client that has gone."""
 
 import socket
 import struct
@@ -50,7 +50,7 @@ def request(name):
     return struct.pack('<I', content.tell()) + content.getvalue()
 
 
-def test_a_message_of_bearable_length_is_received(ends):
+def test_message_within_the_limit_is_received(ends):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', MAX_MESSAGE_SIZE) + b'beginning')
     buffer = BytesIO()
@@ -58,7 +58,7 @@ def test_a_message_of_bearable_length_is_received(ends):
     assert buffer.getvalue().endswith(b'beginning')
 
 
-def test_an_endless_message_ends_the_connection(ends, caplog):
+def test_message_beyond_the_limit_ends_the_connection(ends, caplog):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', MAX_MESSAGE_SIZE + 1))
     with pytest.raises(TransportTerminated):
@@ -66,7 +66,7 @@ def test_an_endless_message_ends_the_connection(ends, caplog):
     assert f'a message of {MAX_MESSAGE_SIZE + 1} bytes is rejected' in caplog.text
 
 
-def test_a_length_that_comes_in_pieces_is_waited_for(ends):
+def test_length_in_pieces_is_read_completely(ends):
     ours, theirs = ends
     buffer = BytesIO()
     for piece in (b'\x02\0', b'\0\0ab'):
@@ -75,14 +75,14 @@ def test_a_length_that_comes_in_pieces_is_waited_for(ends):
     assert buffer.getvalue() == b'\x02\0\0\0ab'
 
 
-def test_a_request_is_answered_as_ever(ends, service):
+def test_valid_request_is_answered(ends, service):
     ours, theirs = ends
     theirs.sendall(request('robot'))
     serve_once(service, ours)
     assert b'robot' in theirs.recv(BUFFER)
 
 
-def test_a_request_that_cannot_be_read_is_answered_with_a_sentence(ends, service, caplog):
+def test_malformed_request_is_answered_with_an_error_message(ends, service, caplog):
     ours, theirs = ends
     theirs.sendall(struct.pack('<II', 4, 1000))  # a name of 1000 bytes in a request of four
     serve_once(service, ours)
@@ -91,10 +91,10 @@ def test_a_request_that_cannot_be_read_is_answered_with_a_sentence(ends, service
     assert not succeeded
     assert told.startswith('the request does not fit gazebo_msgs/GetModelState')
     assert told in caplog.text
-    assert theirs.recv(1) == b''  # and nobody waits any longer
+    assert theirs.recv(1) == b''  # the connection is closed
 
 
-def test_a_client_that_has_gone_is_no_fault(ends, service, caplog):
+def test_disconnected_client_is_no_error(ends, service, caplog):
     ours, theirs = ends
     theirs.sendall(request('robot'))
     theirs.close()
@@ -103,7 +103,7 @@ def test_a_client_that_has_gone_is_no_fault(ends, service, caplog):
     assert 'Error processing' not in caplog.text
 
 
-def test_whoever_is_about_to_be_answered_is_waited_for(ends, monkeypatch):
+def test_shutdown_waits_for_requests_in_progress(ends, monkeypatch):
     begun, may_end = threading.Event(), threading.Event()
 
     def handler(request):

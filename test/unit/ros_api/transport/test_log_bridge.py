@@ -1,4 +1,4 @@
-"""What is logged reaches the handlers as a line that nobody's names can break."""
+"""Each log record reaches the handlers as one line, whatever names it contains."""
 
 import logging
 
@@ -16,7 +16,7 @@ def logger():
     made.removeHandler(handler)
 
 
-def test_a_name_cannot_begin_a_line_of_its_own(logger, caplog):
+def test_name_cannot_start_a_new_line(logger, caplog):
     logger.error('model [%s] does not exist', 'robot]\n[ERROR] [0.0]: all is lost')
     assert caplog.messages[0] == 'model [robot]\\n[ERROR] [0.0]: all is lost] does not exist'
 
@@ -26,7 +26,7 @@ def test_a_long_name_is_cut(logger, caplog):
     assert len(caplog.messages[0]) < 2000
 
 
-def test_what_was_said_is_not_said_again_until_it_may_be_forgotten(logger, caplog):
+def test_repeated_message_is_suppressed_until_it_is_forgotten(logger, caplog):
     said = DuplicateFilter()
     logger.addFilter(said)
     try:

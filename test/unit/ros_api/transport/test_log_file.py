@@ -1,4 +1,4 @@
-"""The log file of a node, where there is room for one and where there is none."""
+"""The log file of a node, on a usable disk and on a full one."""
 
 import logging
 import os
@@ -37,12 +37,12 @@ def log_to():
     (['gui:=false', '__name:=other'], '/logs/other.log'),
     (['__log:=/a/b.log', '__name:=other'], '/a/b.log'),
 ])
-def test_the_file_is_the_one_that_rospy_takes(monkeypatch, arguments, path):
+def test_path_is_that_of_rospy(monkeypatch, arguments, path):
     monkeypatch.setenv('ROS_LOG_DIR', '/logs')
     assert log_file('/gazebo', arguments) == Path(path)
 
 
-def test_a_file_that_can_be_written_has_a_folder_afterwards_and_is_not_touched(tmp_path):
+def test_folder_of_a_writable_file_is_made_and_the_file_is_not(tmp_path):
     assert write_error(tmp_path / 'new' / 'a.log') is None
     assert list(tmp_path.iterdir()) == [tmp_path / 'new']
     assert list((tmp_path / 'new').iterdir()) == []
@@ -52,19 +52,19 @@ def test_a_file_that_can_be_written_has_a_folder_afterwards_and_is_not_touched(t
     ('file/a.log', 'Not a directory'), ('file/log/a.log', 'Not a directory'),
     ('folder', 'Is a directory'),
 ])
-def test_what_stands_in_the_way_is_named(tmp_path, path, reason):
+def test_error_names_the_obstacle(tmp_path, path, reason):
     (tmp_path / 'file').write_text('')
     (tmp_path / 'folder').mkdir()
     assert write_error(tmp_path / path) == reason
 
 
-def test_nowhere_is_a_file_in_the_very_folder_of_logs(monkeypatch):
+def test_file_in_the_place_of_the_log_folder_is_an_error(monkeypatch):
     monkeypatch.setenv('ROS_LOG_DIR', '/logs')
     path = log_file('gazebo', disable_log_file())
     assert (str(path), os.environ['ROS_LOG_DIR']) == ('/dev/null', '/dev')
 
 
-def test_a_full_disk_is_told_of_once(log_to, capsys):
+def test_full_disk_is_reported_once(log_to, capsys):
     log = log_to('/dev/full')
     log('first')
     log('second')
@@ -72,7 +72,7 @@ def test_a_full_disk_is_told_of_once(log_to, capsys):
     assert 'log file /dev/full cannot be written (No space left on device)' in line
 
 
-def test_a_fault_of_ours_is_shown_as_python_shows_it(log_to, tmp_path, capsys):
+def test_logging_error_is_shown_with_its_traceback(log_to, tmp_path, capsys):
     log_to(tmp_path / 'a.log')('%d', 'no number')
     assert 'Logging error' in capsys.readouterr().err
 

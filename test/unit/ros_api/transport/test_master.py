@@ -1,4 +1,4 @@
-"""Calls to a ROS master that is there, away, or comes back."""
+"""Calls to a ROS master that is running, missing, or restarted."""
 
 import threading
 from xmlrpc.server import SimpleXMLRPCServer
@@ -18,7 +18,7 @@ from rosbots_description.ros_api.transport.master import (
 
 
 class FakeMaster(SimpleXMLRPCServer):
-    """What a ROS master answers to the few calls of these tests; counts what arrives."""
+    """Answers the calls of these tests like a ROS master, and counts them."""
 
     def __init__(self):
         super().__init__(('localhost', 0), logRequests=False)
@@ -56,7 +56,7 @@ def _no_pause(monkeypatch):
     monkeypatch.setattr(master.time, 'sleep', lambda _: None)
 
 
-def test_parameters_go_over_the_wire_together(there):
+def test_parameters_are_set_in_one_call(there):
     write_parameters({'gravity_z': -9.8, 'sor_pgs_iters': 50, 'auto_disable_bodies': False})
     assert there.parameters == {
         '/unnamed/gravity_z': -9.8, '/unnamed/sor_pgs_iters': 50,
@@ -65,7 +65,7 @@ def test_parameters_go_over_the_wire_together(there):
 
 
 @pytest.mark.parametrize('address', ['', 'foo', 'http://', 'http://localhost:99999'])
-def test_where_no_master_can_be_nobody_waits_for_one(monkeypatch, capsys, address):
+def test_invalid_address_of_the_master_is_an_error_at_once(monkeypatch, capsys, address):
     monkeypatch.setenv('ROS_MASTER_URI', address)
     sentence = f"ROS_MASTER_URI is '{address}'; it must be the address of a ROS master"
     with pytest.raises(AddressError, match=sentence):
@@ -75,12 +75,12 @@ def test_where_no_master_can_be_nobody_waits_for_one(monkeypatch, capsys, addres
 
 
 @pytest.mark.parametrize('address', ['http://localhost:11311', 'http://robot.local:11311/'])
-def test_where_a_master_may_come_it_is_waited_for(monkeypatch, address):
+def test_missing_master_at_a_valid_address_is_awaited(monkeypatch, address):
     monkeypatch.setenv('ROS_MASTER_URI', address)
     require_address()
 
 
-def test_a_question_is_asked_until_there_is_a_master():
+def test_call_is_repeated_until_a_master_runs():
     faults = [ConnectionRefusedError(), TimeoutError()]
 
     def ask():
@@ -92,7 +92,7 @@ def test_a_question_is_asked_until_there_is_a_master():
     assert not faults
 
 
-def test_what_a_master_answers_is_final():
+def test_error_from_the_master_is_not_retried():
     def ask():
         raise rosgraph.MasterError('no such parameter')
 
@@ -100,13 +100,13 @@ def test_what_a_master_answers_is_final():
         retry_call(ask)
 
 
-def test_nobody_waits_for_a_master_while_the_node_shuts_down(monkeypatch):
+def test_shutdown_ends_the_wait_for_a_master(monkeypatch):
     monkeypatch.setattr(rospy, 'is_shutdown', lambda: True)
     with pytest.raises(rospy.ROSInterruptException):
         retry_call(lambda: pytest.fail('asked'))
 
 
-def test_a_master_that_was_told_of_one_model_only_does_not_know_us_yet(there):
+def test_partly_registered_node_is_not_known_to_the_master(there):
     who = rosgraph.Master('/unnamed')
     there.services = {'/unnamed/some_service': 'rosrpc://localhost:1'}
     assert registrations._is_known(who) is False

@@ -1,4 +1,4 @@
-"""Whose name a simulator would take: a living node's is found, a dead one's entry is not."""
+"""Node names in use: a running node is detected, a stale registration is not."""
 
 import http.server
 import os
@@ -26,7 +26,7 @@ NAME = '/gazebo'
 
 @contextmanager
 def serving(server):
-    """Serve on a thread of its own; give the server's URI."""
+    """Serve on a new thread; yield the server's URI."""
     thread = threading.Thread(target=server.serve_forever, args=(0.01,))
     thread.start()
     try:
@@ -39,7 +39,7 @@ def serving(server):
 
 @pytest.fixture
 def registered(monkeypatch):
-    """Return the table of nodes that a ROS master knows: name -> URI."""
+    """Return the nodes registered with a fake ROS master: name -> URI."""
     nodes = {}
     master = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
     master.register_function(
@@ -60,7 +60,7 @@ def living(registered):
         yield uri
 
 
-def test_a_living_node_is_found_with_its_process_and_host(living):
+def test_running_node_is_reported_with_its_process_and_host(living):
     assert running_node(NAME) == RunningNode(living, os.getpid())
     with pytest.raises(NameTakenError) as caught:
         require_free(NAME)
@@ -70,18 +70,18 @@ def test_a_living_node_is_found_with_its_process_and_host(living):
 
 
 @pytest.mark.usefixtures('registered')
-def test_a_name_that_nobody_has_is_free():
+def test_unregistered_name_is_free():
     require_free(NAME)
 
 
-def test_the_entry_of_a_node_that_was_killed_stops_nobody(registered):
+def test_stale_registration_of_a_killed_node_is_no_conflict(registered):
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
         registered[NAME] = f'http://localhost:{probe.getsockname()[1]}/'
     require_free(NAME)
 
 
-def test_a_port_that_another_program_has_by_now_stops_nobody(registered):
+def test_port_reused_by_another_program_is_no_conflict(registered):
     server = http.server.HTTPServer(
         ('localhost', 0), type('Silent', (http.server.BaseHTTPRequestHandler,),
                                {'log_message': lambda *_: None}))
@@ -90,7 +90,7 @@ def test_a_port_that_another_program_has_by_now_stops_nobody(registered):
         require_free(NAME)
 
 
-def test_a_node_that_is_stopped_still_has_its_name(registered, monkeypatch):
+def test_stopped_process_still_has_its_name(registered, monkeypatch):
     monkeypatch.setattr(name_conflict, 'TIMEOUT', 0.1)
     with socket.create_server(('localhost', 0)) as stopped:
         registered[NAME] = f'http://localhost:{stopped.getsockname()[1]}/'
@@ -98,7 +98,7 @@ def test_a_node_that_is_stopped_still_has_its_name(registered, monkeypatch):
             require_free(NAME)
 
 
-def test_who_has_taken_the_name_is_the_node_elsewhere(living):
+def test_node_that_took_over_the_name_is_reported(living):
     assert replacing_node(NAME, 'http://localhost:1/') == RunningNode(living, os.getpid())
     assert replacing_node(NAME, living) is None
 
@@ -109,7 +109,7 @@ def test_who_has_taken_the_name_is_the_node_elsewhere(living):
     ([], '/lab', '/lab/gazebo'),
     (['__ns:=/other', '__name:=/two'], '/lab', '/other/two'),
 ])
-def test_the_name_is_the_one_that_rospy_will_take(monkeypatch, arguments, namespace, name):
+def test_name_is_that_of_rospy(monkeypatch, arguments, namespace, name):
     monkeypatch.setenv('ROS_NAMESPACE', namespace)
     assert node_name('gazebo', arguments) == name
 

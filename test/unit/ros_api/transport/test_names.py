@@ -18,7 +18,7 @@ from rosbots_description.sim.core.errors import PluginError
     ('~r1', 'odom', '/unnamed/r1/odom'),
     ('my-robot', 'v1.0', '/my-robot/v1.0'),
 ])
-def test_a_topic_stands_in_its_namespace_unless_it_is_global(namespace, topic, expected):
+def test_topic_is_resolved_in_its_namespace_unless_global(namespace, topic, expected):
     assert topic_name(namespace, topic) == expected
 
 
@@ -27,7 +27,7 @@ def test_a_topic_stands_in_its_namespace_unless_it_is_global(namespace, topic, e
     ('/', ''), ('/', '/'), ('/', '//'), ('/', '~private'), ('/', 'a:b'),
     ('/', 'odom\n'),
 ])
-def test_what_no_ros_node_could_read_is_no_topic(namespace, topic):
+def test_invalid_ros_name_is_rejected(namespace, topic):
     with pytest.raises(PluginError, match='is not a valid topic name'):
         topic_name(namespace, topic)
 
@@ -39,12 +39,12 @@ def test_what_no_ros_node_could_read_is_no_topic(namespace, topic):
     ('r1', '/world', 'world'),
     ('', '/world', 'world'),
 ])
-def test_a_frame_takes_the_prefix_unless_it_begins_with_a_slash(prefix, frame, expected):
+def test_frame_gets_the_prefix_unless_it_begins_with_a_slash(prefix, frame, expected):
     assert frame_name(prefix, frame) == expected
 
 
 @pytest.mark.parametrize(('topic', 'expected'), [
     ('/r1/odom', True), ('/my-robot/odom', False), ('/v1.0/odom', False),
 ])
-def test_not_every_node_reads_names_that_are_only_nearly_names(topic, expected):
+def test_name_is_valid_for_all_nodes_or_only_for_some(topic, expected):
     assert is_for_all(topic) is expected

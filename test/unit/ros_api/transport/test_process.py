@@ -1,4 +1,4 @@
-"""Nodes begin at once: rospy's own waits are cut short."""
+"""Nodes start without the fixed sleeps of rospy."""
 
 from types import SimpleNamespace
 
@@ -7,7 +7,7 @@ import rospy.impl.init
 from rosbots_description.ros_api.transport import process
 
 
-def test_a_node_that_the_master_has_taken_in_goes_on_at_once(monkeypatch):
+def test_node_start_does_not_sleep_once_registered(monkeypatch):
     init, slept = rospy.impl.init, []
     answers = iter((False, False, True))
     node = SimpleNamespace(uri='http://here', start=lambda: None)
@@ -16,7 +16,7 @@ def test_a_node_that_the_master_has_taken_in_goes_on_at_once(monkeypatch):
     monkeypatch.setattr(
         init, 'ROSHandler', lambda *_: SimpleNamespace(_is_registered=lambda: next(answers)))
     monkeypatch.setattr(init.rosgraph.xmlrpc, 'XmlRpcNode', lambda *_, **__: node)
-    monkeypatch.setattr(init, 'time', init.time)  # is put back after the test
+    monkeypatch.setattr(init, 'time', init.time)  # restored after the test
     process._begin_at_once()
     monkeypatch.setattr(process.time, 'sleep', slept.append)
     assert init.start_node({}, '/node', 'http://master') is node

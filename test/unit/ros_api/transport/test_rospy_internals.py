@@ -1,4 +1,4 @@
-"""What transport relies on in rospy, though rospy promises none of it."""
+"""Internals of rospy that transport relies on."""
 
 import inspect
 from unittest.mock import Mock
@@ -13,7 +13,7 @@ from rospy.impl import registration, rosout, tcpros_base, tcpros_service
 from rospy.impl.tcpros_pubsub import TCPROSSub
 from rospy.rostime import _set_rostime
 
-CALLED = {  # by us or, where we put a function in its place, by rospy
+CALLED = {  # by us, or by rospy where we replace a function
     rospy.topics.QueuedConnection: 'connection queue_size',
     rospy.topics.QueuedConnection.write_data: 'self data',
     tcpros_base.TCPServer.run: 'self',
@@ -60,12 +60,12 @@ HELD = {  # what makes an object, and the attributes that we read or set
 
 
 @pytest.mark.parametrize('function', CALLED, ids=lambda function: function.__qualname__)
-def test_what_we_call_or_replace_takes_what_it_took(function):
+def test_signature_of_a_called_or_replaced_function_is_unchanged(function):
     assert list(inspect.signature(function).parameters) == CALLED[function].split()
 
 
 @pytest.mark.parametrize(('make', 'names'), HELD.items(), ids=HELD.values())
-def test_what_we_look_into_has_the_attributes_that_it_had(make, names):
+def test_attributes_that_we_use_exist(make, names):
     thing = make()
     assert [name for name in names.split() if not hasattr(thing, name)] == []
 
@@ -75,7 +75,7 @@ def test_what_we_look_into_has_the_attributes_that_it_had(make, names):
     (tcpros_base.TCPROSTransport.receive_once, 'recv_buff'),
     (rospy.impl.init.start_node, 'time'),
 ])
-def test_rospy_looks_up_at_each_call_what_we_replace_in_its_modules(function, name):
+def test_rospy_looks_up_replaced_functions_at_each_call(function, name):
     assert name in function.__globals__
     assert name in function.__code__.co_names
 
@@ -85,7 +85,7 @@ def test_rospy_looks_up_at_each_call_what_we_replace_in_its_modules(function, na
     (tcpros_base.TCPROSTransport.receive_once, '_connection_header'),
     (registration.RegManager.__init__, 'cond'),
 ])
-def test_rospy_has_these_names_where_we_rely_on_them(function, name):
+def test_names_that_we_use_exist_in_rospy(function, name):
     assert name in function.__code__.co_names
 
 

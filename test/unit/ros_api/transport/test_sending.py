@@ -1,4 +1,4 @@
-"""Messages leave on the publisher's own thread; a slow reader loses messages, never their bytes."""
+"""Messages are sent on the publisher's thread; a slow subscriber loses whole messages only."""
 
 import socket
 import time
@@ -9,13 +9,13 @@ from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
 
 from rosbots_description.ros_api.transport.sending import BatchedConnection, BatchedPublishing
 
-DEADLINE = 5.0  # [s] for what takes milliseconds; slow machines are no failure
-SIZE = 1000  # of a message [bytes]; each is one number again and again
+DEADLINE = 5.0  # [s] timeout of what takes milliseconds
+SIZE = 1000  # of a message [bytes]; it repeats one byte
 
 
 @pytest.fixture
 def wire():
-    """Give the outlets of a process and the two ends of a connection with little room."""
+    """Yield the outlets of a process and both ends of a connection with small buffers."""
     ours, theirs = socket.socketpair()
     ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 10 * SIZE)
     theirs.settimeout(DEADLINE)
@@ -38,19 +38,19 @@ def read(theirs, until):
             data = b''
             while len(data) < SIZE:
                 data += stream.read(SIZE - len(data))
-            assert data == message(data[0]), 'messages are torn'
+            assert data == message(data[0]), 'a message is incomplete'
             numbers.append(data[0])
     return numbers
 
 
-def test_a_message_is_there_when_the_publisher_goes_on(wire):
+def test_message_is_sent_before_publish_returns(wire):
     outlets, transport, theirs = wire
     BatchedConnection(outlets, transport, 1).write_data(message(7))
     theirs.setblocking(False)
     assert theirs.recv(2 * SIZE) == message(7)
 
 
-def test_what_is_published_during_a_batch_comes_at_its_end_in_order(wire):
+def test_messages_of_a_batch_are_sent_at_its_end_in_order(wire):
     outlets, transport, theirs = wire
     outlet = BatchedConnection(outlets, transport, 1)
     with outlets.batched():
@@ -64,7 +64,7 @@ def test_what_is_published_during_a_batch_comes_at_its_end_in_order(wire):
 
 @pytest.mark.parametrize('batch', [1, 5])
 @pytest.mark.parametrize('queue', [1, 4, 0])
-def test_a_reader_that_stops_keeps_nobody_waiting_and_loses_only_whole_messages(wire, queue, batch):
+def test_stopped_subscriber_blocks_nobody_and_loses_only_whole_messages(wire, queue, batch):
     outlets, transport, theirs = wire
     outlet = BatchedConnection(outlets, transport, queue)
     begin = time.monotonic()
@@ -80,7 +80,7 @@ def test_a_reader_that_stops_keeps_nobody_waiting_and_loses_only_whole_messages(
 
 
 def _wait_until_drained(outlet, theirs, number):
-    """Check that messages come as before: at once."""
+    """Assert that messages arrive at once again."""
     end = time.monotonic() + DEADLINE
     while outlet._draining:
         assert time.monotonic() < end
@@ -90,7 +90,7 @@ def _wait_until_drained(outlet, theirs, number):
 
 
 @pytest.mark.parametrize('queue', [1, 0])
-def test_a_reader_that_has_gone_is_reported_to_the_publisher(wire, queue):
+def test_disconnected_subscriber_is_reported_to_the_publisher(wire, queue):
     outlets, transport, theirs = wire
     outlet, closed = BatchedConnection(outlets, transport, queue), []
     outlet.set_cleanup_callback(closed.append)

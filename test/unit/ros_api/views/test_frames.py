@@ -1,4 +1,4 @@
-"""The frames of the window: each model, only when it has moved."""
+"""TF frames for the window: one per model, sent when it has moved."""
 
 from support import urdf_spec
 from support.fake_engine import FakeEngine
@@ -11,7 +11,7 @@ BOX = urdf_spec('<link name="box"><inertial><mass value="1"/>'
                 '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>')
 
 
-def test_each_model_is_shown_once_and_again_when_it_has_moved():
+def test_frame_of_a_model_is_sent_once_and_after_motion():
     world = World(make_engine=FakeEngine)
     world.spawn(BOX, 'crate', Pose())
     robot = world.spawn(BOX, 'robot', Pose())

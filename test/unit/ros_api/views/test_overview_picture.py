@@ -1,4 +1,4 @@
-"""From where pictures are taken: what parameters may say, and that no picture waits for them."""
+"""Viewpoint of the overview image: its parameters, which never delay an image."""
 
 import math
 
@@ -11,7 +11,7 @@ from rosbots_description.sim.rendering.camera import EYE, TARGET
 
 
 class FakeRegistrar:
-    """Keeps what is posted."""
+    """Records posted jobs."""
 
     def __init__(self):
         self.jobs = []
@@ -22,7 +22,7 @@ class FakeRegistrar:
 
 @pytest.fixture
 def parameters(monkeypatch):
-    """Stand in for the ROS master's parameters."""
+    """Replace the ROS master's parameters."""
     values = {}
     monkeypatch.setattr(rospy, 'get_param', values.get)
     return values
@@ -36,19 +36,19 @@ def test_three_numbers_are_a_point():
     '123', 5, None, [1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [1.0, 2.0, '3'], [1.0, 2.0, math.nan],
     [math.inf, 0.0, 0.0], {1: 2, 3: 4, 5: 6},
 ])
-def test_anything_else_is_none(value):
+def test_other_values_are_rejected(value):
     with pytest.raises(RequestError, match=r'eye is .* a list of three finite numbers'):
         line_of_sight(value, [0.0, 0.0, 0.0])
     with pytest.raises(RequestError, match='target is'):
         line_of_sight([0.0, 0.0, 0.0], value)
 
 
-def test_an_eye_in_its_target_sees_nothing():
+def test_eye_at_its_target_is_rejected():
     with pytest.raises(RequestError, match='they must differ'):
         line_of_sight([1, 2, 3], [1.0, 2.0, 3.0])
 
 
-def test_bad_parameters_leave_the_camera_where_it_was(parameters, caplog):
+def test_invalid_parameters_keep_the_viewpoint(parameters, caplog):
     viewpoint = Viewpoint()
     viewpoint.read()
     assert viewpoint.sight == (EYE, TARGET)
@@ -62,7 +62,7 @@ def test_bad_parameters_leave_the_camera_where_it_was(parameters, caplog):
     assert caplog.text.count("eye is 'here'") == 1
 
 
-def test_without_a_master_the_camera_stays_where_it_was(monkeypatch):
+def test_missing_master_keeps_the_viewpoint(monkeypatch):
     def refused(*_):
         raise ConnectionRefusedError
 
@@ -75,7 +75,7 @@ def test_without_a_master_the_camera_stays_where_it_was(monkeypatch):
     assert len(registrar.jobs) == 1
 
 
-def test_the_registrar_reads_and_is_asked_once_at_a_time(parameters):
+def test_registrar_reads_the_parameters_one_request_at_a_time(parameters):
     parameters['~view/target'] = [0, 0, 9]
     viewpoint, registrar = Viewpoint(), FakeRegistrar()
     viewpoint.read_soon(registrar)
@@ -88,7 +88,7 @@ def test_the_registrar_reads_and_is_asked_once_at_a_time(parameters):
     assert len(registrar.jobs) == 1
 
 
-def test_what_was_set_before_someone_looks_counts_for_the_first_picture(parameters):
+def test_parameters_set_in_advance_apply_to_the_first_image(parameters):
     viewpoint, registrar = Viewpoint(), FakeRegistrar()
     viewpoint.read()
     viewpoint.rest()
@@ -100,7 +100,7 @@ def test_what_was_set_before_someone_looks_counts_for_the_first_picture(paramete
     assert viewpoint.sight == ((3.0, 0.0, 1.0), TARGET)
 
 
-def test_pictures_come_also_without_a_master(monkeypatch):
+def test_images_are_published_without_a_master(monkeypatch):
     def gone(*_arguments):
         raise ConnectionRefusedError
 

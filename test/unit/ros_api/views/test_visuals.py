@@ -1,4 +1,4 @@
-"""The markers of a world: what is sent, and that it is sent only once."""
+"""The markers of a world: content, and that each is sent once."""
 
 from concurrent.futures import Future
 
@@ -48,7 +48,7 @@ def world(empty):
     (Plane(size=(10.0, 20.0)), Marker.TRIANGLE_LIST, (10.0, 20.0, 1.0)),
     (Mesh('/a b/c.dae', (2.0, 2.0, 2.0)), Marker.MESH_RESOURCE, (2.0, 2.0, 2.0)),
 ])
-def test_each_shape_has_its_marker(geometry, kind, scale):
+def test_shape_has_a_marker_of_its_type_and_scale(geometry, kind, scale):
     marker = visual_marker('m::l', 3, Visual('v', geometry, material=RED))
     assert (marker.type, marker.ns, marker.id) == (kind, 'm::l', 3)
     assert (marker.scale.x, marker.scale.y, marker.scale.z) == scale
@@ -63,20 +63,20 @@ def test_a_mesh_without_material_keeps_its_own_colours():
     assert marker.color.a == 0.0
 
 
-def test_a_plane_has_a_colour_at_every_corner_and_lies_below_the_grid(empty):
+def test_plane_has_vertex_colours_and_lies_below_the_grid(empty):
     _spawn(empty, 'ground', Plane())
     _, marker = ShownMarkers(empty).changes()
     assert len(marker.colors) == len(marker.points) == 6
     assert marker.pose.position.z == -PLANE_DEPTH
 
 
-def test_the_first_look_shows_all_and_the_next_nothing(world):
+def test_first_update_has_all_markers_and_the_next_none(world):
     view = ShownMarkers(world)
     assert [m.action for m in view.changes()] == [Marker.DELETEALL, Marker.ADD]
     assert view.changes() == []
 
 
-def test_what_moved_is_shown_where_it_is(world):
+def test_moved_model_is_updated(world):
     view = ShownMarkers(world)
     view.changes()
     world.models['box'].set_pose(Pose((1.0, 2.0, 3.0)))
@@ -84,7 +84,7 @@ def test_what_moved_is_shown_where_it_is(world):
     assert (marker.pose.position.x, marker.pose.position.z) == (1.0, 3.0)
 
 
-def test_what_went_is_removed_and_what_came_is_added(world):
+def test_deleted_model_is_removed_and_spawned_one_added(world):
     view = ShownMarkers(world)
     view.changes()
     world.delete('box')
@@ -92,7 +92,7 @@ def test_what_went_is_removed_and_what_came_is_added(world):
     assert (gone.action, gone.ns, gone.id) == (Marker.DELETE, 'box::link', 0)
 
 
-def test_a_new_model_of_an_old_name_takes_its_place(world):
+def test_new_model_of_the_same_name_replaces_the_old_one(world):
     view = ShownMarkers(world)
     view.changes()
     world.delete('box')
@@ -102,7 +102,7 @@ def test_a_new_model_of_an_old_name_takes_its_place(world):
     assert came.type == Marker.SPHERE
 
 
-def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
+def test_all_markers_are_repeated_periodically_and_for_new_subscribers(world):
     view = ShownMarkers(world)
     shown = [len(view.changes()) for _ in range(REFRESH + 1)]
     assert shown == [2] + [0] * (REFRESH - 1) + [1]
@@ -111,7 +111,7 @@ def test_everything_is_shown_again_now_and_then_and_to_new_viewers(world):
 
 
 class FakeThread:
-    """Keeps what is to be done until a test does it."""
+    """Records submitted work until a test runs it."""
 
     def __init__(self):
         self.jobs = []
@@ -123,7 +123,7 @@ class FakeThread:
 
 
 class FakeMeshes:
-    """Has a file of everything but planes."""
+    """Returns a file for everything but planes."""
 
     def file(self, visual):
         return None if isinstance(visual.geometry, Plane) else f'/made/{visual.name}.mesh'
@@ -134,7 +134,7 @@ def thread():
     return FakeThread()
 
 
-def test_a_model_is_shown_to_the_window_once_its_files_are_made(world, thread):
+def test_model_is_sent_to_the_window_when_its_files_exist(world, thread):
     view = SunlitMarkers(world, FakeMeshes(), thread)
     assert [m.action for m in view.changes()] == [Marker.DELETEALL]
     assert view.changes() == []
@@ -147,7 +147,7 @@ def test_a_model_is_shown_to_the_window_once_its_files_are_made(world, thread):
     assert marker.color.a == 0.0
 
 
-def test_what_has_no_file_is_shown_as_in_any_rviz(world, thread):
+def test_shape_without_a_file_uses_the_standard_marker(world, thread):
     world.delete('box')
     _spawn(world, 'box', Plane())
     view = SunlitMarkers(world, FakeMeshes(), thread)
@@ -157,7 +157,7 @@ def test_what_has_no_file_is_shown_as_in_any_rviz(world, thread):
     assert marker.type == Marker.TRIANGLE_LIST
 
 
-def test_files_of_a_model_that_has_gone_meanwhile_are_not_shown(world, thread):
+def test_files_of_a_deleted_model_are_not_sent(world, thread):
     view = SunlitMarkers(world, FakeMeshes(), thread)
     view.changes()
     first = thread.jobs.pop()

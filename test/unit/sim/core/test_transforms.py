@@ -1,4 +1,4 @@
-"""The pose algebra, against hand-made cases and its own inverses."""
+"""The pose algebra, against known cases and its own inverses."""
 
 import math
 
@@ -39,7 +39,7 @@ def test_rpy_survives_the_round_trip(rpy):
     assert to_rpy(from_rpy(*rpy)) == pytest.approx(rpy)
 
 
-def test_pitch_straight_down_has_a_finite_answer():
+def test_pitch_of_90_degrees_gives_finite_angles():
     assert to_rpy(from_rpy(0.0, math.pi / 2, 0.0))[1] == pytest.approx(math.pi / 2)
 
 
@@ -63,7 +63,7 @@ def test_inverse_undoes_a_pose():
     assert nothing.orientation == pytest.approx(NO_ROTATION)
 
 
-def test_a_quaternion_of_zeros_means_no_rotation():
+def test_zero_quaternion_is_the_identity():
     assert normalise((0.0, 0.0, 0.0, 0.0)) == NO_ROTATION
     assert normalise((0.0, 0.0, 0.0, 2.0)) == NO_ROTATION
 

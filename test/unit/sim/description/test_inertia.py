@@ -1,4 +1,4 @@
-"""Mass properties: principal axes, sums, and bodies that can turn."""
+"""Mass properties: principal axes, sums, and valid inertia tensors."""
 
 import math
 
@@ -25,14 +25,14 @@ def in_link_axes(moments, axes):
     return turn @ np.diag(moments) @ turn.T
 
 
-def test_a_diagonal_tensor_keeps_its_axes_and_order():
+def test_diagonal_tensor_keeps_its_axes_and_order():
     turned = from_rpy(0.1, 0.2, 0.3)
     inertial = Inertial(1.0, Pose(orientation=turned), ixx=3.0, iyy=1.0, izz=2.0)
     assert principal_axes(inertial) == ((3.0, 1.0, 2.0), turned)
 
 
 @pytest.mark.parametrize('seed', range(20))
-def test_the_principal_axes_give_the_tensor_back(seed):
+def test_principal_axes_and_moments_reproduce_the_tensor(seed):
     random = np.random.default_rng(seed)
     root = random.normal(size=(3, 3))
     full = root @ root.T
@@ -43,7 +43,7 @@ def test_the_principal_axes_give_the_tensor_back(seed):
     np.testing.assert_allclose(in_link_axes(moments, axes), full, atol=1e-12)
 
 
-def test_a_small_product_turns_the_axes_only_a_little():
+def test_small_product_of_inertia_rotates_the_axes_slightly():
     _, axes = principal_axes(Inertial(1.0, ixx=3.0, iyy=1.0, izz=2.0, ixy=1e-6))
     assert axes[3] > 0.999999
 
@@ -52,48 +52,48 @@ def test_the_axes_are_given_in_the_links_frame():
     turned = Pose(orientation=from_rpy(0.0, 0.0, math.pi / 2))
     inertial = Inertial(1.0, turned, ixx=2.0, iyy=2.0, izz=5.0, ixz=1.0)
     moments, axes = principal_axes(inertial)
-    # A quarter turn about z carries the product xz over to yz.
+    # A quarter turn about z maps the product xz to yz.
     expected = [[2.0, 0.0, 0.0], [0.0, 2.0, 1.0], [0.0, 1.0, 5.0]]
     np.testing.assert_allclose(in_link_axes(moments, axes), expected, atol=1e-12)
 
 
-def test_two_masses_turn_about_their_common_centre():
+def test_inertia_of_two_masses_is_about_their_common_centre():
     ball = Inertial(2.0, ixx=0.1, iyy=0.1, izz=0.1)
     both = merge([(IDENTITY, ball), (Pose((0.0, 0.0, 3.0)), ball)])
     assert both.mass == 4.0
     assert both.pose == Pose((0.0, 0.0, 1.5))
-    # Steiner: 2 * (0.1 + 2 kg * (1.5 m)^2) across, nothing added along.
+    # Parallel axes: 2 * (0.1 + 2 kg * (1.5 m)^2) across, nothing added along.
     np.testing.assert_allclose(tensor(both), np.diag([9.2, 9.2, 0.2]))
 
 
-def test_turned_parts_bring_their_tensor_in_turned():
+def test_tensor_of_a_rotated_part_is_rotated():
     turned = Pose(orientation=from_rpy(0.0, 0.0, math.pi / 2))
     part = Inertial(1.0, turned, ixx=1.0, iyy=2.0, izz=3.0)
     frame = Pose(orientation=from_rpy(math.pi / 2, 0.0, 0.0))
     merged = merge([(frame, part)])
-    # The part's x ends along z, its y along -x, its z along -y.
+    # The part's x axis is along z, its y along -x, its z along -y.
     np.testing.assert_allclose(tensor(merged), np.diag([2.0, 3.0, 1.0]), atol=1e-12)
 
 
-def test_a_single_part_in_place_is_left_alone():
+def test_single_part_in_place_is_unchanged():
     part = Inertial(1.0, Pose((1.0, 2.0, 3.0), from_rpy(0.1, 0.0, 0.0)), ixx=1.0, iyy=2.0, izz=3.0)
     assert merge([(IDENTITY, part)]) is part
 
 
-def test_a_body_without_inertia_gets_that_of_a_ball():
+def test_zero_inertia_becomes_that_of_a_ball():
     ball = 0.4 * 2.0 * STAND_IN_RADIUS**2
     turned = regularised(Inertial(2.0))
     assert (turned.ixx, turned.iyy, turned.izz) == (ball, ball, ball)
 
 
-def test_only_the_axis_without_inertia_gets_some():
+def test_only_the_zero_moment_is_replaced():
     stick = merge([(IDENTITY, Inertial(1.0)), (Pose((0.0, 0.0, 1.0)), Inertial(1.0))])
     turned = regularised(stick)
     assert (turned.ixx, turned.iyy) == (0.5, 0.5)
     assert turned.izz == pytest.approx(0.4 * 2.0 * STAND_IN_RADIUS**2)
 
 
-def test_a_tensor_that_no_body_has_becomes_the_nearest_that_one_has():
+def test_unphysical_tensor_becomes_the_nearest_physical_one():
     rosbot = Inertial(1.0, ixx=0.01, iyy=0.01, izz=0.01, ixy=0.01, ixz=0.01, iyz=0.01)
     nearest = tensor(possible(rosbot))
     # Moments (0.03, 0, 0) become (0.02, 0.01, 0.01): those of a rod, about the same axes.
@@ -102,10 +102,10 @@ def test_a_tensor_that_no_body_has_becomes_the_nearest_that_one_has():
 
 
 @pytest.mark.parametrize('seed', range(20))
-def test_nothing_that_a_body_can_have_is_nearer_than_the_tensor_used(seed):
+def test_no_physical_tensor_is_nearer_than_the_one_used(seed):
     random = np.random.default_rng(seed)
     root = random.normal(size=(3, 3))
-    full = root + root.T  # as a rule indefinite
+    full = root + root.T  # usually indefinite
     given = Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
                      ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
     used = tensor(possible(given))
@@ -114,7 +114,7 @@ def test_nothing_that_a_body_can_have_is_nearer_than_the_tensor_used(seed):
     distance = np.linalg.norm(used - full)
     for _ in range(200):
         step = random.normal(size=(3, 3)) * random.choice([1e-3, 0.1, 1.0])
-        second = np.trace(used) / 2 * np.eye(3) - used  # positive semidefinite for a body
+        second = np.trace(used) / 2 * np.eye(3) - used  # positive semidefinite for a physical body
         values, axes = np.linalg.eigh(second + step + step.T)
         second = axes @ np.diag(np.maximum(values, 0.0)) @ axes.T
         other = np.trace(second) * np.eye(3) - second
@@ -126,22 +126,22 @@ def test_nothing_that_a_body_can_have_is_nearer_than_the_tensor_used(seed):
     (0.12, 0.24, 0.39),  # a plate of 0.125, 0.235 and 0.36, written with two digits
     (1.0, 1.0, 0.0),  # a rod
 ])
-def test_a_tensor_that_a_body_can_have_but_for_rounding_is_left_alone(moments):
+def test_tensor_physical_up_to_rounding_is_unchanged(moments):
     given = Inertial(1.0, ixx=moments[0], iyy=moments[1], izz=moments[2])
     assert possible(given) is given
 
 
-def test_the_first_excess_that_is_more_than_rounding_is_mended():
+def test_excess_beyond_rounding_is_corrected():
     assert possible(Inertial(1.0, ixx=1.0, iyy=1.0, izz=2.22)).izz == 2.22
     assert possible(Inertial(1.0, ixx=1.0, iyy=1.0, izz=2.23)).izz < 2.23
 
 
-def test_a_negative_principal_moment_is_seen():
+def test_negative_principal_moment_is_detected():
     assert not is_positive(Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0, ixy=2.0))
     assert is_positive(Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0, ixy=1.0))
 
 
-def test_in_link_axes_the_tensor_is_turned_and_the_centre_stays():
+def test_tensor_is_rotated_into_link_axes_about_the_same_centre():
     turned = Inertial(2.0, Pose((0.1, 0.2, 0.3), from_rpy(0.0, 0.0, math.pi / 2)), 1.0, 2.0, 3.0)
     flat = inertia.in_link_axes(turned)
     assert (flat.ixx, flat.iyy, flat.izz) == pytest.approx((2.0, 1.0, 3.0))

@@ -1,4 +1,4 @@
-"""Whatever comes in, it ends soon, with one sentence or a model, and opens nothing it should not.
+"""Malicious input ends soon, with one error message or a model, and opens no other file.
 
 The cases and their outcomes are those of test/data/hostile/cases.yaml; here parsers and compiler
 get them.
@@ -27,14 +27,14 @@ CASES = cases()
 
 
 class Opened:
-    """The files that this process opens while it listens; Python tells of every one."""
+    """Records the files that this process opens, by an audit hook."""
 
     def __init__(self):
         self.paths = []
         self.listening = False
-        sys.addaudithook(self._hear)  # there is no way to take it away again
+        sys.addaudithook(self._on_event)  # audit hooks cannot be removed
 
-    def _hear(self, event, arguments):
+    def _on_event(self, event, arguments):
         if self.listening and event == 'open' and isinstance(arguments[0], str | bytes):
             self.paths.append(os.fsdecode(arguments[0]))
         if self.listening and event.startswith(('socket.connect', 'subprocess.', 'os.system',
@@ -45,7 +45,7 @@ class Opened:
 @pytest.fixture(scope='module')
 def opened():
     for path in (ROOT / 'meshes').glob('*.dae'):
-        check_mesh(str(path))  # what is imported late has been
+        check_mesh(str(path))  # imports its readers before the tests
     return Opened()
 
 
@@ -66,11 +66,11 @@ def read(case, folder):
 
 def may_be_opened(path, case, folder):
     return path == case.opens or path.startswith((str(folder), str(FOLDER))) \
-        or path.endswith('.pyc')  # Python's own, of a codec for example
+        or path.endswith('.pyc')  # a lazy import, of a codec for example
 
 
 @pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)
-def test_a_case_ends_as_the_table_says(case, tmp_path, opened, caplog, capfd, monkeypatch):
+def test_outcome_is_that_of_the_table(case, tmp_path, opened, caplog, capfd, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     said = ''
     opened.paths.clear()
@@ -94,7 +94,7 @@ def test_a_case_ends_as_the_table_says(case, tmp_path, opened, caplog, capfd, mo
     assert capfd.readouterr() == ('', '')
 
 
-def test_every_file_of_the_corpus_is_in_the_table_once_and_small():
+def test_every_file_of_the_corpus_is_small_and_in_the_table_once():
     listed = [case.name for case in CASES]
     assert len(set(listed)) == len(listed)
     files = {path.name for path in FOLDER.iterdir()} - {'cases.yaml', 'triangle.obj'}
@@ -103,11 +103,11 @@ def test_every_file_of_the_corpus_is_in_the_table_once_and_small():
 
 
 @pytest.mark.parametrize('ending', ['urdf', 'sdf', 'dae', 'stl', 'obj', 'world'])
-def test_there_are_cases_of_each_kind(ending):
+def test_each_kind_has_cases(ending):
     assert any(case.kind == ending for case in CASES)
 
 
-def test_a_library_outside_of_the_folder_is_not_opened(opened):
+def test_material_library_outside_of_the_folder_is_not_opened(opened):
     opened.paths.clear()
     opened.listening = True
     check_mesh.__globals__['_check'].cache_clear()

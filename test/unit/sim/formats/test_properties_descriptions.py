@@ -1,4 +1,4 @@
-"""Any model that can be simulated is read whole; anything else is refused in one sentence."""
+"""Property tests: valid models are read completely; anything else is rejected with one message."""
 
 import pytest
 from hypothesis import given
@@ -26,7 +26,7 @@ def read_sdf(text):
 
 
 def read_any(text):
-    """Return the model, or None if the text is refused as it should be."""
+    """Return the model, or None if the text is rejected with a proper message."""
     read = read_urdf if root_tag(text) == 'robot' else read_sdf
     try:
         spec = read(text)
@@ -38,7 +38,7 @@ def read_any(text):
 
 
 @given(urdfs())
-def test_of_a_urdf_all_mass_is_simulated_where_it_was(description):
+def test_mass_and_centre_of_mass_of_a_urdf_are_kept(description):
     spec = read_urdf(description.text)
     check_spec(spec)
     if not spec.static:
@@ -49,7 +49,7 @@ def test_of_a_urdf_all_mass_is_simulated_where_it_was(description):
 
 
 @given(sdfs())
-def test_of_an_sdf_all_links_are_simulated_where_they_were(description):
+def test_mass_and_links_of_an_sdf_are_kept(description):
     spec = read_sdf(description.text)
     check_spec(spec)
     mass, centre = total(spec)
@@ -59,24 +59,24 @@ def test_of_an_sdf_all_links_are_simulated_where_they_were(description):
 
 
 @given(st.data())
-def test_a_damaged_description_is_a_model_or_a_refusal(data):
+def test_damaged_description_is_read_or_rejected(data):
     description = data.draw(st.one_of(urdfs(), sdfs()))
     read_any(data.draw(damaged(description.text)))
 
 
 @given(st.data())
-def test_one_wrong_value_makes_a_model_or_a_refusal(data):
+def test_description_with_one_wrong_value_is_read_or_rejected(data):
     description = data.draw(st.one_of(urdfs(), sdfs()))
     read_any(data.draw(spoiled(description.text)))
 
 
 @given(st.data())
-def test_the_damaged_robot_is_a_model_or_a_refusal(data):
+def test_damaged_robot_is_read_or_rejected(data):
     read_any(data.draw(damaged(robot_urdf())))
 
 
 @given(RAW)
-def test_any_text_is_a_model_or_a_refusal(text):
+def test_any_text_is_read_or_rejected(text):
     root_tag(text)
     for read in (parse_xml, load_sdf_light, load_urdf):
         try:

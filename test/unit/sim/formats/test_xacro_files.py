@@ -1,4 +1,4 @@
-"""Xacro is expanded without ROS: what $(...) means comes from us."""
+"""Xacro is expanded without ROS: substitutions $(...) are our own."""
 
 import sys
 
@@ -32,13 +32,13 @@ def expand(folder, body, **arguments):
     ('$(arg absent)', 'by default'),
     ('${1 + 2}', '3'),
 ])
-def test_an_expression_stands_for_its_value(tmp_path, written, meant):
+def test_substitution_is_replaced_by_its_value(tmp_path, written, meant):
     body = '<xacro:arg name="given" default="no"/><xacro:arg name="absent" default="by default"/>' \
         f'<link name="{written}"/>'
     assert f'<link name="{meant}"/>' in expand(tmp_path, body, given='by the caller')
 
 
-def test_an_included_file_lies_beside_the_one_that_names_it(tmp_path):
+def test_include_is_relative_to_the_including_file(tmp_path):
     (tmp_path / 'inner.xacro').write_text(f'{HEAD}<link name="inner"/></robot>')
     for name in ('inner.xacro', '$(dirname)/inner.xacro'):
         assert 'name="inner"' in expand(tmp_path, f'<xacro:include filename="{name}"/>')
@@ -50,14 +50,14 @@ def test_an_included_file_lies_beside_the_one_that_names_it(tmp_path):
     ('<link name="${1 / 0}"/>', 'division by zero'),
     ('<link', 'xacro rejects it'),
 ])
-def test_what_xacro_rejects_is_one_sentence_with_the_file(tmp_path, body, said):
+def test_error_of_xacro_is_one_message_with_the_file(tmp_path, body, said):
     with pytest.raises(ModelError) as raised:
         expand(tmp_path, body)
     assert said in str(raised.value)
     assert str(raised.value).startswith(f'{tmp_path}/r.xacro: xacro rejects it')
 
 
-def test_without_the_module_the_cure_is_named(tmp_path, monkeypatch):
+def test_error_about_the_missing_module_names_the_cure(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, 'xacro', None)
     with pytest.raises(ModelError, match=r'pip install xacro==1\.13\.3'):
         expand(tmp_path, '')

@@ -1,4 +1,4 @@
-"""Mesh files: read as RViz reads them, refused when broken, made ready for the engine."""
+"""Mesh files: read like RViz, rejected if invalid, converted for the engine."""
 
 import math
 import os
@@ -81,11 +81,11 @@ def corners(path):
     ('quad.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nf 1 2 3\nf 1 2 3 4\n'),
     ('negative.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n'),
 ])
-def test_every_format_gives_the_same_triangle(write, name, content):
+def test_each_format_gives_the_same_triangle(write, name, content):
     assert corners(write(name, content)) == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 
-def test_what_reads_collada_is_loaded_ahead_and_not_before():
+def test_collada_reader_is_imported_on_request_only():
     program = (
         'import sys; from rosbots_description.sim.meshes import loader; '
         "before = 'collada' in sys.modules; loader.load_readers(); "
@@ -100,20 +100,20 @@ def test_unit_and_node_transform_of_a_collada_file_are_applied(write):
     np.testing.assert_allclose(corners(path), [[0.1, 0.2, 0.3], [0.12, 0.2, 0.3], [0.1, 0.21, 0.3]])
 
 
-def test_a_mirroring_node_keeps_the_outside_outside(write):
+def test_mirroring_node_keeps_faces_outward(write):
     path = write('m.dae', collada(matrix='-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1'))
     a, b, c = np.array(corners(path))
     assert np.cross(b - a, c - a)[2] > 0.0
 
 
-def test_the_colour_of_a_collada_material_is_seen(write):
+def test_colour_of_a_collada_material_is_read(write):
     ((vertices, faces, _, rgba),) = visual_parts(write('m.dae', collada()))
     assert vertices.shape == (3, 3)
     assert faces.shape == (1, 3)
     assert rgba == pytest.approx((0.2, 0.4, 0.6, 1.0), abs=0.005)
 
 
-def test_it_is_told_whether_a_mesh_has_a_texture(write):
+def test_use_of_a_texture_is_detected(write):
     picture = ('<library_images><image id="i"><init_from>i.png</init_from></image></library_images>'
                '<library_effects>')
     parameters = ('<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface>'
@@ -132,7 +132,7 @@ def test_it_is_told_whether_a_mesh_has_a_texture(write):
         assert visual_parts(path)[0][3] == (1, 0, 0, 1)
 
 
-def test_an_obj_has_a_part_for_each_material_and_grey_where_it_has_none(write):
+def test_obj_has_a_part_for_each_material_grey_without_one(write):
     write('m.mtl', 'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n')
     path = write('m.obj', 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n'
                           'usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 4\n')
@@ -181,12 +181,12 @@ BROKEN = {
 
 
 @pytest.mark.parametrize('name', BROKEN)
-def test_a_broken_file_is_named(write, name):
+def test_error_names_an_invalid_file(write, name):
     sentence = complaint(write(name, BROKEN[name]))
     assert 'is broken' in sentence or 'holds no triangles' in sentence
 
 
-def test_a_normal_that_is_no_number_does_not_matter(write):
+def test_normals_that_are_not_finite_are_accepted(write):
     normals = ('<source id="n"><float_array id="na" count="3">NaN NaN NaN</float_array>'
                '<technique_common><accessor source="#na" count="1" stride="3">'
                '<param name="X" type="float"/><param name="Y" type="float"/>'
@@ -194,7 +194,7 @@ def test_a_normal_that_is_no_number_does_not_matter(write):
     check_mesh(write('m.dae', collada().replace(VERTICES, normals + VERTICES)))
 
 
-def test_a_missing_file_is_named(tmp_path):
+def test_error_names_a_missing_file(tmp_path):
     assert 'does not exist' in complaint(str(tmp_path / 'no.dae'))
 
 
@@ -208,12 +208,12 @@ def test_a_name_with_a_null_is_no_file():
         check_mesh('/a\0.dae')
 
 
-def test_another_format_is_named_with_those_that_are_read(write):
+def test_error_about_an_unknown_format_lists_the_known_ones(write):
     sentence = complaint(write('m.glb', ''))
     assert "format '.glb' is not read; convert it to .dae, .stl, .obj" in sentence
 
 
-def test_a_file_too_big_or_too_fine_is_refused(write, monkeypatch):
+def test_too_large_or_too_fine_file_is_rejected(write, monkeypatch):
     monkeypatch.setattr(loader, 'MAX_MESH_BYTES', 10)
     assert 'at most 10 are accepted' in complaint(write('a.obj', TRIANGLE))
     monkeypatch.undo()
@@ -221,14 +221,14 @@ def test_a_file_too_big_or_too_fine_is_refused(write, monkeypatch):
     assert 'has 2 triangles; at most 1' in complaint(write('b.obj', TRIANGLE + 'f 3 2 1\n'))
 
 
-def test_a_broken_file_that_is_mended_is_read_again(write):
+def test_corrected_file_is_read_again(write):
     path = write('m.obj', 'f 1 2 3\n')
     complaint(path)
     write('m.obj', TRIANGLE)
     check_mesh(path)
 
 
-def test_nothing_is_printed_about_odd_files(write, capfd, caplog, recwarn):
+def test_nothing_is_printed_about_unusual_files(write, capfd, caplog, recwarn):
     path = write('m.obj', 'mtllib gone.mtl\nusemtl red\n' + TRIANGLE)
     check_mesh(path)
     complaint(write('n.stl', ASCII_STL.replace('vertex 1 0 0', 'vertex 1 x 0')))
@@ -246,7 +246,7 @@ def read_obj(path):
 
 
 def read_hull(path):
-    """Return the points that a hull's file spans."""
+    """Return the vertices of a hull's file (n, 3) [m]."""
     return np.unique(read_stl(Path(path).read_bytes()).reshape(-1, 3), axis=0).astype(float)
 
 
@@ -263,7 +263,7 @@ def test_the_hull_of_few_points_is_exact_and_scaled(write, files):
     assert points.tolist() == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
 
 
-def test_the_hull_of_many_points_is_small_and_nearly_as_big_as_the_mesh(write, files):
+def test_hull_of_many_points_is_reduced_and_nearly_fills_the_mesh(write, files):
     path = write('ball.obj', sphere(6000))
     points = read_hull(files.collision_hull(path))
     assert len(points) <= HULL_DIRECTIONS + 6
@@ -282,12 +282,12 @@ def test_points_that_coincide_count_once():
     assert len(engine_files._distinct(points[:1])) == 1
 
 
-def test_the_hull_leaves_out_points_no_triangle_uses(write, files):
+def test_hull_ignores_unused_vertices(write, files):
     path = write('m.obj', 'v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n')
     assert read_hull(files.collision_hull(path)).max() == 1.0
 
 
-def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, files):
+def test_surface_is_exact_and_outward_when_mirrored(write, files):
     path = write('m.obj', TRIANGLE)
     points, faces = read_obj(files.collision_surface(path, (-1.0, 1.0, 1.0)))
     a, b, c = points[faces[0]]
@@ -295,7 +295,7 @@ def test_the_surface_is_exact_and_a_mirror_keeps_its_outside(write, files):
     assert np.cross(b - a, c - a)[2] == 1.0
 
 
-def test_a_file_is_written_once_for_the_same_content_in_several_places(write, files, tmp_path):
+def test_equal_meshes_share_one_file(write, files, tmp_path):
     first = files.collision_hull(write('m.obj', TRIANGLE))
     written = os.stat(first).st_mtime_ns
     other = tmp_path / 'elsewhere'
@@ -306,13 +306,13 @@ def test_a_file_is_written_once_for_the_same_content_in_several_places(write, fi
     assert len(os.listdir(os.path.dirname(first))) == 1
 
 
-def test_a_file_that_someone_deleted_is_made_again(write, files):
+def test_deleted_file_is_written_again(write, files):
     path = write('m.obj', TRIANGLE)
     shutil.rmtree(os.path.dirname(files.collision_hull(path)))
     assert os.path.isfile(files.collision_hull(path))
 
 
-def test_scale_kind_and_content_have_files_of_their_own(write, files):
+def test_scale_kind_and_content_have_separate_files(write, files):
     path = write('m.obj', TRIANGLE)
     made = {files.collision_hull(path), files.collision_surface(path),
             files.collision_hull(path, (1.0, 1.0, math.pi)),
@@ -320,7 +320,7 @@ def test_scale_kind_and_content_have_files_of_their_own(write, files):
     assert len(made) == 4
 
 
-def test_a_file_stays_as_long_as_somebody_holds_it(write, files):
+def test_file_exists_while_it_is_in_use(write, files):
     path = write('m.obj', TRIANGLE)
     first, second = files.collision_hull(path), files.collision_hull(path)
     name = str(first)
@@ -331,15 +331,15 @@ def test_a_file_stays_as_long_as_somebody_holds_it(write, files):
     assert os.listdir(os.path.dirname(name)) == []
 
 
-def test_threads_that_come_and_go_never_lose_a_file_that_they_hold(write, files):
+def test_files_in_use_are_kept_with_concurrent_threads(write, files):
     paths = [write('m.obj', TRIANGLE), write('n.obj', TRIANGLE + 'f 3 2 1\n')]
 
-    def come_and_go(number):
+    def use_repeatedly(number):
         for i in range(100):
             file = files.collision_hull(paths[(i + number) % 2])
             assert os.path.getsize(file) > 0
 
     with ThreadPoolExecutor(4) as threads:
-        list(threads.map(come_and_go, range(4)))
+        list(threads.map(use_repeatedly, range(4)))
     file = files.collision_hull(paths[0])
     assert os.listdir(os.path.dirname(file)) == [os.path.basename(file)]

@@ -1,4 +1,4 @@
-"""Polygons of .obj files, and meshes that are finer than anyone needs."""
+"""Polygons of .obj files, and decimation of fine meshes."""
 
 import tracemalloc
 
@@ -21,14 +21,14 @@ def area(part):
 
 
 @pytest.mark.parametrize(('faces', 'count', 'expected'), [
-    ('f 1 2 3 4\n', 2, 1.0),  # a file of nothing but quads, as modellers write them
+    ('f 1 2 3 4\n', 2, 1.0),  # quads only
     ('f 1/1 2/1 3/1 4/1\n', 2, 1.0),
     ('f 1//1 2//1 3//1\nf 1 3 4\nvn 0 0 1\n', 2, 1.0),
     ('f -6 -5 -4 -3\n', 2, 1.0),
     ('f 1 2 3 4 5\n', 3, 1.5),
     ('f 1 2 3 4 5 6\n', 4, 1.65),
     ('f 1 2 \\\n3 4\n', 2, 1.0),
-    ('f 1//1 2//1 3//1\nf 1 2\nf 4//1 1//1 3//1\nvn 0 0 1\n', 2, 1.0),  # an edge beside them
+    ('f 1//1 2//1 3//1\nf 1 2\nf 4//1 1//1 3//1\nvn 0 0 1\n', 2, 1.0),  # with an edge
 ])
 def test_polygons_become_triangles(faces, count, expected):
     (part,) = parts_of(CORNERS + faces)
@@ -36,7 +36,7 @@ def test_polygons_become_triangles(faces, count, expected):
     assert area(part) == pytest.approx(expected)
 
 
-def test_a_number_counted_back_counts_from_where_it_stands():
+def test_negative_index_counts_from_its_own_line():
     text = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 9 9 9\n'
     (part,) = parts_of(text)
     assert part.vertices[part.faces[0]].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
@@ -65,7 +65,7 @@ def test_a_large_file_is_read_in_little_memory(corner):
     assert peak < 8 * len(content)
 
 
-def test_a_fine_sheet_is_thinned_and_stays_where_it_is():
+def test_fine_surface_is_decimated_in_place():
     count = 100
     x, y = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, 1, count), indexing='ij')
     vertices = np.stack([x.ravel(), y.ravel(), np.zeros(count**2)], axis=1)
@@ -80,7 +80,7 @@ def test_a_fine_sheet_is_thinned_and_stays_where_it_is():
     assert fewer.min() == 0.0
 
 
-def test_a_mesh_as_small_as_a_point_is_thinned_too():
+def test_mesh_of_a_point_is_decimated():
     faces = np.zeros((50, 3), dtype=int)
     _, triangles, _, _ = decimated(np.zeros((3, 3)), faces, 10)
     assert len(triangles) == 1

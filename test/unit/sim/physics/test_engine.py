@@ -1,4 +1,4 @@
-"""The protocol of engines: each of them has all of it, and the simulator asks for no more."""
+"""The engine protocol: engines implement all of it, and the simulator uses nothing else."""
 
 import ast
 import inspect
@@ -20,7 +20,7 @@ def parameters(function):
 
 @pytest.mark.parametrize('engine', [Engine, FakeEngine])
 @pytest.mark.parametrize('name', METHODS)
-def test_an_engine_has_what_the_protocol_says(engine, name):
+def test_engine_implements_the_protocol(engine, name):
     wanted, found = getattr(PhysicsEngine, name), inspect.getattr_static(engine, name)
     if isinstance(wanted, property):
         assert not callable(found)
@@ -28,12 +28,12 @@ def test_an_engine_has_what_the_protocol_says(engine, name):
         assert parameters(found) == parameters(wanted)
 
 
-def test_an_engine_offers_nothing_that_the_protocol_does_not_name():
+def test_engine_has_no_public_method_outside_the_protocol():
     offered = {name for name in dir(Engine) if not name.startswith('_')}
     assert offered <= set(METHODS)
 
 
-def test_the_simulator_asks_an_engine_for_nothing_else():
+def test_simulator_uses_only_the_protocol():
     asked = {
         node.attr
         for room in ('runtime', 'plugins')

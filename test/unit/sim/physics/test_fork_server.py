@@ -1,4 +1,4 @@
-"""Work in child processes: reports, ends of all kinds, and that no process is left."""
+"""Work in child processes: reports, all kinds of exits, and no process left behind."""
 
 import contextlib
 import errno
@@ -20,8 +20,8 @@ from rosbots_description.sim.physics.fork_server import MAX_REPORT, Cancelled, F
 ALLOWANCE = 20.0  # [s] never reached
 SHORT = 0.3  # [s]
 DEADLINE = 20.0  # [s]
-PROMPT = 1.0  # [s] by which nobody is delayed
-BUSY = 10  # processes that compute beside a test
+PROMPT = 1.0  # [s] acceptable delay
+BUSY = 10  # busy processes beside a test
 
 
 @contextlib.contextmanager
@@ -34,7 +34,7 @@ def server_of(work):
 
 
 def outcome(work, payload=b'', allowance=ALLOWANCE):
-    """Return what a child reports that does `work`, or the code that it exits with."""
+    """Return the report of a child that does `work`, or its exit code."""
     with server_of(work) as server:
         try:
             return server.run(payload, allowance)
@@ -43,7 +43,7 @@ def outcome(work, payload=b'', allowance=ALLOWANCE):
 
 
 def burn(seconds):
-    """Use up so much of this process's time on the processor."""
+    """Use `seconds` of processor time."""
     end = time.process_time() + seconds
     while time.process_time() < end:
         pass
@@ -56,7 +56,7 @@ def wait_until(condition):
         time.sleep(0.01)
 
 
-def is_there(process):
+def exists(process):
     with contextlib.suppress(FileNotFoundError), open(f'/proc/{process}/stat', 'rb') as file:
         return file.read().rpartition(b') ')[2][:1] != b'Z'
     return False
@@ -64,7 +64,7 @@ def is_there(process):
 
 @pytest.fixture(name='busy')
 def fixture_busy():
-    """A machine of which others want more than there is."""
+    """Run the test on an overloaded machine."""
     others = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(BUSY)]
     yield
     for other in others:
@@ -79,15 +79,15 @@ def fixture_nothing_is_left():
     assert os.listdir('/proc/self/fd') == before
 
 
-def test_a_child_reports_of_its_payload():
+def test_child_gets_its_payload_and_reports():
     assert outcome(lambda payload: payload.decode()[::-1], b'abc') == 'cba'
 
 
-def test_a_payload_may_be_long_and_a_report_is_cut():
+def test_long_payload_is_passed_and_long_report_is_truncated():
     assert outcome(lambda payload: payload.decode(), b'x' * 10_000_000) == 'x' * MAX_REPORT
 
 
-def test_what_is_prepared_is_so_once_before_the_first_child():
+def test_preparation_runs_once_before_the_first_child():
     prepared = []
 
     def prepare():
@@ -104,37 +104,37 @@ def test_what_is_prepared_is_so_once_before_the_first_child():
 
 
 @pytest.mark.parametrize('number', [signal.SIGSEGV, signal.SIGABRT, signal.SIGKILL])
-def test_a_child_that_a_signal_ends_is_told_of(number):
+def test_child_killed_by_a_signal_is_reported(number):
     assert outcome(lambda _: os.kill(os.getpid(), number)) == -number
 
 
-def test_a_child_that_ends_without_report_is_told_of():
+def test_child_that_exits_without_report_is_reported():
     assert outcome(lambda _: os._exit(3)) == 3
 
 
-def test_a_child_that_computes_for_ever_is_ended():
+def test_child_in_an_endless_loop_is_killed():
     assert outcome(lambda _: burn(math.inf), allowance=SHORT) == -signal.SIGPROF
 
 
-def test_a_child_that_sleeps_for_ever_is_ended(monkeypatch):
+def test_child_that_sleeps_forever_is_killed(monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
     assert outcome(lambda _: signal.pause()) == -signal.SIGALRM
 
 
-def test_a_child_that_sleeps_for_a_while_is_not_ended(monkeypatch):
+def test_child_that_sleeps_for_a_while_is_not_killed(monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.05)  # 1 s then is too long
 
     def work(_):
         for _ in range(3):
             time.sleep(0.5)
-            burn(0.05)  # more than the system counts time by
+            burn(0.05)  # more than a tick of the system's clock
         return 'done'
 
     assert outcome(work) == 'done'
 
 
 @pytest.mark.usefixtures('busy')
-def test_a_child_that_waits_for_a_processor_is_not_ended(monkeypatch):
+def test_child_that_waits_for_a_processor_is_not_killed(monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.005)  # 0.1 s of sleep would be too long
 
     def work(_):
@@ -142,10 +142,10 @@ def test_a_child_that_waits_for_a_processor_is_not_ended(monkeypatch):
         burn(1.0)
         return str(time.monotonic() - begin)
 
-    assert float(outcome(work, allowance=1.5)) > 1.5  # though it took longer than that
+    assert float(outcome(work, allowance=1.5)) > 1.5  # in spite of a longer wall time
 
 
-def test_a_child_delays_nobody_elses():
+def test_child_does_not_delay_others():
     def work(payload):
         if payload == b'long':
             signal.pause()
@@ -170,7 +170,7 @@ def test_a_child_delays_nobody_elses():
             other.join()
 
 
-def test_a_child_that_nobody_waits_for_is_ended(tmp_path, monkeypatch):
+def test_child_without_a_waiting_caller_is_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.05)
     note = tmp_path / 'note'
 
@@ -181,8 +181,8 @@ def test_a_child_that_nobody_waits_for_is_ended(tmp_path, monkeypatch):
     with server_of(work) as server:
         with pytest.raises(Cancelled):
             server.run(b'', ALLOWANCE, lambda: not (note.exists() and note.read_text()))
-        wait_until(lambda: not is_there(int(note.read_text())))
-        assert server._channel.fileno() > 0  # it goes on without it
+        wait_until(lambda: not exists(int(note.read_text())))
+        assert server._channel.fileno() > 0  # the server continues
 
 
 ABANDONED = """
@@ -199,7 +199,7 @@ ForkServer(lambda: work, 'test').run(b'', 60.0)
 
 @pytest.mark.parametrize('does', ['signal.pause()', 'while True: pass'])
 @pytest.mark.parametrize('victim', ['parent', 'server'])
-def test_no_process_outlives_what_it_works_for(tmp_path, does, victim):
+def test_processes_end_with_their_parent(tmp_path, does, victim):
     note = tmp_path / 'note'
     environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
     parent = subprocess.Popen([sys.executable, '-c', ABANDONED.format(does=does), str(note)],
@@ -207,16 +207,16 @@ def test_no_process_outlives_what_it_works_for(tmp_path, does, victim):
     try:
         wait_until(lambda: note.exists() and note.read_text().endswith('\n'))
         server, child = map(int, note.read_text().split())
-        assert is_there(server)
-        assert is_there(child)
+        assert exists(server)
+        assert exists(child)
         os.kill(parent.pid if victim == 'parent' else server, signal.SIGKILL)
-        wait_until(lambda: not is_there(server) and not is_there(child))
+        wait_until(lambda: not exists(server) and not exists(child))
     finally:
         parent.kill()
         parent.wait()
 
 
-def test_ctrl_c_reaches_the_parent_only():
+def test_ctrl_c_ends_the_parent_only():
     def work(_):
         for number in (signal.SIGINT, signal.SIGTERM):
             os.kill(os.getppid(), number)
@@ -227,14 +227,14 @@ def test_ctrl_c_reaches_the_parent_only():
         assert [server.run(b'', ALLOWANCE) for _ in range(2)] == ['done'] * 2
 
 
-def test_no_connection_is_held_open():
+def test_child_inherits_no_open_connection():
     def work(_):
         return ' '.join(files(os.getpid()) + files(os.getppid()))
 
     def files(process):
         folder, names = f'/proc/{process}/fd', []
         for number in os.listdir(folder):
-            with contextlib.suppress(FileNotFoundError):  # the listing's own is gone
+            with contextlib.suppress(FileNotFoundError):  # that of the listing itself
                 names.append(os.readlink(f'{folder}/{number}'))
         return names
 
@@ -246,7 +246,7 @@ def test_no_connection_is_held_open():
             assert os.readlink(f'/proc/self/fd/{end.fileno()}') not in theirs
 
 
-def test_where_no_process_can_be_made_the_system_is_named(monkeypatch):
+def test_failing_fork_raises_the_error_of_the_system(monkeypatch):
     def prepare():
         def full():
             raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
@@ -261,14 +261,14 @@ def test_where_no_process_can_be_made_the_system_is_named(monkeypatch):
     server.close()
 
 
-def test_where_the_server_has_died_that_is_said():
+def test_dead_server_is_reported():
     with server_of(lambda _: 'done') as server:
         os.kill(server._server, signal.SIGKILL)
         with pytest.raises(OSError, match='the fork server does not answer'):
             server.run(b'', ALLOWANCE)
 
 
-def test_a_server_without_file_handles_says_so():
+def test_server_out_of_file_descriptors_is_reported():
     def prepare():
         resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))
         return lambda _: 'done'

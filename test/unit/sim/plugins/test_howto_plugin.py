@@ -1,4 +1,4 @@
-"""The plugin in doc/howto_add_a_plugin.md is complete: it is run and linted as it stands there."""
+"""The plugin in doc/howto_add_a_plugin.md runs and is lint-clean as printed."""
 
 import importlib.util
 import math
@@ -23,7 +23,7 @@ BLOCKS = dict(BLOCK.findall(PAGE.read_text(encoding='utf-8')))
 
 @pytest.fixture
 def spinner(monkeypatch, tmp_path):
-    """Load the modules of the page where it says that they are, and return the plugin's class."""
+    """Load the modules of the page under their paths; return the plugin class."""
     monkeypatch.setattr(plugins, '_PLUGINS', dict(plugins._PLUGINS))
     monkeypatch.setattr(topics, '_TOPICS', dict(topics._TOPICS))
     for path, source in BLOCKS.items():
@@ -50,12 +50,12 @@ def test_the_example_is_lint_clean(path):
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
-def test_the_example_works_on_its_topics(spinner, monkeypatch, caplog):
+def test_the_example_serves_its_topics(spinner, monkeypatch, caplog):
     wire = Wire(monkeypatch)
     plugin = make_drive(spinner, fake_model(), jointName='left', angleTopic='/angle', torque='2')
     wire.join(plugin)
     plugin.world.run(100)
-    assert plugin.world.engine.steps == [100]  # nothing is due but the watchdog
+    assert plugin.world.engine.steps == [100]  # only the watchdog is due
     wire.publishers['/angle'].read()
     wire.subscribers['/spin'](Float64(3.0))
     plugin.world.run(100)

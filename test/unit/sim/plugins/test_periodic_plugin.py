@@ -1,4 +1,4 @@
-"""When a plugin runs: rates, steps, sleep, resets; and outputs with any number of readers."""
+"""Timing of plugins: rates, due steps, resets; outputs with several readers."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from rosbots_description.sim.runtime.scheduler import NEVER
 
 
 class Watcher(PeriodicPlugin):
-    """Reports the step it is in."""
+    """Reports the current step."""
 
     def load(self):
         self.set_rate(self.params.rate('rate', 0.0))
@@ -24,19 +24,19 @@ class Watcher(PeriodicPlugin):
 
 
 class Exact(Watcher):
-    """Does not wait until a period is over."""
+    """Starts a period without waiting for the end of the previous one."""
 
     strictly_after = False
 
 
 class Rounded(Exact):
-    """Begins each period in the step that ended one."""
+    """Starts each period in the step in which the previous one ended."""
 
     keeps_rate = False
 
 
 class LaterRounded(Watcher):
-    """Waits until a period is over, and begins the next one then."""
+    """Waits for the end of a period, and starts the next one then."""
 
     keeps_rate = False
 
@@ -49,7 +49,7 @@ class Actor(Watcher):
 
 
 class Counter(Watcher):
-    """Counts steps while somebody reads."""
+    """Counts steps while it has readers."""
 
     every_step = True
     count = 0
@@ -63,7 +63,7 @@ def make(cls, rate):
 
 
 def seen(plugin, steps):
-    """Return the steps in which it reports."""
+    """Return the steps in which the plugin reports."""
     found = []
     plugin.steps.connect(found.append)
     plugin.world.run(steps)
@@ -81,17 +81,17 @@ def seen(plugin, steps):
     (Watcher, '-1', [1, 2, 3]),
     (Exact, '2000', [1, 2, 3]),
 ])
-def test_rates_are_those_of_gazebos_four_kinds(cls, rate, steps):
+def test_timing_is_that_of_gazebos_four_rules(cls, rate, steps):
     assert seen(make(cls, rate), 110)[:3] == steps[:3]
 
 
-def test_the_mean_rate_is_exact_for_a_minute():
+def test_mean_rate_is_exact_over_a_minute():
     assert len(seen(make(Exact, '30'), 60_000)) == 1800
 
 
 @pytest.mark.parametrize('cls', [Watcher, Exact])
 @pytest.mark.parametrize('rate', ['30', '100', '7', '400', '0'])
-def test_a_reader_that_comes_late_changes_no_step(cls, rate):
+def test_late_reader_does_not_shift_the_steps(cls, rate):
     at_once = seen(make(cls, rate), 300)
     for late in (1, 9, 10, 11, 33, 34, 35, 143):
         plugin = make(cls, rate)
@@ -100,7 +100,7 @@ def test_a_reader_that_comes_late_changes_no_step(cls, rate):
         assert plugin.woken == 1
 
 
-def test_who_only_watches_sleeps_while_nobody_reads():
+def test_reporting_plugin_is_not_due_without_readers():
     plugin = make(Watcher, '100')
     assert plugin.due == NEVER
     assert seen(plugin, 25) == [11, 21]
@@ -110,15 +110,15 @@ def test_who_only_watches_sleeps_while_nobody_reads():
     assert plugin.world.engine.steps == [60]  # the watchdog's steps are 1 and 101
 
 
-def test_who_acts_is_never_asleep():
+def test_acting_plugin_is_always_due():
     plugin = make(Actor, '100')
     plugin.world.run(11)
     assert plugin.elapsed == pytest.approx(0.011)
     plugin.world.run(10)
-    assert plugin.elapsed == pytest.approx(0.011)  # since the end of a period, a step before
+    assert plugin.elapsed == pytest.approx(0.011)  # since the end of the period one step earlier
 
 
-def test_what_is_done_in_every_step_is_not_done_for_nobody():
+def test_hook_after_each_step_does_not_run_without_readers():
     plugin = make(Counter, '100')
     plugin.world.run(50)
     assert plugin.count == 0
@@ -126,7 +126,7 @@ def test_what_is_done_in_every_step_is_not_done_for_nobody():
     assert plugin.count == 20
 
 
-def test_a_reset_of_the_world_disturbs_no_rhythm_and_a_new_beginning_is_one():
+def test_reset_of_poses_keeps_the_phase_and_reset_of_time_restarts_it():
     plugin, found = make(Exact, '100'), []
     plugin.steps.connect(found.append)
     plugin.world.run(15)
@@ -146,13 +146,13 @@ def test_the_rate_holds_when_steps_get_longer():
     assert times == pytest.approx([0.010, 0.023, 0.031, 0.043, 0.051])
 
 
-def test_all_readers_get_what_is_computed_once():
+def test_reading_is_computed_once_for_all_readers():
     plugin, one, other = make(Watcher, '0'), [], []
     for found in (one, other):
         plugin.steps.connect(found.append)
     plugin.world.run(3)
     plugin.steps.disconnect(one.append)
-    plugin.steps.disconnect(one.append)  # it reads no more already
+    plugin.steps.disconnect(one.append)  # has been disconnected already
     plugin.world.run(1)
     assert (one, other) == ([1, 2, 3], [1, 2, 3, 4])
     assert plugin.steps.wanted
@@ -161,7 +161,7 @@ def test_all_readers_get_what_is_computed_once():
 
 
 @pytest.mark.parametrize(('tag', 'namespace'), [(None, 'a/robot'), ('', 'robot'), ('/r1', '/r1')])
-def test_each_plugin_has_its_own_rule_for_the_namespace(tag, namespace):
+def test_namespace_rule_is_that_of_the_plugin_class(tag, namespace):
     class Placed(ModelPlugin):
         absent_namespace, empty_namespace, prefix = 'a/{}', '{}', 'P({}): '
 
@@ -169,12 +169,12 @@ def test_each_plugin_has_its_own_rule_for_the_namespace(tag, namespace):
     assert (plugin.namespace, plugin.log_prefix) == (namespace, f'P({namespace}): ')
 
 
-def test_tags_that_are_not_read_are_named(caplog):
+def test_unknown_tags_are_reported(caplog):
     make_drive(Watcher, fake_model(), rate='1', alwaysOn='1', colour='red', size='2')
     assert 'not read by this plugin: <colour>, <size>' in caplog.messages
 
 
-def test_a_plugin_that_does_nothing_is_never_due():
+def test_plugin_without_hooks_is_never_due():
     plugin = make_drive(ModelPlugin, fake_model())
     plugin.world.run(10)
     assert plugin.due == NEVER

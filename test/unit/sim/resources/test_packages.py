@@ -27,7 +27,7 @@ def test_a_package_is_found_by_the_name_in_its_manifest_at_any_depth(tmp_path):
     assert search('nobodys') is None
 
 
-def test_what_is_in_a_package_or_ignored_is_not_looked_at(tmp_path):
+def test_nested_and_ignored_packages_are_not_searched(tmp_path):
     make_package(tmp_path / 'outer', 'outer')
     make_package(tmp_path / 'outer' / 'inner', 'inner')
     make_package(tmp_path / 'ignored' / 'hidden', 'hidden')
@@ -37,7 +37,7 @@ def test_what_is_in_a_package_or_ignored_is_not_looked_at(tmp_path):
     assert search('hidden') is None
 
 
-def test_the_package_around_a_file_comes_first_then_the_given_path_then_that_of_ros(
+def test_order_of_search_is_enclosing_package_given_path_ros_path(
         tmp_path, monkeypatch):
     first = make_package(tmp_path / 'a' / 'robot', 'robot')
     second = make_package(tmp_path / 'b' / 'robot', 'robot')
@@ -49,13 +49,13 @@ def test_the_package_around_a_file_comes_first_then_the_given_path_then_that_of_
     assert PackageSearch()('robot') == third
 
 
-def test_this_package_is_always_there(tmp_path):
+def test_this_package_is_always_found(tmp_path):
     assert PackageSearch()('rosbots_description') == str(ROOT)
     theirs = make_package(tmp_path / 'theirs', 'rosbots_description')
     assert PackageSearch([tmp_path])('rosbots_description') == theirs
 
 
-def test_a_broken_manifest_is_no_package(tmp_path):
+def test_invalid_manifest_is_ignored(tmp_path):
     broken = tmp_path / 'broken'
     broken.mkdir()
     (broken / 'package.xml').write_text('<package><name>broken')

@@ -1,4 +1,4 @@
-"""Files of our own: private, and written wherever there is room."""
+"""Scratch files: private, and written wherever there is space."""
 
 import os
 import stat
@@ -17,7 +17,7 @@ from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.resources import scratch
 from rosbots_description.sim.resources.scratch import ScratchFolder
 
-# Fills the places that its arguments name, in a private view of the file system, and goes on.
+# Fills the folders given as arguments, in a private mount namespace, then runs the program.
 FILL = """
 for place; do
   mount -t tmpfs -o size=4k full "$place" && head -c 4k /dev/zero > "$place/x" || exit 77
@@ -28,7 +28,7 @@ NOT_PERMITTED = 77
 WRITE = """
 import os, resource, tempfile
 from rosbots_description.sim.resources.scratch import ScratchFolder
-tempfile.tempdir = os.environ.get('TMPDIR')  # chosen when there was still room
+tempfile.tempdir = os.environ.get('TMPDIR')  # chosen while there was space
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(os.environ.get('LARGEST', -1)),) * 2)
 folder = ScratchFolder('test_')
 try:
@@ -54,7 +54,7 @@ def folder():
 
 @pytest.fixture
 def places(tmp_path, monkeypatch):
-    """The folders for temporary files and for memory, of this test alone."""
+    """Replace the folders for temporary files and shared memory by those of the test."""
     disk, memory = tmp_path / 'disk', tmp_path / 'memory'
     for place in (disk, memory):
         place.mkdir()
@@ -63,14 +63,14 @@ def places(tmp_path, monkeypatch):
     return disk, memory
 
 
-def test_nobody_else_may_read_the_files(folder):
+def test_files_are_readable_by_the_owner_only(folder):
     path = folder.write('a.obj', b'content', 'a.dae')
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert path.read_bytes() == b'content'
 
 
-def test_nothing_is_made_before_it_is_needed_and_nothing_stays(folder, places):
+def test_folder_is_made_on_demand_and_removed(folder, places):
     disk, _ = places
     assert list(disk.iterdir()) == []
     path = folder.write('a.obj', b'content', 'a.dae')
@@ -79,7 +79,7 @@ def test_nothing_is_made_before_it_is_needed_and_nothing_stays(folder, places):
     assert list(disk.iterdir()) == []
 
 
-def test_memory_serves_where_the_temporary_folder_is_gone_and_earlier_files_stay(folder, places):
+def test_shared_memory_is_used_when_the_temporary_folder_is_gone(folder, places):
     disk, memory = places
     first = folder.write('a.obj', b'a', 'a.dae')
     first.parent.rename(disk.parent / 'away')
@@ -92,7 +92,7 @@ def test_memory_serves_where_the_temporary_folder_is_gone_and_earlier_files_stay
     assert second.is_file()
 
 
-def test_without_any_place_the_sentence_names_the_mesh_and_all_places(folder, places):
+def test_error_without_any_space_names_the_mesh_and_all_folders(folder, places):
     for place in places:
         place.rmdir()
     with pytest.raises(ModelError) as caught:
@@ -107,7 +107,7 @@ def test_without_any_place_the_sentence_names_the_mesh_and_all_places(folder, pl
     (1, 0, '/dev/shm/test_'),
     (2, 1, '(No space left on device) nor in /dev/shm (No space left on device)'),
 ])
-def test_a_full_disk_costs_nothing_while_there_is_memory(tmp_path, full, code, said):
+def test_shared_memory_replaces_a_full_disk(tmp_path, full, code, said):
     places = [str(tmp_path), scratch.MEMORY][:full]
     done = run(*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, TMPDIR=str(tmp_path),
                PYTHON=sys.executable, PROGRAM=WRITE)
@@ -117,7 +117,7 @@ def test_a_full_disk_costs_nothing_while_there_is_memory(tmp_path, full, code, s
     assert said in done.stdout + done.stderr
 
 
-def test_no_place_takes_a_file_larger_than_the_limit_of_the_process():
+def test_file_above_the_size_limit_of_the_process_is_an_error():
     done = run(sys.executable, '-c', WRITE, LARGEST='0')
     assert done.returncode == 1
     assert "'bot.dae' cannot be made ready: nothing can be written in /tmp (" in done.stderr
@@ -128,7 +128,7 @@ def test_threads_share_a_folder(folder, places, monkeypatch):
     mkdtemp = tempfile.mkdtemp
 
     def slow_mkdtemp(*where, **named):
-        time.sleep(0.02)  # lets the other threads begin to write, if they may
+        time.sleep(0.02)  # time for the other threads to write, if they could
         return mkdtemp(*where, **named)
 
     monkeypatch.setattr(tempfile, 'mkdtemp', slow_mkdtemp)

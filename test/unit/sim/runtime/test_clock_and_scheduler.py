@@ -1,4 +1,4 @@
-"""Time is a count of steps, and hooks run at the steps they ask for."""
+"""Clock as a count of steps, and hooks at their due steps."""
 
 from fractions import Fraction
 
@@ -20,7 +20,7 @@ def test_time_is_exact_after_a_million_steps():
     assert clock.now_ns == 1000 * 10**9
 
 
-def test_a_new_step_size_counts_from_now_on():
+def test_new_step_size_applies_to_later_steps():
     clock = SimClock(0.001)
     clock.steps += 500
     clock.set_step_size(0.002)
@@ -44,7 +44,7 @@ def test_first_step_after_still_holds_when_the_step_size_has_changed():
     assert clock.now_ns == 25_000_000
 
 
-def test_reset_begins_at_zero():
+def test_reset_restarts_at_zero():
     clock = SimClock(0.001)
     clock.steps += 7
     clock.set_step_size(0.01)
@@ -85,7 +85,7 @@ def test_an_empty_schedule_is_never_due():
     ('ratio', 'due'),
     [(Fraction(2), 15), (Fraction(4), 13), (Fraction(1, 5), 60), (Fraction(100), 11)],
 )
-def test_hooks_keep_their_time_when_the_step_size_changes(ratio, due):
+def test_hooks_keep_their_due_time_when_the_step_size_changes(ratio, due):
     schedule, idle, busy = Schedule(), Every(NEVER, [], 'idle'), Every(20, [], 'busy')
     schedule.add(idle)
     schedule.add(busy)
@@ -101,7 +101,7 @@ class Broken(Hook):
 
     def before_step(self):
         self.runs += 1
-        raise RuntimeError('out of order')
+        raise RuntimeError('hook failed')
 
 
 def test_a_hook_runs_before_and_after_the_physics_of_the_step_in_which_it_is_due():
@@ -120,7 +120,7 @@ def test_a_hook_runs_before_and_after_the_physics_of_the_step_in_which_it_is_due
         'physics', 'before', 'physics', 'after', 'physics']
 
 
-def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):
+def test_failing_hook_is_skipped_for_a_while_and_the_others_run(caplog):
     schedule, log, broken = Schedule(), [], Broken()
     schedule.add(broken)
     schedule.add(Every(1, log, 'a'))
@@ -132,8 +132,8 @@ def test_a_hook_that_fails_is_left_out_for_a_while_and_the_others_go_on(caplog):
         f'internal fault of Broken; the simulation goes on, without it for {SUSPENSION} steps'] * 2
 
 
-class Crier(PreRunPublisher):
-    """Tells of every third step."""
+class EveryThird(PreRunPublisher):
+    """Publishes every third step."""
 
     due = 3
 
@@ -146,16 +146,16 @@ class Crier(PreRunPublisher):
             self.due += 3
 
 
-def test_heralds_tell_of_many_steps_at_once_and_of_each_one_once():
-    schedule, crier = Schedule(), Crier()
+def test_pre_run_publisher_publishes_each_of_several_steps_once():
+    schedule, crier = Schedule(), EveryThird()
     schedule.add_pre_run_publisher(crier)
     for last in (1, 2, 7, 7, 12):
         schedule.publish_ahead(last)
     assert crier.told == [3, 6, 9, 12]
 
 
-def test_what_is_wanted_next_is_so_by_hooks_and_heralds():
-    schedule, crier = Schedule(), Crier()
+def test_next_due_step_is_the_least_of_hooks_and_pre_run_publishers():
+    schedule, crier = Schedule(), EveryThird()
     assert schedule.next_wanted() == NEVER
     schedule.add_pre_run_publisher(crier)
     assert (schedule.next_wanted(), schedule.next_due()) == (3, NEVER)
@@ -163,10 +163,10 @@ def test_what_is_wanted_next_is_so_by_hooks_and_heralds():
     assert schedule.next_wanted() == 2
 
 
-def test_a_herald_that_fails_is_left_out_for_a_while(caplog):
-    schedule, crier = Schedule(), Crier()
+def test_failing_pre_run_publisher_is_skipped_for_a_while(caplog):
+    schedule, crier = Schedule(), EveryThird()
     crier.told = None
     schedule.add_pre_run_publisher(crier)
     schedule.publish_ahead(5)
     assert crier.due == 5 + SUSPENSION
-    assert 'internal fault of Crier' in caplog.text
+    assert 'internal fault of EveryThird' in caplog.text

@@ -1,4 +1,4 @@
-"""What the link poses of a saved world mean for joints."""
+"""Joint positions from the link poses of a saved world."""
 
 import pytest
 
@@ -19,7 +19,7 @@ from rosbots_description.sim.runtime.saved_state import joint_positions
     (REVOLUTE, (0.0, -1.0, 0.0), Pose(orientation=from_rpy(0.0, 0.4, 0.0)), -0.4),
     (PRISMATIC, (1.0, 0.0, 0.0), Pose((0.3, 0.0, 0.0)), 0.3),
 ])
-def test_joint_positions_follow_from_where_the_links_stood(kind, axis, moved, position):
+def test_joint_positions_follow_from_link_poses(kind, axis, moved, position):
     frame = Pose((0.0, 0.5, 0.0), from_rpy(0.1, 0.2, 0.3))  # of the joint in the child
     child = Pose((1.0, 2.0, 3.0), from_rpy(0.3, 0.2, 0.1))  # at position zero
     spec = ModelSpec('m', (LinkSpec('a'), LinkSpec('b', child)),

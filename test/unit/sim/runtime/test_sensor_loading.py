@@ -1,4 +1,4 @@
-"""Sensors of a model are loaded with it; what is not simulated of them is named once."""
+"""Sensors are loaded with their model; omissions are reported once."""
 
 import pytest
 from support.fake_engine import FakeEngine
@@ -33,13 +33,13 @@ def said(caplog):
     return [(record.levelname, record.getMessage()) for record in caplog.records]
 
 
-def test_one_without_a_plugin_is_kept_without_a_word(caplog):
+def test_sensor_without_a_plugin_is_kept_silently(caplog):
     model = load(sensor(ray()))
     assert model.sensor('s') is model.sensor('a::s') is model.sensors[0]
     assert (model.left_out, caplog.records) == ([], [])
 
 
-def test_one_of_a_type_that_is_not_simulated_is_kept_and_named(caplog):
+def test_sensor_of_an_unsupported_type_is_kept_and_reported(caplog):
     model = load(sensor('', 'sonar'))
     assert said(caplog) == [('WARNING', "model 'bot', sonar 's' of link 'a': sensors of this type "
                              f'are not simulated yet; see {PAGE}')]
@@ -55,7 +55,7 @@ def test_one_of_a_type_that_is_not_simulated_is_kept_and_named(caplog):
     ('libgazebo_ros_diff_drive.so', 'ERROR',
      'libgazebo_ros_diff_drive.so works only in a <gazebo> or <model>, not where it stands'),
 ])
-def test_a_plugin_in_one_that_is_not_here_is_named(library, level, remark, caplog):
+def test_unavailable_plugin_of_a_sensor_is_reported(library, level, remark, caplog):
     model = load(sensor(f'{ray()}<plugin name="p" filename="{library}"/>'))
     assert said(caplog) == [(level, f"model 'bot', ray 's' of link 'a': {remark}; see {PAGE}")]
     assert model.left_out == [f"ray 's' ({library})"]
@@ -77,7 +77,7 @@ def test_a_plugin_in_one_that_is_not_here_is_named(library, level, remark, caplo
     (ray() + '<update_rate>1e-300</update_rate>',
      '<update_rate> is 1e-300 Hz; it must be at least 0.001, or 0 for every step'),
 ])
-def test_one_that_makes_no_sense_costs_no_model(inside, sentence, caplog):
+def test_invalid_sensor_is_left_out_of_the_model(inside, sentence, caplog):
     model = load(sensor(inside))
     ((level, text),) = said(caplog)
     assert level == 'ERROR'
@@ -89,13 +89,13 @@ def test_one_that_makes_no_sense_costs_no_model(inside, sentence, caplog):
 
 
 @pytest.mark.parametrize('rate', ['nan', 'often', ''])
-def test_a_rate_that_is_none_means_every_step(rate, caplog):
+def test_invalid_rate_means_every_step(rate, caplog):
     model = load(sensor(f'{ray()}<update_rate>{rate}</update_rate>'))
     assert model.sensor('s').spec.update_rate == 0.0
     assert f"<update_rate> is '{rate}'; it takes a finite number [Hz]" in caplog.text
 
 
-def test_what_belongs_into_a_sensor_does_not_run_in_a_model(caplog):
+def test_sensor_plugin_does_not_run_in_a_model(caplog):
     text = ('<sdf version="1.6"><model name="m"><link name="a"/>'
             '<plugin name="p" filename="libgazebo_ros_laser.so"/></model></sdf>')
     spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())

@@ -1,4 +1,4 @@
-"""Rays meet shapes where an independent definition of their surface says."""
+"""Ray hits lie on the surface of shapes, by an independent definition."""
 
 import math
 
@@ -13,7 +13,7 @@ EXACT = 1e-12  # [m]
 
 
 def outside(kind, points):
-    """Return how far points (3, n) are outside a shape; below 0 inside [m, nearly]."""
+    """Return the approximate signed distance of points (3, n) from a shape [m]; negative inside."""
     x, y, z = points
     hx, hy, hz = HALF[kind]
     match kind:
@@ -37,7 +37,7 @@ def many_rays(count=20_000):
 
 
 @pytest.mark.parametrize('kind', HALF)
-def test_what_is_met_lies_on_the_surface_and_nothing_lies_before_it(kind):
+def test_hit_is_the_first_point_on_the_surface(kind):
     starts, ways = many_rays()
     met = meet(kind, starts, ways)
     hit = np.isfinite(met)
@@ -69,7 +69,7 @@ def test_rays_along_axes_and_edges(kind, start, way, expected):
 @pytest.mark.parametrize(('least', 'expected'), [
     (1.0, 1.5), (1.5, 1.5), (1.6, 2.5), (2.5, 2.5), (2.6, math.inf),
 ])
-def test_a_ray_that_begins_inside_meets_the_far_side(least, expected):
+def test_ray_from_inside_hits_the_far_side(least, expected):
     assert meet('box', [(-2, 0, 0)], [(1, 0, 0)], least)[0] == pytest.approx(expected)
 
 
@@ -81,7 +81,7 @@ def test_a_ray_that_begins_inside_meets_the_far_side(least, expected):
 @pytest.mark.parametrize('rows', [
     Sweep(1, 1, 0.0, 0.0), Sweep(16, 16, -0.26, 0.26), Sweep(9, 9, 1.6, -1.6),
 ])
-def test_no_ray_that_meets_a_ball_is_left_out(rows, columns):
+def test_culling_keeps_every_ray_that_hits_a_ball(rows, columns):
     fan = RayFan(rows, columns)
     random = np.random.default_rng(2)
     centres, radii = random.uniform(-5.0, 5.0, (60, 3)), random.uniform(0.01, 3.0, 60)
@@ -99,7 +99,7 @@ def test_no_ray_that_meets_a_ball_is_left_out(rows, columns):
     assert rays.size == 0 or rays.max() < fan.ways.shape[1]
 
 
-def test_a_narrow_ball_leaves_few_rays():
+def test_culling_for_a_small_ball_keeps_few_rays():
     fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(720, 720, -1.5708, 1.5708))
     _, rays, _ = fan.rays(fan.near(np.array([[5.0, 0.0, 0.0], [0.0, 0.0, 5.0]]), np.ones(2), 9.0))
     assert len(rays) == pytest.approx(2 * math.asin(0.2) / math.pi * 720, abs=2)

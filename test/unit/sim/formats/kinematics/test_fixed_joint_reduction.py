@@ -1,4 +1,4 @@
-"""Fixed joints vanish as in sdformat: names, masses, poses, and what goes with them."""
+"""Reduction of fixed joints as in sdformat: names, masses, poses, references."""
 
 import math
 import re
@@ -40,10 +40,10 @@ def names(items):
 
 @pytest.fixture(scope='module')
 def article():
-    """The robot of the article, as spawned."""
+    """Return the article's robot as spawned."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('ROS_PACKAGE_PATH', str(ROOT))
-        patch.setattr('roslaunch.substitution_args._rospack', None)  # it remembers the path
+        patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
         text = xacro.process_file(str(ROOT / 'urdf/rosbots.xacro'), mappings={}).toxml()
     find = {'rosbots_description': str(ROOT)}.get
     return load_urdf(text, 'rosbots', robot_namespace='/', find_package=find)[0]
@@ -60,7 +60,7 @@ def test_the_articles_base_has_the_mass_properties_measured_in_gazebo(article):
     np.testing.assert_allclose((base.ixx, base.iyy, base.izz), (0.0175, 0.0300, 0.0452), atol=5e-5)
 
 
-def test_the_articles_wheels_hang_on_the_base(article):
+def test_the_articles_wheels_are_children_of_the_base(article):
     left, right = article.joints
     assert (left.name, left.parent, left.child) == (
         'wheel_left_joint', 'base_footprint', 'wheel_left_link')
@@ -69,7 +69,7 @@ def test_the_articles_wheels_hang_on_the_base(article):
     assert right.axis == (0.0, 0.0, 1.0)
 
 
-def test_the_articles_lumped_shapes_have_gazebos_names(article):
+def test_the_articles_reduced_shapes_have_gazebos_names(article):
     shapes = names(article.link('base_footprint').collisions)
     assert shapes[:3] == [
         'base_footprint_fixed_joint_lump__base_link_collision',
@@ -80,7 +80,7 @@ def test_the_articles_lumped_shapes_have_gazebos_names(article):
     assert names(article.link('wheel_left_link').collisions) == ['wheel_left_link_collision']
 
 
-def test_the_articles_lumped_links_have_one_heir(article):
+def test_the_articles_reduced_links_have_one_parent(article):
     assert len(article.reduced) == 14
     assert {parent for parent, _ in article.reduced.values()} == {'base_footprint'}
 
@@ -105,7 +105,7 @@ def test_shapes_are_named_and_numbered_as_in_gazebo():
         'base_fixed_joint_lump__arm_visual', 'base_fixed_joint_lump__tip_visual_1']
 
 
-def test_shapes_and_joints_move_into_the_heirs_frame():
+def test_shapes_and_joints_are_transformed_into_the_parents_frame():
     quarter = '<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>'
     spec = load(
         link('base') + link('arm')
@@ -121,7 +121,7 @@ def test_shapes_and_joints_move_into_the_heirs_frame():
     assert spec.joints[0].pose == Pose()
 
 
-def test_masses_merge_by_the_parallel_axis_theorem_in_turned_frames():
+def test_masses_in_rotated_frames_merge_by_the_parallel_axis_theorem():
     inertial = ('<inertial><origin xyz="0 0 1"/><mass value="1"/>'
                 '<inertia ixx="1" iyy="2" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>')
     spec = load(
@@ -130,7 +130,7 @@ def test_masses_merge_by_the_parallel_axis_theorem_in_turned_frames():
         + joint('jb', 'base', 'b', inside=f'<origin rpy="{math.pi / 2} 0 0" xyz="0 1 1"/>')
     )
     merged = spec.links[0].inertial
-    # b's centre: (0 1 1) + z turned to -y = (0 0 1); both centres coincide, b's y and z swap.
+    # Centre of b: (0 1 1) + z rotated to -y = (0 0 1); both centres coincide, y and z of b swap.
     assert merged.mass == 2.0
     np.testing.assert_allclose(merged.pose.position, (0.0, 0.0, 1.0), atol=1e-12)
     np.testing.assert_allclose(tensor(merged), np.diag([2.0, 5.0, 5.0]), atol=1e-12)
@@ -146,7 +146,7 @@ def test_a_preserved_joint_stays_fixed():
     assert (spec.joints[0].type, spec.joints[0].parent) == ('fixed', 'a')
 
 
-def test_lumping_switched_off_makes_a_joint_that_cannot_turn():
+def test_disabled_lumping_makes_a_joint_with_zero_range():
     spec = load(link('a') + link('b') + joint('j', 'a', 'b') + kept('disableFixedJointLumping'))
     (j,) = spec.joints
     assert (j.type, j.lower, j.upper) == ('revolute', 0.0, 0.0)
@@ -156,13 +156,13 @@ def test_lumping_switched_off_makes_a_joint_that_cannot_turn():
     ('preserveFixedJoint', 'disableFixedJointLumping'),
     ('disableFixedJointLumping', 'preserveFixedJoint'),
 ])
-def test_of_both_ways_to_keep_a_joint_preserving_wins(tags):
+def test_preserve_fixed_joint_takes_precedence_over_disabled_lumping(tags):
     blocks = ''.join(kept(tag) for tag in tags)
     (j,) = load(link('a') + link('b') + joint('j', 'a', 'b') + blocks).joints
     assert j.type == 'fixed'
 
 
-def test_a_robot_below_world_is_fixed_and_reduced_further_up():
+def test_robot_below_world_is_fixed_and_reduced():
     spec = load(
         link('world', 0) + link('base') + link('arm')
         + joint('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>') + joint('j', 'base', 'arm')
@@ -173,12 +173,12 @@ def test_a_robot_below_world_is_fixed_and_reduced_further_up():
     assert (bolt.type, bolt.parent, bolt.child) == ('fixed', 'world', 'base')
 
 
-def test_what_stands_in_the_world_link_itself_is_named_as_not_simulated(caplog):
+def test_content_of_the_world_link_is_reported_as_not_simulated(caplog):
     load(link('world', 0, f'<collision>{BALL}</collision>') + link('a') + joint('j', 'world', 'a'))
     assert "'world': a root of that name is the world itself" in caplog.text
 
 
-def test_a_movable_link_without_mass_vanishes_with_all_below_it(caplog):
+def test_movable_link_without_mass_is_left_out_with_its_descendants(caplog):
     spec = load(
         link('base') + link('hub', 0) + link('tyre') + link('cap')
         + joint('a', 'base', 'hub', 'continuous') + joint('b', 'hub', 'tyre', 'continuous')
@@ -191,7 +191,7 @@ def test_a_movable_link_without_mass_vanishes_with_all_below_it(caplog):
                      caplog.text)
 
 
-def test_a_fixed_link_without_mass_lives_on_but_what_moves_below_it_does_not(caplog):
+def test_fixed_link_without_mass_is_kept_without_its_movable_children(caplog):
     spec = load(
         link('base') + link('mount', 0, f'<collision>{BALL}</collision>') + link('wheel')
         + joint('a', 'base', 'mount') + joint('b', 'mount', 'wheel', 'continuous')
@@ -202,7 +202,7 @@ def test_a_fixed_link_without_mass_lives_on_but_what_moves_below_it_does_not(cap
     assert "as in Gazebo: 'wheel'" in caplog.text
 
 
-def test_a_root_without_mass_is_saved_by_a_fixed_child_that_has_some(caplog):
+def test_root_without_mass_is_kept_if_a_fixed_child_has_mass(caplog):
     spec = load(
         link('footprint', 0) + link('base') + link('wheel')
         + joint('a', 'footprint', 'base') + joint('b', 'base', 'wheel', 'continuous')

@@ -1,4 +1,4 @@
-"""doc/gazebo_compatibility.md says of each SDF element what the readers do with it."""
+"""The table of SDF elements in doc/gazebo_compatibility.md agrees with the readers."""
 
 import logging
 import re
@@ -16,7 +16,7 @@ from rosbots_description.sim.resources.search_path import ModelSearch
 OFFERED = ('same', 'better')
 MISSING, QUIET = 'not supported', 'level debug'
 
-# Every supported element once, and each that is not has its parent here.
+# Contains every supported element, and the parent of every unsupported one.
 WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame name="f">
 <pose>0 0 0 0 0 0</pose></frame><physics><max_step_size>0.001</max_step_size>
   <real_time_update_rate>0</real_time_update_rate>
@@ -72,7 +72,7 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
 </world></sdf>'''
 
 COLOUR = '1 0 0 1'
-VALUES = {'ambient': COLOUR, 'background': COLOUR, 'fdir1': '1 0 0'}  # the others get 3
+VALUES = {'ambient': COLOUR, 'background': COLOUR, 'fdir1': '1 0 0'}  # the value of others is 3
 
 
 def rows():
@@ -84,7 +84,7 @@ def rows():
 
 
 def row_name(path):
-    """Return how the table calls a path: models, lights and shapes are the same everywhere."""
+    """Return the name of a path in the table, the same for all models, lights and shapes."""
     path = re.sub(r'^(world/|model/)*(model|include|light)/', r'\2/', path)
     path = re.sub(r'^world/state/(model/)+', 'world/state/model/', path)
     return re.sub(r'^model/link/(collision|visual)/geometry/', 'geometry/', path)
@@ -97,19 +97,19 @@ def path_of(element):
 
 
 def leaves(paths):
-    """Return the paths that no other one goes on from."""
+    """Return the paths that are no prefix of another one."""
     ends = {path for path in paths if not any(other.startswith(path + '/') for other in paths)}
     return {path for path in ends if path[-1] not in '*.'}
 
 
 @pytest.fixture
 def asked(monkeypatch):
-    """Return two sets that fill with the paths that the readers look for, and call idle."""
+    """Return two sets, to be filled with the paths that the readers read and that they ignore."""
     wanted, idle = set(), set()
     check, parser = Notes.check, xml_parser._parser
 
     class Element(etree.ElementBase):
-        """An element that remembers what it is asked for."""
+        """An element that records the lookups of children and attributes."""
 
     def asking(method):
         look = getattr(etree.ElementBase, method)
@@ -140,7 +140,7 @@ def asked(monkeypatch):
 
 
 def load(text, caplog):
-    """Return what is said of a world, as (level, sentence)."""
+    """Return the log messages about a world, as (level, text)."""
     caplog.set_level(logging.DEBUG, 'rosbots_description')
     assert load_world(text, 'w.world', find_model=ModelSearch([ROOT])).faults == ()
     said = [(record.levelno, record.getMessage()) for record in caplog.records]
@@ -148,7 +148,7 @@ def load(text, caplog):
 
 
 def world_with(path):
-    """Return WORLD with an element more, first in its parent, where a row's path says."""
+    """Return WORLD with one more element at a row's path, first in its parent."""
     root = etree.fromstring(WORLD)
     tag = path.rpartition('/')[2]
     parent = next(e for e in root.iter() if row_name(f'{path_of(e)}/{tag}') == path)
@@ -171,20 +171,20 @@ def test_each_element_has_one_row_with_a_known_state():
     assert [row for row in ROWS if row[1] != 'same' and not row[2]] == []
 
 
-def test_what_the_readers_look_for_has_a_row_and_what_has_a_row_is_looked_for(asked, caplog):
+def test_rows_are_exactly_the_elements_that_the_readers_look_up(asked, caplog):
     load(WORLD, caplog)
     wanted, idle = asked
     assert leaves({row_name(path) for path in wanted}) - set(ABSENT) == SUPPORTED
     assert idle <= {name.rpartition('/')[2] for name, how in ABSENT.items() if QUIET in how}
 
 
-def test_nothing_is_said_of_the_elements_that_are_supported(caplog):
+def test_supported_elements_are_not_reported(caplog):
     assert {row_name(path_of(element)) for element in etree.fromstring(WORLD).iter()} >= SUPPORTED
     assert load(WORLD, caplog) == []
 
 
 @pytest.mark.parametrize('name', ABSENT)
-def test_what_is_not_supported_is_named_at_the_level_that_its_row_says(name, caplog):
+def test_unsupported_element_is_reported_at_the_level_of_its_row(name, caplog):
     tag = name.rpartition('/')[2]
     named = [level for level, text in load(world_with(name), caplog)
              if re.search(rf'/{tag} \(line|<{tag}>', text)]
@@ -196,7 +196,7 @@ def test_every_type_of_joint_has_a_row():
 
 
 @pytest.mark.parametrize('kind', TYPES)
-def test_a_type_of_joint_is_simulated_or_named_as_its_row_says(kind, caplog):
+def test_type_of_joint_is_simulated_or_reported_as_in_its_row(kind, caplog):
     said = load(WORLD.replace('"revolute"', f'"{kind}"'), caplog)
     assert [f'{kind} joints are not simulated' in text for _, text in said] \
         == [True] * (TYPES[kind] == MISSING)

@@ -1,4 +1,4 @@
-"""Poses of SDF, given in all sorts of frames, and models inside models."""
+"""Poses of SDF in all kinds of frames, and nested models."""
 
 import math
 
@@ -31,12 +31,12 @@ def test_links_are_posed_in_their_model():
     }
 
 
-def test_a_pose_may_be_given_relative_to_a_link_that_comes_later():
+def test_pose_may_be_relative_to_a_later_link():
     spec = load(link('a', '1 0 0 0 0 0', 'relative_to="b"') + link('b', f'0 0 1 0 0 {QUARTER}'))
     assert positions(spec)['a'] == (0.0, 1.0, 1.0)
 
 
-def test_frame_says_the_same_before_sdf_1_7():
+def test_attribute_frame_is_relative_to_before_sdf_1_7():
     spec = load(link('a', '1 0 0 0 0 0', 'frame="b"') + link('b', f'0 0 1 0 0 {QUARTER}'), '1.6')
     assert positions(spec)['a'] == (0.0, 1.0, 1.0)
 
@@ -45,13 +45,13 @@ def test_an_empty_frame_is_the_default_one():
     assert positions(load(link('a', '1 0 0 0 0 0', 'frame=""'), '1.6'))['a'] == (1.0, 0.0, 0.0)
 
 
-def test_named_frames_carry_poses():
+def test_poses_may_be_relative_to_named_frames():
     spec = load('<frame name="f" attached_to="b"><pose>0 0 5 0 0 0</pose></frame>'
                 + link('b', '1 0 0 0 0 0') + link('a', '0 1 0 0 0 0', 'relative_to="f"'))
     assert positions(spec)['a'] == (1.0, 1.0, 5.0)
 
 
-def test_a_collision_posed_in_another_frame_ends_up_in_its_link():
+def test_collision_posed_in_another_frame_is_transformed_into_its_link():
     shape = '<geometry><sphere><radius>1</radius></sphere></geometry>'
     spec = load(f'''<link name="a"><pose>1 0 0 0 0 {QUARTER}</pose>
       <collision name="c"><pose relative_to="__model__">0 0 0 0 0 0</pose>{shape}</collision>
@@ -61,7 +61,7 @@ def test_a_collision_posed_in_another_frame_ends_up_in_its_link():
     assert made.visuals[0].pose == Pose((0.0, 0.0, 1.0))
 
 
-def test_a_sensor_posed_in_another_frame_ends_up_in_its_link():
+def test_sensor_posed_in_another_frame_is_transformed_into_its_link():
     sensor = load('''<link name="a"><pose>1 0 0 0 0 0</pose><sensor name="s" type="ray">
       <pose relative_to="__model__">1 0 2 0 0 0</pose><always_on>1</always_on></sensor></link>
       ''').links[0].sensors[0]
@@ -69,27 +69,27 @@ def test_a_sensor_posed_in_another_frame_ends_up_in_its_link():
     assert sensor.always_on
 
 
-def test_a_joint_may_carry_a_pose():
+def test_poses_may_be_relative_to_a_joint():
     spec = load('''<joint name="j" type="fixed"><parent>a</parent><child>b</child>
       <pose>0 0 1 0 0 0</pose></joint>''' + link('a', '0 0 0 0 0 0') + link('b', '1 0 0 0 0 0')
                 + link('c', '0 1 0 0 0 0', 'relative_to="j"'))
     assert positions(spec)['c'] == (1.0, 1.0, 1.0)
 
 
-def test_frames_in_a_ring_are_refused():
+def test_cyclic_frames_are_rejected():
     with pytest.raises(ModelError, match='posed relative to itself'):
         load(link('a', '0 0 0 0 0 0', 'relative_to="b"')
              + link('b', '0 0 0 0 0 0', 'relative_to="a"'))
 
 
-def test_a_long_chain_of_frames_is_followed():
+def test_long_chain_of_frames_is_resolved():
     chain = ''.join(f'<frame name="f{i}"><pose relative_to="f{i + 1}">1 0 0 0 0 0</pose></frame>'
                     for i in range(3000))
     spec = load(chain + '<frame name="f3000"/>' + link('a', '0 0 0 0 0 0', 'relative_to="f0"'))
     assert positions(spec)['a'] == (3000.0, 0.0, 0.0)
 
 
-def test_an_unknown_frame_is_refused_with_the_one_that_may_be_meant():
+def test_error_about_an_unknown_frame_suggests_a_similar_one():
     with pytest.raises(ModelError, match=r"'bse'.*did you mean 'base'"):
         load(link('base', '0 0 0 0 0 0') + link('a', '0 0 0 0 0 0', 'relative_to="bse"'))
 
@@ -107,7 +107,7 @@ NESTED = f'''<link name="base"/>
 '''
 
 
-def test_models_inside_models_become_one_with_scoped_names():
+def test_nested_models_become_one_with_scoped_names():
     spec = load(NESTED)
     assert positions(spec) == {
         'base': (0.0, 0.0, 0.0), 'arm::upper': (0.0, 1.0, 1.0), 'arm::lower': (0.0, 2.0, 1.0)
@@ -118,26 +118,26 @@ def test_models_inside_models_become_one_with_scoped_names():
     assert (joints['shoulder'].parent, joints['shoulder'].child) == ('base', 'arm::upper')
 
 
-def test_plugins_and_sensors_of_inner_models_name_links_and_joints_as_they_are_called_now():
+def test_names_in_plugins_and_sensors_of_nested_models_become_scoped():
     spec = load(NESTED)
     plugin = spec.plugins[0].element
     assert (plugin.child('jointName').text, plugin.child('topic').text) == ('arm::elbow', 'other')
     assert spec.link('arm::upper').sensors[0].element.child('frame').text == 'arm::upper'
 
 
-def test_a_model_that_stands_inside_one_that_moves_is_moved_by_nothing():
+def test_static_model_nested_in_a_movable_one_is_fixed():
     spec = load('<link name="a"/><model name="post"><static>1</static><link name="b"/></model>')
     assert not spec.static
     assert [made.kinematic for made in spec.links] == [False, True]
 
 
-def test_what_is_in_a_model_that_stands_stands():
+def test_models_nested_in_a_static_one_are_static():
     spec = load('<static>1</static><link name="a"/><model name="in"><link name="b"/></model>')
     assert spec.static
     assert spec.links[1].inertial is None
 
 
-def test_poses_go_through_several_models():
+def test_poses_are_composed_through_nested_models():
     inner = '<link name="a"><pose>0 0 1 0 0 0</pose></link>'
     for name in ('one', 'two', 'three'):
         inner = f'<model name="{name}"><pose>1 0 0 0 0 0</pose>{inner}</model>'

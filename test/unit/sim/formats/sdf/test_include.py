@@ -1,4 +1,4 @@
-"""Models found along search paths, included and overridden; worlds found by name."""
+"""Models found on search paths, included and overridden; worlds found by name."""
 
 import logging
 
@@ -14,7 +14,7 @@ CONE = ('<sdf version="1.6"><model name="cone"><pose>0 0 7 0 0 0</pose>'
 
 
 def put(directory, name, files, offers=(('1.6', 'model.sdf'),)):
-    """Make a model's folder with its model.config."""
+    """Write the folder of a model, with model.config."""
     folder = directory / name
     folder.mkdir(parents=True)
     entries = ''.join(f'<sdf version="{version}">{file}</sdf>' for version, file in offers)
@@ -24,7 +24,7 @@ def put(directory, name, files, offers=(('1.6', 'model.sdf'),)):
 
 
 def spawn(include, directory, name='thing'):
-    """Return what spawning a world with that include gives."""
+    """Return the world of a file with this include."""
     text = f'<sdf version="1.6"><world name="w"><include>{include}</include></world></sdf>'
     return load_sdf(text, name, source='w.sdf', find_model=ModelSearch([directory]))
 
@@ -42,13 +42,13 @@ def complaint(include, directory):
     return str(caught.value)
 
 
-def test_an_include_gives_its_model_under_the_name_it_is_spawned(tmp_path):
+def test_spawned_include_has_the_requested_name(tmp_path):
     put(tmp_path, 'cone', {'model.sdf': CONE})
     spec, _ = spawn('<uri>model://cone</uri>', tmp_path)
     assert (spec.name, [link.name for link in spec.links]) == ('thing', ['body'])
 
 
-def test_a_spawned_include_stands_where_the_include_says_and_else_nowhere(tmp_path):
+def test_pose_of_a_spawned_include_is_that_of_the_include_only(tmp_path):
     put(tmp_path, 'cone', {'model.sdf': CONE})
     posed = '<uri>model://cone</uri><pose>1 0 0 0 0 0</pose>'
     assert spawn(posed, tmp_path)[1] == Pose((1.0, 0.0, 0.0))
@@ -63,7 +63,7 @@ def test_an_include_overrides_static_and_adds_plugins(tmp_path):
     assert [plugin.filename for plugin in spec.plugins] == ['lib.so']
 
 
-def test_an_include_can_let_a_standing_model_move(tmp_path):
+def test_include_can_make_a_static_model_movable(tmp_path):
     put(tmp_path, 'cone', {'model.sdf': CONE.replace('<link', '<static>1</static><link', 1)})
     spec, _ = spawn('<uri>model://cone</uri><static>0</static>', tmp_path)
     assert not spec.static
@@ -76,25 +76,25 @@ def test_a_model_included_in_a_model_is_posed_and_renamed_by_the_include(tmp_pat
     assert spec.link('left::body').pose == Pose((0.0, 1.0, 0.0))
 
 
-def test_a_model_included_without_pose_keeps_its_own(tmp_path):
+def test_model_included_without_pose_keeps_its_own(tmp_path):
     put(tmp_path, 'cone', {'model.sdf': CONE})
     assert inside('<uri>model://cone</uri>', tmp_path).link('cone::body').pose.position[2] == 7.0
 
 
-def test_the_newest_description_that_can_be_read_is_taken(tmp_path):
+def test_newest_readable_version_of_a_model_is_used(tmp_path):
     files = {f'{name}.sdf': CONE.replace('body', name) for name in ('old', 'good', 'future')}
     put(tmp_path, 'cone', files,
         (('1.4', 'old.sdf'), ('1.6', 'good.sdf'), ('1.10', 'future.sdf')))
     assert spawn('<uri>model://cone</uri>', tmp_path)[0].links[0].name == 'good'
 
 
-def test_a_folder_without_model_config_serves_by_its_model_sdf(tmp_path):
+def test_model_sdf_is_used_in_a_folder_without_model_config(tmp_path):
     (tmp_path / 'cone').mkdir()
     (tmp_path / 'cone' / 'model.sdf').write_text(CONE, encoding='utf-8')
     assert spawn('<uri>model://cone</uri>', tmp_path)[0].links[0].name == 'body'
 
 
-def test_a_model_deeper_in_the_path_and_one_by_absolute_address_are_found(tmp_path):
+def test_models_in_subfolders_and_at_absolute_addresses_are_found(tmp_path):
     put(tmp_path / 'car', 'models/cone', {'model.sdf': CONE})
     for uri in ('model://car/models/cone', f'file://{tmp_path}/car/models/cone'):
         assert spawn(f'<uri>{uri}</uri>', tmp_path)[0].links[0].name == 'body'
@@ -116,7 +116,7 @@ def test_any_number_of_slashes_may_follow_the_scheme(tmp_path, uri):
     assert [link.name for link in spec.links] == ['body']
 
 
-def test_meshes_are_found_beside_the_description_that_names_them(tmp_path):
+def test_meshes_are_found_relative_to_the_including_file(tmp_path):
     part = ('<link name="body"><visual name="v"><geometry><mesh><uri>part.obj</uri></mesh>'
             '</geometry></visual></link>')
     put(tmp_path, 'cone', {'model.sdf': CONE.replace('<link name="body"/>', part),
@@ -125,13 +125,13 @@ def test_meshes_are_found_beside_the_description_that_names_them(tmp_path):
     assert spec.links[0].visuals[0].geometry.path == str(tmp_path / 'cone' / 'part.obj')
 
 
-def test_ground_plane_is_there_without_any_path_but_a_users_own_comes_first(tmp_path):
+def test_builtin_ground_plane_is_used_unless_the_path_has_one(tmp_path):
     assert spawn('<uri>model://ground_plane</uri>', tmp_path)[0].links[0].name == 'link'
     put(tmp_path, 'ground_plane', {'model.sdf': CONE})
     assert spawn('<uri>model://ground_plane</uri>', tmp_path)[0].links[0].name == 'body'
 
 
-def test_what_an_included_file_asks_in_vain_is_said_once_and_under_its_name(tmp_path, caplog):
+def test_omissions_of_an_included_file_are_reported_once_with_its_name(tmp_path, caplog):
     put(tmp_path, 'cone', {'model.sdf': CONE.replace('<link', '<battery>x</battery><link')})
     text = ('<sdf version="1.7"><model name="m"><link name="base"/>'
             '<include><uri>model://cone</uri><name>one</name></include>'
@@ -143,7 +143,7 @@ def test_what_an_included_file_asks_in_vain_is_said_once_and_under_its_name(tmp_
     ]
 
 
-def test_files_that_include_each_other_are_refused(tmp_path):
+def test_circular_includes_are_rejected(tmp_path):
     for name, other in (('one', 'two'), ('two', 'one')):
         put(tmp_path, name, {'model.sdf': CONE.replace(
             '<link', f'<include><uri>model://{other}</uri></include><link')})
@@ -161,18 +161,18 @@ def test_files_that_include_each_other_are_refused(tmp_path):
     ('<uri>model://dumb</uri>', 'names no description'),
     ('<uri>model://gone</uri>', 'cannot be read'),
 ])
-def test_an_include_that_finds_nothing_is_refused(tmp_path, include, part):
+def test_unresolved_include_is_rejected(tmp_path, include, part):
     (tmp_path / 'bare').mkdir()
     put(tmp_path, 'dumb', {}, (('1.6', '../../secret.sdf'),))
     put(tmp_path, 'gone', {})
     assert part in complaint(include, tmp_path)
 
 
-def test_a_world_is_found_as_given_and_along_directories(tmp_path, monkeypatch):
+def test_world_is_found_as_given_and_on_the_search_path(tmp_path, monkeypatch):
     (tmp_path / 'share' / 'worlds').mkdir(parents=True)
     world = tmp_path / 'share' / 'worlds' / 'empty.world'
     world.write_text('<sdf/>', encoding='utf-8')
-    monkeypatch.chdir(tmp_path)  # away from worlds/ of our own
+    monkeypatch.chdir(tmp_path)  # where no folder worlds/ is
     for name in ('worlds/empty.world', 'empty.world', 'empty', 'worlds/empty'):
         assert find_world(name, [tmp_path / 'nowhere', tmp_path / 'share']) == world
         assert find_world(name, [tmp_path / 'share' / 'worlds']) == world
@@ -181,10 +181,10 @@ def test_a_world_is_found_as_given_and_along_directories(tmp_path, monkeypatch):
     assert find_world('worlds/empty.world') == world
 
 
-def test_a_world_that_is_nowhere_is_named_with_the_places_searched(tmp_path):
+def test_error_about_a_missing_world_lists_the_searched_folders(tmp_path):
     with pytest.raises(NotFoundError, match=f"no world file 'mars.world'.*{tmp_path}"):
         find_world('mars.world', [tmp_path])
 
 
-def test_a_search_path_is_cut_at_colons_and_empty_parts_do_not_count():
+def test_search_path_is_split_at_colons_without_empty_parts():
     assert path_directories(':/a::/b:') == ['/a', '/b']

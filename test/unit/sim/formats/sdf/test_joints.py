@@ -1,4 +1,4 @@
-"""Joints of SDF: whose axis, which limits, and trees out of any graph."""
+"""Joints of SDF: frames of axes, limits, and trees from any graph."""
 
 import math
 
@@ -10,7 +10,7 @@ from rosbots_description.sim.description.model_spec import FIXED, PRISMATIC, REV
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch
 
-# b stands a metre along x, turned by a quarter about z: its x axis is the model's y axis.
+# b is at x = 1 m, rotated by 90 degrees about z: its x axis is the model's y axis.
 LINKS = f'''<link name="a"/><link name="b"><pose>1 0 0 0 0 {math.pi / 2}</pose></link>
   <link name="c"><pose>2 0 0 0 0 0</pose></link><link name="d"><pose>3 0 0 0 0 0</pose></link>'''
 
@@ -66,7 +66,7 @@ def test_since_sdf_1_7_an_axis_names_its_frame():
     assert only(version='1.7', inside=inside.format('b')).axis == pytest.approx((1, 0, 0))
 
 
-def test_an_axis_is_of_length_one():
+def test_axis_is_normalised():
     assert only(inside='<axis><xyz>0 3 4</xyz></axis>').axis == pytest.approx((0.0, 0.6, 0.8))
 
 
@@ -91,30 +91,30 @@ def test_limits_and_dynamics_are_read():
 
 @pytest.mark.parametrize('lower, upper', [('-1e16', '1e16'), ('-inf', 'inf'),
                                           ('-1.79769e+308', '1.79769e+308')])
-def test_endless_limits_are_none(lower, upper):
+def test_infinite_limits_are_none(lower, upper):
     made = only(inside=f'''<axis><xyz>0 0 1</xyz><limit><lower>{lower}</lower>
       <upper>{upper}</upper><effort>-1</effort><velocity>-1</velocity></limit></axis>''')
     assert (made.lower, made.upper, made.effort, made.velocity) == (None, None, None, None)
 
 
-def test_limits_the_wrong_way_round_are_switched_and_named(caplog):
+def test_reversed_limits_are_swapped_and_reported(caplog):
     made = only(inside='<axis><limit><lower>1</lower><upper>-1</upper></limit></axis>')
     assert (made.lower, made.upper) == (-1.0, 1.0)
     assert 'the two are swapped' in caplog.text
 
 
 @pytest.mark.parametrize('kind', ['ball', 'universal', 'screw', 'revolute2', 'gearbox'])
-def test_a_joint_that_is_not_simulated_is_left_out_and_named(kind, caplog):
+def test_unsupported_joint_is_left_out_and_reported(kind, caplog):
     assert load(joint(kind=kind)).joints == ()
     assert f"joint 'ab': {kind} joints are not simulated" in caplog.text
 
 
-def test_a_joint_may_hang_on_the_world():
+def test_parent_of_a_joint_may_be_the_world():
     made = only('world', 'b', kind='fixed', inside='')
     assert (made.parent, made.child) == ('world', 'b')
 
 
-def test_the_world_fixed_to_a_link_is_the_link_fixed_to_the_world():
+def test_fixed_joint_with_the_world_as_child_is_reversed():
     made = only('b', 'world', kind='fixed', inside='')
     assert (made.parent, made.child) == ('world', 'b')
 
@@ -124,19 +124,19 @@ def test_several_trees_are_one_model():
     assert [(made.parent, made.child) for made in spec.joints] == [('a', 'b'), ('c', 'd')]
 
 
-def test_the_joint_that_closes_a_ring_is_left_out_and_named(caplog):
+def test_joint_that_closes_a_loop_is_left_out_and_reported(caplog):
     spec = load(joint('a', 'b') + joint('b', 'c') + joint('a', 'c'))
     assert [made.name for made in spec.joints] == ['ab', 'bc']
     assert "joint 'ac': it closes a kinematic loop" in caplog.text
 
 
-def test_a_second_joint_to_the_world_closes_a_ring(caplog):
+def test_second_joint_to_the_world_closes_a_loop(caplog):
     spec = load(joint('world', 'a') + joint('a', 'b') + joint('world', 'b'))
     assert [made.name for made in spec.joints] == ['worlda', 'ab']
     assert 'closes a kinematic loop' in caplog.text
 
 
-def test_a_link_below_two_joints_turns_one_of_them_round():
+def test_one_joint_of_a_link_with_two_parents_is_reversed():
     spec = load(joint('a', 'b') + joint('c', 'b', inside='''<pose>0 0 1 0 0 0</pose>
       <axis><xyz>1 0 0</xyz></axis>'''))
     turned = spec.joints[1]
@@ -147,7 +147,7 @@ def test_a_link_below_two_joints_turns_one_of_them_round():
     assert turned.axis == (-1.0, 0.0, 0.0)
 
 
-def test_what_hangs_on_the_world_in_the_end_hangs_on_it_from_the_start():
+def test_tree_connected_to_the_world_is_rooted_there():
     spec = load(joint('a', 'b') + joint('world', 'b', kind='fixed', inside=''))
     assert {(made.parent, made.child) for made in spec.joints} == {('world', 'b'), ('b', 'a')}
 
@@ -161,11 +161,11 @@ def test_what_hangs_on_the_world_in_the_end_hangs_on_it_from_the_start():
     (joint(inside='<axis><dynamics><damping>-1</damping></dynamics></axis>'),
      '<damping> is -1; it must not be negative'),
 ])
-def test_a_broken_joint_is_refused(text, part):
+def test_invalid_joint_is_rejected(text, part):
     assert part in complaint(text)
 
 
-def test_springs_are_read_and_none_pushes():
+def test_springs_are_read_and_negative_stiffness_is_rejected():
     inside = ('<axis><xyz>1 0 0</xyz><dynamics><spring_stiffness>{}</spring_stiffness>'
               '<spring_reference>-0.5</spring_reference></dynamics></axis>')
     made = only(inside=inside.format(7.5))

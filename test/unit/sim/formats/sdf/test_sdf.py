@@ -1,4 +1,4 @@
-"""SDF texts become models; what is not simulated is named, what is broken is refused."""
+"""Models from SDF; omissions are reported, invalid text is rejected."""
 
 import logging
 import math
@@ -60,7 +60,7 @@ def warnings_of(caplog, body, **options):
     return [r.getMessage() for r in caplog.records if r.levelno == logging.WARNING]
 
 
-def test_the_model_gets_the_name_it_is_spawned_under_and_keeps_its_own_pose():
+def test_model_gets_the_spawn_name_and_keeps_its_own_pose():
     text = ('<sdf version="1.6"><model name="x"><pose>1 2 3 0 0 0</pose><link name="a"/></model>'
             '</sdf>')
     spec, pose = load_sdf(text, 'bot', find_model=ModelSearch())
@@ -68,12 +68,12 @@ def test_the_model_gets_the_name_it_is_spawned_under_and_keeps_its_own_pose():
     assert pose == Pose((1.0, 2.0, 3.0))
 
 
-def test_a_gazebo_root_element_is_as_good_as_sdf():
+def test_root_element_gazebo_is_accepted():
     text = '<gazebo version="1.3"><model name="x"><link name="a"/></model></gazebo>'
     assert load_sdf(text, 'bot', find_model=ModelSearch())[0].links[0].name == 'a'
 
 
-def test_a_malformed_pose_of_the_model_counts_as_none(caplog):
+def test_malformed_pose_of_the_model_is_ignored(caplog):
     text = '<sdf version="1.6"><model name="x"><pose>1 left</pose><link name="a"/></model></sdf>'
     assert load_sdf(text, 'bot', find_model=ModelSearch())[1] == Pose()
     assert 'six finite numbers' in caplog.text
@@ -84,7 +84,7 @@ def test_the_built_in_ground_plane_is_the_one_of_the_empty_world():
     assert spec == GROUND_PLANE
 
 
-def test_what_is_not_said_about_a_mass_is_one():
+def test_default_mass_and_moments_are_one():
     inertial = load(link()).links[0].inertial
     assert (inertial.mass, inertial.ixx, inertial.iyy, inertial.izz) == (1.0, 1.0, 1.0, 1.0)
     assert (inertial.ixy, inertial.ixz, inertial.iyz) == (0.0, 0.0, 0.0)
@@ -99,14 +99,14 @@ def test_an_inertial_is_read_with_its_own_pose():
     assert (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy) == (0.1, 0.2, 0.25, 0.01)
 
 
-def test_an_inertia_of_zero_gets_that_of_a_ball(caplog):
+def test_zero_inertia_becomes_that_of_a_ball(caplog):
     body = link('<inertial><mass>1</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia>'
                 '</inertial>')
     assert load(body).links[0].inertial.ixx > 0.0
     assert "link 'a': an inertia of zero" in caplog.text
 
 
-def test_masses_do_not_matter_to_a_model_that_stands():
+def test_static_model_may_have_any_mass():
     spec = load('<static>true</static>' + link('<inertial><mass>0</mass></inertial>'))
     assert spec.static
     assert spec.links[0].inertial is None
@@ -128,13 +128,13 @@ def test_a_plane_has_a_unit_normal():
     assert plane == Plane((0.0, 0.0, 1.0), (3.0, 4.0))
 
 
-def test_a_plane_in_a_model_that_moves_is_left_out_and_named(caplog):
+def test_plane_in_a_movable_model_is_left_out_and_reported(caplog):
     body = link('<collision name="c"><geometry><plane/></geometry></collision>')
     assert load(body).links[0].collisions == ()
     assert 'an infinite plane cannot move' in caplog.text
 
 
-def test_a_mesh_is_found_along_the_model_path_and_scaled(tmp_path):
+def test_mesh_is_found_on_the_model_path_and_scaled(tmp_path):
     (tmp_path / 'chair' / 'meshes').mkdir(parents=True)
     (tmp_path / 'chair' / 'meshes' / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
     text = f'''<sdf version="1.6"><model name="m">{link("""<visual name="v"><geometry><mesh>
@@ -156,7 +156,7 @@ def test_a_mesh_of_a_package_is_found(tmp_path):
 
 
 def load_submesh(tmp_path, name, center):
-    """Return a link with one part of a file of two triangles, 0.01 m a unit."""
+    """Return a link with one submesh of a file of two triangles in units of 0.01 m."""
     file = tmp_path / 'two.dae'
     if not file.exists():
         file.write_text(two_triangles(), encoding='utf-8')
@@ -167,7 +167,7 @@ def load_submesh(tmp_path, name, center):
 
 
 def submesh(tmp_path, name, center):
-    """Return the corners of such a part."""
+    """Return the vertices of such a submesh [m]."""
     shape = load_submesh(tmp_path, name, center).collisions[0].geometry
     vertices, faces = read_mesh(shape.path).triangles()
     return vertices[faces.ravel()]
@@ -190,20 +190,20 @@ def two_triangles():
       </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>'''
 
 
-def test_a_submesh_is_only_that_part_of_its_file(tmp_path):
+def test_submesh_is_only_one_part_of_its_file(tmp_path):
     corners = submesh(tmp_path, 'left', 'false')
     assert corners.min(axis=0) == pytest.approx((10.0, 0.0, 0.0))
     assert corners.max(axis=0) == pytest.approx((11.0, 2.0, 0.0))
 
 
-def test_a_centred_submesh_has_its_middle_in_the_origin(tmp_path):
+def test_centred_submesh_has_its_centre_at_the_origin(tmp_path):
     corners = submesh(tmp_path, 'right', 'true')
     assert corners.min(axis=0) == pytest.approx((-0.5, -1.0, 0.0))
     assert corners.max(axis=0) == pytest.approx((0.5, 1.0, 0.0))
 
 
 @pytest.mark.parametrize('center', ['false', 'true'])
-def test_the_file_of_a_submesh_stays_as_long_as_a_model_has_it(tmp_path, center):
+def test_file_of_a_submesh_exists_as_long_as_its_model(tmp_path, center):
     first, second = (load_submesh(tmp_path, 'left', center) for _ in range(2))
     file = Path(str(first.collisions[0].geometry.path))
     assert second.collisions[0].geometry.path == str(file)
@@ -217,21 +217,21 @@ def test_the_file_of_a_submesh_stays_as_long_as_a_model_has_it(tmp_path, center)
     assert file.exists()
 
 
-def test_an_unknown_submesh_is_left_out_and_named_with_the_one_that_may_be_meant(tmp_path, caplog):
-    with pytest.raises(IndexError):  # there is no shape to look at
+def test_unknown_submesh_is_left_out_and_a_similar_one_suggested(tmp_path, caplog):
+    with pytest.raises(IndexError):  # the link has no shape
         submesh(tmp_path, 'lef', 'false')
     assert "no submesh 'lef'; did you mean 'left'" in caplog.text
 
 
 @pytest.mark.parametrize('uri', ['model://../secret.dae', 'model://a/../../secret.dae'])
-def test_a_path_that_climbs_out_of_the_model_path_is_refused(uri):
+def test_path_out_of_the_model_path_is_rejected(uri):
     sentence = complaint(link(
         f'<collision name="c"><geometry><mesh><uri>{uri}</uri></mesh></geometry></collision>'
     ))
     assert "'..' is not accepted" in sentence
 
 
-def test_a_heightmap_is_named_by_path_and_line(caplog):
+def test_heightmap_is_reported_with_path_and_line(caplog):
     said = warnings_of(caplog, '\n' + link(
         '<collision name="c"><geometry><heightmap><uri>x.png</uri></heightmap></geometry>'
         '</collision>'
@@ -254,7 +254,7 @@ def test_a_surface_is_read():
 
 
 @pytest.mark.parametrize('mu', ['-1', 'inf', 'Infinity'])
-def test_a_negative_or_infinite_friction_is_endless(mu):
+def test_negative_or_infinite_friction_is_unlimited(mu):
     surface = collision(BOX + f'<surface><friction><ode><mu>{mu}</mu></ode></friction></surface>')
     assert surface.surface.mu == ENDLESS_FRICTION
 
@@ -264,7 +264,7 @@ def test_a_script_of_gazebo_gives_its_colour():
     assert visual(inside).material == gazebo_material('Gazebo/Red')
 
 
-def test_a_diffuse_colour_counts_before_the_script():
+def test_diffuse_colour_takes_precedence_over_the_script():
     inside = ('<material><script><name>Gazebo/Red</name></script><ambient>0 1 0 1</ambient>'
               '<diffuse>0 0 1</diffuse></material>')
     material = visual(inside).material
@@ -274,18 +274,18 @@ def test_a_diffuse_colour_counts_before_the_script():
     assert material.reflection.specular == (0.1, 0.1, 0.1)  # the script's
 
 
-def test_transparency_takes_from_alpha():
+def test_transparency_reduces_alpha():
     inside = '<material><diffuse>0 0 1 1</diffuse></material><transparency>0.25</transparency>'
     assert visual(inside).material.rgba == (0.0, 0.0, 1.0, 0.75)
 
 
-def test_an_unknown_script_is_shown_grey_and_named(caplog):
+def test_unknown_script_is_grey_and_reported(caplog):
     inside = '<material><script><name>Road1/Image</name></script></material>'
     assert visual(inside).material == Material(script='Road1/Image')
     assert "material 'Road1/Image'" in caplog.text
 
 
-def test_an_invisible_visual_is_not_there():
+def test_invisible_visual_is_left_out():
     body = link(f'<visual name="v"><visible>0</visible>{BOX}</visual>')
     assert load(body).links[0].visuals == ()
 
@@ -298,13 +298,13 @@ def test_flags_of_a_link_are_read():
     assert (made.linear_damping, made.angular_damping) == (0.1, 0.2)
 
 
-def test_a_link_that_says_nothing_collides_with_itself_as_its_model_says():
+def test_self_collide_of_a_link_defaults_to_that_of_the_model():
     other = link('<self_collide>0</self_collide>', 'b')
     body = '<self_collide>true</self_collide>' + link() + other
     assert [made.self_collide for made in load(body).links] == [True, False]
 
 
-def test_shapes_of_one_name_get_different_ones():
+def test_duplicate_names_of_shapes_become_unique():
     shape = f'<collision name="c">{BOX}</collision>'
     made = load(link(shape + shape)).links[0].collisions
     assert [collision.name for collision in made] == ['c', 'c_1']
@@ -319,13 +319,13 @@ def test_sensors_and_plugins_are_kept_with_their_lines():
     assert plugin.element.line == 2
 
 
-def test_a_namespace_goes_to_plugins_that_have_none():
+def test_namespace_is_given_to_plugins_without_one():
     spec = load(link() + '<plugin name="p" filename="a.so"/><plugin name="q" filename="b.so">'
                 '<robotNamespace/></plugin>', robot_namespace='/r1')
     assert [p.element.child('robotNamespace').text for p in spec.plugins] == ['/r1', '']
 
 
-def test_what_is_not_simulated_is_named_once_with_path_and_line(caplog):
+def test_omissions_are_reported_once_with_path_and_line(caplog):
     body = '\n'.join([link('<audio_source>x</audio_source><battery>y</battery>'),
                       link('<battery>z</battery>', 'b')])
     assert warnings_of(caplog, body) == [
@@ -334,14 +334,14 @@ def test_what_is_not_simulated_is_named_once_with_path_and_line(caplog):
     ]
 
 
-def test_what_asks_for_nothing_is_not_worth_a_word(caplog):
+def test_elements_without_effect_are_not_reported(caplog):
     body = link(f'<enable_wind>0</enable_wind><collision name="c">{BOX}<surface><bounce/>'
                 '<friction><torsional><ode/></torsional><ode/></friction><contact><ode/></contact>'
                 '</surface></collision>') + '<allow_auto_disable>1</allow_auto_disable>'
     assert warnings_of(caplog, body) == []
 
 
-def test_an_own_light_is_known_by_the_name_it_is_spawned_under():
+def test_spawned_light_has_the_requested_name():
     text = '''<sdf version="1.6"><light type="spot" name="lamp"><pose>0 0 3 0 0 0</pose>
       <diffuse>1 0.5 0 1</diffuse><direction>0 0 -1</direction><cast_shadows>1</cast_shadows>
       <attenuation><range>20</range><constant>0.5</constant><linear>0.1</linear>
@@ -353,7 +353,7 @@ def test_an_own_light_is_known_by_the_name_it_is_spawned_under():
     assert (light.attenuation_linear, light.attenuation_quadratic) == (0.1, 0.01)
 
 
-def test_a_model_is_no_light():
+def test_model_is_not_read_as_a_light():
     assert load_sdf_light('<sdf version="1.6"><model name="m"/></sdf>', 'm') is None
 
 
@@ -384,7 +384,7 @@ def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
     (link(f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact></surface>'
           '</collision>'), '<kp> is -5; it must not be negative'),
 ])
-def test_what_is_broken_is_refused_with_the_place_and_the_fault(body, part):
+def test_invalid_element_is_rejected_with_location_and_reason(body, part):
     assert part in complaint(body)
 
 
@@ -394,7 +394,7 @@ def test_what_is_broken_is_refused_with_the_place_and_the_fault(body, part):
     ('<sdf version="new"><model name="m"/></sdf>', 'version="new" is not valid'),
     ('<sdf version="1.6"><model name="m">', 'not well-formed XML'),
 ])
-def test_a_text_that_is_no_sdf_is_refused(text, part):
+def test_text_that_is_not_sdf_is_rejected(text, part):
     with pytest.raises(ModelError, match=part):
         load_sdf(text, 'm', find_model=ModelSearch())
 

@@ -1,4 +1,4 @@
-"""World files become worlds as plain values."""
+"""World files are read into WorldSpec values."""
 
 import logging
 import math
@@ -34,7 +34,7 @@ def complaint(body):
     return str(caught.value)
 
 
-def test_an_empty_world_has_a_ground_and_a_sun_of_its_own():
+def test_empty_world_has_the_builtin_ground_and_sun():
     world = load(GROUND + SUN)
     assert world.models == ((GROUND_PLANE, Pose()),)
     sun = world.lights[0]
@@ -43,7 +43,7 @@ def test_an_empty_world_has_a_ground_and_a_sun_of_its_own():
     assert (world.physics, world.scene, world.faults) == (PhysicsSettings(), SceneSpec(), ())
 
 
-def test_models_stand_in_the_order_of_the_file():
+def test_models_are_in_the_order_of_the_file():
     world = load(BOX.format('b', '1 0 0 0 0 0') + GROUND + BOX.format('a', '0 2 0 0 0 0'))
     assert [model.name for model, _ in world.models] == ['b', 'ground_plane', 'a']
     assert [pose.position for _, pose in world.models] == [(1, 0, 0), (0, 0, 0), (0, 2, 0)]
@@ -56,7 +56,7 @@ def test_an_include_overrides_name_and_pose():
     assert (model.name, pose) == ('floor', Pose((0.0, 0.0, -1.0)))
 
 
-def test_a_light_can_be_included_under_a_name_and_at_a_place():
+def test_light_can_be_included_with_name_and_pose():
     include = '<include><uri>model://sun</uri><name>lamp</name><pose>0 0 3 0 0 0</pose></include>'
     light = load(include).lights[0]
     assert (light.name, light.pose.position) == ('lamp', (0.0, 0.0, 3.0))
@@ -70,13 +70,13 @@ def test_models_may_be_posed_in_frames_of_the_world():
     assert world.models[1][1].position == pytest.approx((5.0, 2.0, 0.0))
 
 
-def test_two_models_of_one_name_get_different_ones(caplog):
+def test_duplicate_names_of_models_become_unique(caplog):
     world = load(BOX.format('m', '0 0 0 0 0 0') * 3)
     assert [model.name for model, _ in world.models] == ['m', 'm_0', 'm_1']
     assert "this one is called 'm_0'" in caplog.text
 
 
-def test_a_model_that_cannot_be_simulated_is_left_out_with_an_error(caplog):
+def test_invalid_model_is_left_out_with_an_error(caplog):
     broken = '<model name="bad"><link name="a"><inertial><mass>0</mass></inertial></link></model>'
     included = '<include><uri>model://no</uri></include>'
     world = load(broken + BOX.format('good', '0 0 0 0 0 0') + included)
@@ -101,24 +101,24 @@ def test_physics_is_read():
     )
 
 
-def test_physics_of_sdf_1_3_is_understood():
+def test_physics_of_sdf_1_3_is_read():
     made = physics('<update_rate>500</update_rate><ode><solver><dt>0.005</dt></solver></ode>')
     assert (made.step_size, made.max_update_rate) == (0.005, 500.0)
 
 
-def test_gravity_of_the_world_counts_before_that_of_its_physics():
+def test_gravity_of_the_world_takes_precedence_over_that_of_its_physics():
     world = load('<gravity>0 0 -3.7</gravity><physics><gravity>0 0 -1</gravity></physics>')
     assert world.physics.gravity == (0.0, 0.0, -3.7)
 
 
-def test_the_default_physics_is_taken_of_several():
+def test_default_one_of_several_physics_is_used():
     slow = '<physics name="a"><max_step_size>0.01</max_step_size></physics>'
     fast = '<physics name="b" default="1"><max_step_size>0.02</max_step_size></physics>'
     assert load(slow + fast).physics.step_size == 0.02
     assert load(slow + fast.replace(' default="1"', '')).physics.step_size == 0.01
 
 
-def test_another_engine_is_named(caplog):
+def test_other_physics_engine_is_reported(caplog):
     load('<physics type="bullet"/>')
     assert "physics type 'bullet' is not available" in caplog.text
 
@@ -159,7 +159,7 @@ def test_a_model_without_name_is_left_out():
     )
 
 
-def test_what_is_not_simulated_is_named_once_by_path_and_line(caplog):
+def test_omissions_are_reported_once_with_path_and_line(caplog):
     load('\n<actor name="walker"><pose>0 0 0 0 0 0</pose></actor>\n<population name="p"><a>1</a>'
          '</population><wind><linear_velocity>0 0 0</linear_velocity></wind><gui><a>1</a></gui>')
     assert [record.getMessage() for record in caplog.records] == [
@@ -167,7 +167,7 @@ def test_what_is_not_simulated_is_named_once_by_path_and_line(caplog):
     ]
 
 
-def test_a_saved_state_is_kept_apart_from_the_poses_that_models_reset_to():
+def test_saved_state_is_separate_from_the_initial_poses():
     world = load(BOX.format('m', '0 0 0 0 0 0') + '''<state world_name="w">
       <sim_time>12 500000000</sim_time><real_time>3 0</real_time><iterations>7</iterations>
       <model name="m"><pose>1 0 0 0 0 0</pose><scale>1 1 1</scale>
@@ -193,7 +193,7 @@ def test_a_saved_state_is_kept_apart_from_the_poses_that_models_reset_to():
     ('<physics><max_step_size>fast</max_step_size></physics>', 'it takes one finite number'),
     ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
 ])
-def test_what_is_broken_in_the_world_itself_is_refused(body, part):
+def test_invalid_element_of_the_world_is_rejected(body, part):
     assert part in complaint(body)
 
 
@@ -211,7 +211,7 @@ def test_what_is_broken_in_the_world_itself_is_refused(body, part):
     ('<state world_name="w"><model name="m"><pose>a</pose></model></state>',
      'it takes six finite numbers', "the world's <state> is not applied"),
 ])
-def test_a_world_stands_without_an_element_that_is_broken(body, said, without, caplog):
+def test_invalid_element_is_left_out_of_the_world(body, said, without, caplog):
     world = load(body + GROUND)
     assert [model.name for model, _ in world.models] == ['ground_plane']
     (fault,) = world.faults
@@ -220,7 +220,7 @@ def test_a_world_stands_without_an_element_that_is_broken(body, said, without, c
     assert error.startswith(fault) and without in error
 
 
-def test_a_house_of_many_links_stands_without_the_one_mesh_that_is_missing(caplog):
+def test_model_of_many_links_is_kept_without_its_missing_mesh(caplog):
     wall = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
     mailbox = ('<{0} name="{0}"><geometry><mesh><uri>model://mailbox/meshes/mailbox.dae</uri>'
                '</mesh></geometry></{0}>')
@@ -242,7 +242,7 @@ def test_a_house_of_many_links_stands_without_the_one_mesh_that_is_missing(caplo
     ('1 2 0.5 0 0', (1.0, 2.0, 0.5), 5), ('1', (1.0, 0.0, 0.0), 1),
     ('1 2 3 0 0 0 7', (1.0, 2.0, 3.0), 7),
 ])
-def test_a_pose_of_too_few_or_many_numbers_is_read_as_in_gazebo(pose, position, count, caplog):
+def test_pose_with_wrong_count_of_numbers_is_read_as_in_gazebo(pose, position, count, caplog):
     box = BOX.format('b', pose)
     include = ('<include><uri>model://ground_plane</uri><name>floor</name>'
                f'<pose>{pose}</pose></include>')
@@ -253,14 +253,14 @@ def test_a_pose_of_too_few_or_many_numbers_is_read_as_in_gazebo(pose, position, 
     assert said[1].startswith(f'w.world, line 2: a <pose> has six numbers, this one has {count}:')
 
 
-def test_a_pose_within_a_plugin_is_left_as_it_is(caplog):
+def test_pose_within_a_plugin_is_unchanged(caplog):
     plugin = '<plugin name="p" filename="libp.so"><pose>1 2 3</pose></plugin>'
     model, _ = load(f'<model name="m"><link name="l"/>{plugin}</model>').models[0]
     assert model.plugins[0].element.child('pose').text == '1 2 3'
     assert 'six numbers' not in caplog.text
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path):
+def test_error_names_a_missing_file(tmp_path):
     with pytest.raises(ModelError, match=f"world file '{tmp_path}/w.world' cannot be read"):
         open_world(tmp_path / 'w.world', find_model=ModelSearch())
 
@@ -275,6 +275,6 @@ def test_addresses_may_be_relative_to_the_world_file(tmp_path):
     assert [model.name for model, _ in world.models] == ['m']
 
 
-def test_a_text_without_world_is_no_world_file():
+def test_text_without_world_is_rejected():
     with pytest.raises(ModelError, match='it has no <world>'):
         load_world('<sdf version="1.6"/>', 'w.world', find_model=ModelSearch())

@@ -1,4 +1,4 @@
-"""doc/gazebo_compatibility.md says of each child of a URDF's <gazebo> what is done with it."""
+"""The table of <gazebo> elements in doc/gazebo_compatibility.md agrees with the URDF reader."""
 
 import logging
 
@@ -47,7 +47,7 @@ def robot(path):
 
 
 @pytest.mark.parametrize('name, state, how', ROWS)
-def test_a_gazebo_element_does_what_its_row_says(name, state, how, caplog):
+def test_gazebo_element_agrees_with_its_row(name, state, how, caplog):
     plain = load_urdf(f'{ROBOT}</robot>', 'm')[0]
     with caplog.at_level(logging.DEBUG):
         changed = robot(name) != plain
@@ -61,7 +61,7 @@ def test_a_gazebo_element_does_what_its_row_says(name, state, how, caplog):
     assert (said[sentence] == logging.DEBUG) == ('level debug' in how)
 
 
-def test_every_gazebo_element_that_is_known_has_a_row():
+def test_every_known_gazebo_element_has_a_row():
     tags = {*gazebo_tags._SURFACE_NUMBERS, *gazebo_tags._LINK_READERS, *gazebo_tags._PARTS}
     known = {f'link/{tag}' for tag in tags - {'collision'}} \
         | {f'link/collision/{path}' for path in gazebo_tags._SURFACE_PATHS} \

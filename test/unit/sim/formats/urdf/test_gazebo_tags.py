@@ -1,4 +1,4 @@
-"""What the <gazebo> blocks of a URDF say reaches links, joints and plugins."""
+"""The <gazebo> blocks of a URDF are applied to links, joints and plugins."""
 
 import math
 
@@ -15,7 +15,7 @@ BALL = '<geometry><sphere radius="1"/></geometry>'
 INERTIAL = ('<inertial><mass value="1"/>'
             '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
 FULL = f'{INERTIAL}<collision>{BALL}</collision><visual>{BALL}</visual>'
-# b stands 1 m before a, a quarter turn to the left, and c moves on b.
+# b is at x = 1 m in a, rotated left by 90 degrees; c moves on b.
 ROBOT = (
     f'<link name="a">{FULL}</link><link name="b">{FULL}</link><link name="c">{FULL}</link>'
     '<joint name="ab" type="fixed"><parent link="a"/><child link="b"/>'
@@ -59,7 +59,7 @@ def test_a_surface_is_read_from_text_or_attribute(form):
     assert surface == Surface(0.5, 0.6, (1.0, 0.0, 0.0), 1e6, 100.0, 1.0, 0.001, 5, 2.0)
 
 
-def test_a_surface_in_sdfs_own_structure_is_read_too():
+def test_surface_in_the_structure_of_sdf_is_read():
     block = ('<gazebo reference="c"><collision><surface><friction><ode><mu>0.1</mu><mu2>0.2</mu2>'
              '</ode></friction><contact><ode><kp>5</kp></ode></contact></surface>'
              '<max_contacts>3</max_contacts></collision></gazebo>')
@@ -67,7 +67,7 @@ def test_a_surface_in_sdfs_own_structure_is_read_too():
     assert (surface.mu, surface.mu2, surface.kp, surface.max_contacts) == (0.1, 0.2, 5.0, 3)
 
 
-def test_a_lumped_links_surface_and_looks_reach_its_own_shapes_only():
+def test_surface_and_material_of_a_reduced_link_apply_to_its_own_shapes_only():
     block = '<gazebo reference="b"><mu1>0.2</mu1><material>Gazebo/Red</material></gazebo>'
     base = load(block).link('a')
     assert [shape.surface.mu for shape in base.collisions] == [1.0, 0.2]
@@ -75,7 +75,7 @@ def test_a_lumped_links_surface_and_looks_reach_its_own_shapes_only():
 
 
 @pytest.mark.parametrize('written', ['-1', 'inf', 'Infinity', '+INF'])
-def test_a_negative_or_infinite_friction_means_endless(written):
+def test_negative_or_infinite_friction_is_unlimited(written):
     spec = load(f'<gazebo reference="c"><mu1>{written}</mu1></gazebo>')
     assert spec.link('c').collisions[0].surface.mu == ENDLESS_FRICTION
 
@@ -83,18 +83,18 @@ def test_a_negative_or_infinite_friction_means_endless(written):
 @pytest.mark.parametrize(('text', 'gravity'), [
     ('true', False), ('1', False), ('false', True), ('No', True), ('0', True), ('what', False),
 ])
-def test_turning_gravity_off_reads_words_gazebos_way(text, gravity):
+def test_turn_gravity_off_reads_booleans_as_gazebo(text, gravity):
     block = f'<gazebo reference="c"><turnGravityOff>{text}</turnGravityOff></gazebo>'
     assert load(block).link('c').gravity is gravity
 
 
-def test_self_collision_and_damping_are_set():
+def test_self_collision_and_damping_are_read():
     link = load('<gazebo reference="c"><selfCollide>Yes</selfCollide>'
                 '<dampingFactor>0.3</dampingFactor></gazebo>').link('c')
     assert (link.self_collide, link.linear_damping, link.angular_damping) == (True, 0.3, 0.3)
 
 
-def test_a_flag_of_a_lumped_link_counts_for_its_heir_with_a_warning(caplog):
+def test_flag_of_a_reduced_link_applies_to_its_parent_with_a_warning(caplog):
     spec = load('<gazebo reference="b"><turnGravityOff>true</turnGravityOff></gazebo>')
     assert spec.link('a').gravity is False
     assert spec.link('c').gravity is True
@@ -107,7 +107,7 @@ def test_an_unknown_material_is_grey_with_a_warning(caplog):
     assert "<gazebo reference='c'>: material 'Gazebo/Puce' is not one of Gazebo's" in caplog.text
 
 
-def test_a_visual_block_gives_a_colour():
+def test_visual_block_sets_the_colour():
     spec = load('<gazebo reference="c"><visual><material><ambient>0 0 0 1</ambient>'
                 '<diffuse>0.1 0.2 0.3 1</diffuse></material></visual></gazebo>')
     material = spec.link('c').visuals[0].material
@@ -137,12 +137,12 @@ def test_a_plugin_without_filename_is_ignored_with_a_warning(caplog):
 @pytest.mark.parametrize(('inside', 'expected'), [
     ('', '/bot'), ('<robotNamespace>own</robotNamespace>', 'own'), ('<robotNamespace/>', ''),
 ])
-def test_the_namespace_goes_to_plugins_that_have_none(inside, expected):
+def test_namespace_is_given_to_plugins_without_one(inside, expected):
     (p,) = load(plugin(inside), robot_namespace='/bot').plugins
     assert p.element.child('robotNamespace').text == expected
 
 
-def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere():
+def test_namespace_is_given_to_plugins_in_sensors_unless_empty():
     block = ('<gazebo reference="c"><sensor name="s"><plugin name="p" filename="l"/>'
              '</sensor></gazebo>')
     (sensor,) = load(block, robot_namespace='/bot').link('c').sensors
@@ -151,7 +151,7 @@ def test_the_namespace_goes_to_plugins_in_sensors_too_and_an_empty_one_nowhere()
     assert sensor.plugins[0].element.children == ()
 
 
-def test_a_namespace_that_xml_cannot_hold_is_an_error():
+def test_namespace_with_control_characters_is_an_error():
     with pytest.raises(ModelError, match=r"robot_namespace is 'a.*which contains a control"):
         load(plugin(''), robot_namespace='a\x01b')
 
@@ -170,7 +170,7 @@ def test_sensors_lights_and_projectors_are_kept_in_their_link():
     ('<pose relative_to="b">1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
     ('<pose relative_to="a">1 0 0 0 0 0</pose>', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
 ])
-def test_the_sensor_of_a_lumped_link_is_posed_in_the_heir(pose, expected):
+def test_sensor_of_a_reduced_link_is_transformed_into_the_parent(pose, expected):
     block = f'<gazebo reference="b"><sensor name="s">{pose}<x/></sensor></gazebo>'
     (sensor,) = load(block).link('a').sensors
     pose = sensor.pose
@@ -178,7 +178,7 @@ def test_the_sensor_of_a_lumped_link_is_posed_in_the_heir(pose, expected):
     assert sensor.element.child('x') is not None
 
 
-def test_names_in_plugins_stay_and_reduced_links_are_known_with_their_poses():
+def test_names_in_plugins_are_kept_and_reduced_links_have_poses():
     inside = '<bodyName>b</bodyName><frameName>c</frameName><linkName>b</linkName>'
     spec = load(plugin(inside))
     assert texts(spec.plugins[0].element) == {'bodyName': 'b', 'frameName': 'c', 'linkName': 'b'}
@@ -188,7 +188,7 @@ def test_names_in_plugins_stay_and_reduced_links_are_known_with_their_poses():
     assert to_rpy(pose.orientation) == pytest.approx((0.0, 0.0, math.pi / 2))
 
 
-def test_what_is_not_simulated_is_named_once(caplog):
+def test_omissions_are_reported_once(caplog):
     load('<gazebo reference="c"><glow/><glow/></gazebo>\n<gazebo><wind/></gazebo>'
          '<gazebo reference="bc"><physics>1</physics><stopCfm>0</stopCfm></gazebo>')
     assert caplog.messages == [
@@ -197,7 +197,7 @@ def test_what_is_not_simulated_is_named_once(caplog):
     ]
 
 
-def test_a_block_for_nothing_is_named_with_what_might_be_meant(caplog):
+def test_block_with_an_unknown_reference_is_reported_with_a_suggestion(caplog):
     load('<gazebo reference="ac"/>')
     assert "there is no link or joint of that name; the block is ignored" in caplog.text
 
@@ -205,12 +205,12 @@ def test_a_block_for_nothing_is_named_with_what_might_be_meant(caplog):
 @pytest.mark.parametrize(('tag', 'text'), [
     ('mu1', 'abc'), ('kp', 'nan'), ('kd', '-1'), ('fdir1', '1 0'), ('dampingFactor', ''),
 ])
-def test_a_broken_number_in_a_block_is_an_error(tag, text):
+def test_malformed_number_in_a_block_is_an_error(tag, text):
     with pytest.raises(ModelError, match=rf"^s, line 2: <gazebo reference='c'>: <{tag}> is "):
         load(f'<gazebo reference="c"><{tag}>{text}</{tag}></gazebo>')
 
 
-def test_joints_have_springs(caplog):
+def test_springs_of_joints_are_read(caplog):
     made = load('<gazebo reference="bc"><springStiffness>7.5</springStiffness>'
                 '<springReference>-0.5</springReference></gazebo>')
     joint = next(joint for joint in made.joints if joint.name == 'bc')

@@ -1,4 +1,4 @@
-"""URDF texts become models; those that cannot say where, what and how to mend it."""
+"""Models from URDF; errors give location, reason and cure."""
 
 import logging
 import math
@@ -50,7 +50,7 @@ def geometry(shape, name='a'):
     return link(name, f'{MASS}<collision><geometry>{shape}</geometry></collision>')
 
 
-def test_the_obstacle_of_the_course_loads_with_an_inertia_that_a_body_can_have(caplog):
+def test_obstacle_of_the_course_loads_with_a_physical_inertia(caplog):
     text = """<robot name="simple_box"><link name="my_box">
       <inertial><origin xyz="2 0 0"/><mass value="1.0"/>
         <inertia ixx="1.0" ixy="0.0" ixz="0.0" iyy="100.0" iyz="0.0" izz="1.0"/></inertial>
@@ -73,7 +73,7 @@ def test_the_obstacle_of_the_course_loads_with_an_inertia_that_a_body_can_have(c
     assert box.inertial.pose.position == (2.0, 0.0, 0.0)
 
 
-def test_links_stand_where_the_joints_put_them():
+def test_poses_of_links_follow_from_the_joints():
     spec = load(
         link('a') + link('b') + link('c')
         + joint('ab', 'a', 'b', inside='<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>')
@@ -83,7 +83,7 @@ def test_links_stand_where_the_joints_put_them():
     assert spec.link('c').pose.position == pytest.approx((1.0, 1.0, 0.0))
 
 
-def test_links_come_depth_first_by_the_name_of_the_joint():
+def test_links_are_depth_first_in_order_of_joint_names():
     spec = load(
         link('late') + link('root') + link('early') + link('deep')
         + joint('z', 'root', 'late') + joint('a', 'root', 'early') + joint('b', 'early', 'deep')
@@ -105,20 +105,20 @@ def test_a_revolute_joint_has_its_limits_and_unit_axis():
     assert (j.damping, j.friction) == (0.1, 0.2)
 
 
-def test_a_continuous_joint_has_no_position_limits_and_turns_about_x_by_default():
+def test_continuous_joint_has_no_limits_and_axis_x_by_default():
     (j,) = load(link('a') + link('b') + joint(
         'j', 'a', 'b', inside='<limit lower="-1" upper="1" effort="5" velocity="-1"/>')).joints
     assert (j.lower, j.upper, j.effort, j.velocity) == (None, None, 5.0, None)
     assert j.axis == (1.0, 0.0, 0.0)
 
 
-def test_a_tiny_axis_is_a_direction_all_the_same():
+def test_short_axis_is_normalised():
     (j,) = load(link('a') + link('b')
                 + joint('j', 'a', 'b', inside='<axis xyz="0 0 -1e-200"/>')).joints
     assert j.axis == (0.0, 0.0, -1.0)
 
 
-def test_limits_the_wrong_way_round_are_switched_with_a_warning(caplog):
+def test_reversed_limits_are_swapped_with_a_warning(caplog):
     (j,) = load(link('a') + link('b') + joint(
         'j', 'a', 'b', 'prismatic', '<limit lower="2" upper="-1" effort="0" velocity="0"/>')).joints
     assert (j.lower, j.upper, j.effort, j.velocity) == (-1.0, 2.0, 0.0, 0.0)
@@ -126,7 +126,7 @@ def test_limits_the_wrong_way_round_are_switched_with_a_warning(caplog):
 
 
 @pytest.mark.parametrize('kind', ['floating', 'planar'])
-def test_a_joint_that_ties_nothing_leaves_its_child_free_with_a_warning(kind, caplog):
+def test_unconstrained_joint_leaves_its_child_free_with_a_warning(kind, caplog):
     spec = load(link('a') + link('b') + joint('j', 'a', 'b', kind, '<origin xyz="0 0 2"/>'))
     assert spec.joints == ()
     assert spec.link('b').pose.position == (0.0, 0.0, 2.0)
@@ -143,7 +143,7 @@ def test_all_shapes_are_read():
         'a_collision', 'a_collision_1', 'a_collision_2']
 
 
-def test_a_mesh_is_found_in_its_package_and_keeps_its_address(tmp_path):
+def test_mesh_is_found_in_its_package_and_keeps_its_uri(tmp_path):
     (tmp_path / 'm.obj').write_text(TRIANGLE)
     spec = load(geometry('<mesh filename="package://p/m.obj" scale="1 -2 3"/>'),
                 find_package={'p': str(tmp_path)}.get)
@@ -158,7 +158,7 @@ def test_a_mesh_is_found_in_its_package_and_keeps_its_address(tmp_path):
     ('<material name="of_another_link"/>', (0.9, 0.8, 0.7, 1.0)),
     ('', (0.7, 0.7, 0.7, 1.0)),
 ])
-def test_a_visual_has_the_urdfs_colour_or_else_grey(material, colour, caplog):
+def test_visual_has_the_colour_of_the_urdf_or_grey(material, colour, caplog):
     ball = '<geometry><sphere radius="1"/></geometry>'
     spec = load(
         '<material name="global"><color rgba="0.4 0.5 0.6 1"/></material>'
@@ -187,18 +187,18 @@ def test_a_mesh_without_material_keeps_its_own_colours(tmp_path):
     assert spec.links[0].visuals[0].material is None
 
 
-def test_the_robots_own_origin_comes_back_for_the_caller():
+def test_origin_of_the_robot_is_returned():
     _, pose = load_urdf(f'<robot><origin xyz="1 2 3" rpy="0 0 1"/>{link("a")}</robot>', 'bot')
     assert pose == Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.0))
 
 
-def test_a_malformed_robot_origin_counts_as_none_with_an_error_in_the_log(caplog):
+def test_malformed_origin_of_the_robot_is_ignored_with_an_error(caplog):
     _, pose = load_urdf(f'<robot><origin xyz="1 x 3"/>{link("a")}</robot>', 'bot')
     assert pose == Pose()
     assert [record.levelno for record in caplog.records] == [logging.ERROR]
 
 
-def test_an_inertia_of_zero_is_replaced_with_a_warning(caplog):
+def test_zero_inertia_is_replaced_with_a_warning(caplog):
     zero = '<inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/>'
     spec = load(link('a', f'<inertial><mass value="2"/>{zero}</inertial>'))
     inertial = spec.links[0].inertial
@@ -207,7 +207,7 @@ def test_an_inertia_of_zero_is_replaced_with_a_warning(caplog):
     assert "'a': an inertia of zero cannot be simulated" in caplog.text
 
 
-def test_what_a_simulator_has_no_use_for_is_no_matter(caplog):
+def test_elements_without_use_in_simulation_are_not_reported(caplog):
     load(link('a') + '<transmission name="t"><x/></transmission><unknown/>'
          + link('b') + joint('j', 'a', 'b', inside='<mimic joint="j"/><safety_controller/>'))
     assert caplog.text == ''
@@ -241,7 +241,7 @@ def test_what_a_simulator_has_no_use_for_is_no_matter(caplog):
     (link('n' * 1001), 'its name has 1001 characters; at most 1000'),
     (link('a') + link('b') + joint('j' * 1100, 'a', 'b'), 'its name has 1100 characters'),
 ])
-def test_a_broken_tree_is_named(body, expected):
+def test_invalid_tree_is_rejected_with_location(body, expected):
     assert expected in complaint(body)
 
 
@@ -257,13 +257,13 @@ def test_a_broken_tree_is_named(body, expected):
     ('<limit effort="1"/>', '<limit> has no velocity; it takes one finite number'),
     ('<limit effort="1" velocity="1" upper="1e999"/>', 'upper="1e999" of <limit> is wrong'),
 ])
-def test_a_broken_number_in_a_joint_is_named(inside, expected):
+def test_malformed_number_in_a_joint_is_rejected_with_location(inside, expected):
     sentence = complaint(link('a') + link('b') + joint('j', 'a', 'b', inside=inside))
     assert "line 1: joint 'j': " + expected in sentence
 
 
 @pytest.mark.parametrize('kind', ['revolute', 'prismatic'])
-def test_a_joint_that_needs_limits_says_so(kind):
+def test_joint_without_its_required_limits_is_rejected(kind):
     assert f'a {kind} joint needs <limit lower upper effort velocity/>' in complaint(
         link('a') + link('b') + joint('j', 'a', 'b', kind))
 
@@ -297,20 +297,20 @@ def inertial(mass='1', **moments):
     (geometry(''), 'a <collision> without shape'),
     (link('a', MASS + '<visual/>'), 'a <visual> without shape'),
 ])
-def test_a_broken_part_of_a_link_is_named(body, expected):
+def test_invalid_part_of_a_link_is_rejected_with_location(body, expected):
     sentence = complaint(body)
     assert expected in sentence
     assert "'a': " in sentence or "'m': " in sentence
 
 
-def test_an_unknown_package_anywhere_is_an_error_of_its_own():
+def test_unknown_package_raises_its_own_error():
     body = link('a') + '<gazebo><plugin filename="x"><f>package://nope/x</f></plugin></gazebo>'
     with pytest.raises(UnknownPackage) as caught:
         load(body, find_package={}.get)
     assert caught.value.package == 'nope'
 
 
-def test_another_root_than_robot_is_named():
+def test_other_root_element_than_robot_is_rejected():
     with pytest.raises(ModelError, match=r'^s, line 1: the first element is <sdf>'):
         load_urdf('<sdf version="1.6"/>', 'bot', source='s')
 
@@ -319,17 +319,17 @@ def test_another_root_than_robot_is_named():
     link('a', ''), inertial('0'), link('world', ''),
     link('world', '') + link('a', '') + joint('j', 'world', 'a', 'fixed'),
 ])
-def test_a_model_of_which_nothing_has_mass_is_refused(body):
+def test_model_without_mass_is_rejected(body):
     assert 'with a' in complaint(body)
 
 
-def test_the_name_of_the_model_and_the_source_begin_a_warning(caplog):
+def test_warning_begins_with_model_and_source(caplog):
     load(link('a') + '\n<gazebo reference="b"/>')
     assert caplog.messages[0].startswith(
         "model 'bot' (bot.urdf): line 2: <gazebo reference='b'>: there is no link or joint")
 
 
-def test_a_long_chain_of_fixed_links_is_lumped_in_good_time():
+def test_long_chain_of_fixed_links_is_reduced_quickly():
     count = 5000
     ball = '<collision><geometry><sphere radius="1"/></geometry></collision>'
     links = link('l0') + ''.join(link(f'l{i}', ball) for i in range(1, count))

@@ -1,4 +1,4 @@
-"""What is not URDF or SDF is ignored as in Gazebo, and named as its user wrote it."""
+"""Markup other than URDF or SDF is ignored as in Gazebo, and reported as written."""
 
 import logging
 
@@ -20,7 +20,7 @@ def load(body, head=''):
 
 
 @pytest.mark.parametrize('head', ['', ' xmlns:xacro="http://www.ros.org/wiki/xacro"'])
-def test_tags_of_xacro_are_ignored_and_named_as_they_are_written(head, caplog):
+def test_tags_of_xacro_are_ignored_and_reported_as_written(head, caplog):
     spec = load('<xacro:include filename="$(find p)/a.xacro"/>\n<xacro:macro name="m">'
                 f'<link name="${{x}}"/><xacro:m/></xacro:macro>{LINK}</link>', head)
     assert [link.name for link in spec.links] == ['a']
@@ -30,7 +30,7 @@ def test_tags_of_xacro_are_ignored_and_named_as_they_are_written(head, caplog):
         + CURE]
 
 
-def test_what_is_no_number_may_be_unexpanded(caplog):
+def test_unexpanded_text_other_than_numbers_is_accepted(caplog):
     named = LINK.replace('"a"', '"${p}a"')
     assert load(f'{named}</link>').links[0].name == '${p}a'
     spec = load(f'{LINK}</link><gazebo><plugin name="p" filename="libx.so"><ns>$(arg n)/a</ns>'
@@ -44,12 +44,12 @@ def test_what_is_no_number_may_be_unexpanded(caplog):
     LINK + '<collision><geometry><box size="${a} 1 1"/></geometry></collision></link>',
     LINK + '</link><gazebo reference="a"><mu1>$(arg mu)</mu1></gazebo>',
 ])
-def test_a_number_that_is_unexpanded_is_refused_with_the_cure(body):
+def test_unexpanded_number_is_rejected_with_the_cure(body):
     with pytest.raises(ModelError, match=r'bot.urdf, line 2: .* is unexpanded xacro; run it'):
         load(body)
 
 
-def test_a_mesh_whose_address_is_unexpanded_is_left_out(caplog):
+def test_mesh_with_an_unexpanded_address_is_left_out(caplog):
     spec = load(f'{LINK}<visual><geometry><mesh filename="$(find p)/m.dae"/></geometry></visual>'
                 '</link>')
     assert spec.links[0].visuals == ()
@@ -58,7 +58,7 @@ def test_a_mesh_whose_address_is_unexpanded_is_left_out(caplog):
     assert CURE in caplog.messages[1]
 
 
-def test_other_prefixes_are_named_outside_of_gazebo_blocks(caplog):
+def test_other_prefixes_are_reported_outside_of_gazebo_blocks(caplog):
     load(f'<sensor:ray a="1"/>{LINK}<x:y/></link><gazebo><controller:c/></gazebo>')
     assert caplog.messages[0] == (
         "model 'bot' (bot.urdf): tags of another namespace are ignored: <sensor:ray a=\"1\"> "
@@ -66,13 +66,13 @@ def test_other_prefixes_are_named_outside_of_gazebo_blocks(caplog):
     assert '<controller:c> (line 2)' in caplog.messages[1]
 
 
-def test_an_sdf_may_have_xacro_left_in_it_too(caplog):
+def test_unexpanded_xacro_in_sdf_is_reported(caplog):
     text = '<sdf version="1.6"><model name="m">\n<xacro:box/><link name="l"/></model></sdf>'
     assert load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())[0].links
     assert caplog.messages == [
         f'b.sdf: unexpanded xacro is ignored: <xacro:box> (line 2); {CURE}']
 
 
-def test_ten_thousand_tags_of_xacro_deep_in_others_are_found_in_no_time():
+def test_ten_thousand_nested_tags_of_xacro_are_found_quickly():
     deep = '<a>' * 150 + '<xacro:x/>' * 10_000 + '</a>' * 150
     assert load(f'{LINK}</link>{deep}').links

@@ -1,4 +1,4 @@
-"""What a model is to have and stands without is named once, with place, reason and page."""
+"""Each omission of a model is reported once, with location, reason and page."""
 
 import logging
 
@@ -33,7 +33,7 @@ def said(caplog):
     return [(record.levelname, record.getMessage()) for record in caplog.records]
 
 
-def test_a_mesh_that_is_missing_is_one_error_with_all_who_use_it(caplog, tmp_path):
+def test_missing_mesh_is_one_error_that_lists_its_users(caplog, tmp_path):
     mesh = '<mesh filename="package://p/wheel.dae"/>'
     spec = urdf(
         shape('collision', mesh) + shape('collision', '<box size="1 1 1"/>')
@@ -47,7 +47,7 @@ def test_a_mesh_that_is_missing_is_one_error_with_all_who_use_it(caplog, tmp_pat
         "left out: collision of link 'a' (line 2), visual of link 'a' (line 3)"))]
 
 
-def test_a_mesh_that_is_missing_from_the_model_path_is_said_with_where_it_was_looked_for(
+def test_error_about_a_mesh_missing_from_the_model_path_lists_the_searched_folders(
         caplog, tmp_path):
     spec = sdf(shape('collision', '<mesh><uri>model://mailbox/m.dae</uri></mesh>'),
                ModelSearch([tmp_path / 'a', tmp_path / 'b']))
@@ -60,7 +60,7 @@ def test_a_mesh_that_is_missing_from_the_model_path_is_said_with_where_it_was_lo
     assert sentence.endswith("; left out: collision of link 'a' (line 2)")
 
 
-def test_a_urdf_finds_meshes_along_the_model_path_too(tmp_path):
+def test_meshes_of_a_urdf_are_found_on_the_model_path(tmp_path):
     (tmp_path / 'bot').mkdir()
     (tmp_path / 'bot' / 'm.OBJ').write_text(TRIANGLE)
     spec = urdf(shape('collision', '<mesh filename="model://bot/m.OBJ" scale="-1 1 1"/>'),
@@ -73,7 +73,7 @@ def test_a_urdf_finds_meshes_along_the_model_path_too(tmp_path):
     ('{folder}/m.obj', 'is broken'), ('meshes/m.obj', 'is no absolute address'),
     ('http://host/m.obj', 'http:// addresses are not read'), ('{folder}/m.wrl', 'is not read'),
 ])
-def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, caplog, filename, reason):
+def test_unreadable_mesh_is_left_out(tmp_path, caplog, filename, reason):
     for name in ('m.obj', 'm.wrl'):
         (tmp_path / name).write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
     spec = urdf(shape('visual', f'<mesh filename="{filename.format(folder=tmp_path)}"/>'))
@@ -114,7 +114,7 @@ def test_a_shape_of_an_sdf_without_size_is_left_out(kind, geometry, caplog):
     assert sentence.startswith("b.sdf, line 2: link 'a': ")
 
 
-def test_a_model_stands_without_what_it_includes_and_without_the_joint_to_that(caplog):
+def test_model_is_read_without_a_missing_include_and_its_joint(caplog):
     text = """<sdf version="1.6"><model name="m"><link name="a"/>
 <include><uri>model://hokuyo</uri><pose>1 0 0 0 0 0</pose></include>
 <joint name="j" type="fixed"><child>hokuyo::link</child><parent>a</parent></joint>
@@ -129,13 +129,13 @@ def test_a_model_stands_without_what_it_includes_and_without_the_joint_to_that(c
     assert caplog.messages[1].endswith("; joint 'j' is left out")
 
 
-def test_links_without_mass_are_among_what_is_left_out():
+def test_links_without_mass_are_omissions():
     spec = urdf(after='<link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
                 '<child link="b"/></joint>')
     assert spec.left_out == ("link 'b'",)
 
 
-def test_a_hundred_thousand_uses_of_missing_meshes_make_a_bearable_log(caplog):
+def test_log_about_a_hundred_thousand_missing_meshes_is_short(caplog):
     mesh = shape('visual', '<mesh filename="/nowhere/m{}.dae"/>')
     urdf(''.join(mesh.format(i) for i in range(2000)) + mesh.format(0) * 2000)
     assert len(caplog.records) <= 50
@@ -146,7 +146,7 @@ def test_a_hundred_thousand_uses_of_missing_meshes_make_a_bearable_log(caplog):
     'libgazebo_ros_elevator.so', '/opt/ros/noetic/lib/libgazebo_ros_elevator.so',
     'gazebo_ros_elevator',
 ])
-def test_a_library_that_is_known_is_called_that_however_it_is_written(filename):
+def test_known_library_is_recognised_in_any_spelling(filename):
     assert library_remark(filename) == 'libgazebo_ros_elevator.so is known but not supported yet'
 
 
@@ -156,11 +156,11 @@ def test_a_library_that_is_known_is_called_that_however_it_is_written(filename):
     ('', "unknown library ''"),
     ('libgazebo_ros_diff_drive.so', 'works only in a <gazebo> or <model>'),
 ])
-def test_a_library_that_is_unknown_reads_differently(filename, remark):
+def test_unknown_library_has_its_own_remark(filename, remark):
     assert remark in library_remark(filename)
 
 
-def test_a_plugin_of_a_link_is_named_with_its_library(caplog):
+def test_unsupported_plugin_of_a_link_is_reported_with_its_library(caplog):
     urdf(after='<gazebo reference="a"><plugin filename="libgazebo_ros_elevator.so"/></gazebo>')
     ((level, sentence),) = said(caplog)
     assert level == logging.getLevelName(logging.WARNING)

@@ -1,4 +1,4 @@
-"""What the engine gets of a model, and what it cannot take."""
+"""Compiled models, and the limits of the engine."""
 
 from contextlib import closing
 from dataclasses import replace
@@ -42,7 +42,7 @@ def fixture_meshes():
 
 
 def chain(joints):
-    """Return a model of links, each of which hangs on the one before."""
+    """Return a model whose links form a chain."""
     return ModelSpec(
         'chain',
         tuple(LinkSpec(f'l{i}', inertial=MASS) for i in range(joints + 1)),
@@ -51,7 +51,7 @@ def chain(joints):
 
 
 def rough(surfaces, joints=0):
-    """Return a chain whose first link has collisions with a surface of their own."""
+    """Return a chain whose first link has collisions with different surfaces."""
     shapes = tuple(Collision(f'c{i}', Box((0.1, 0.1, 0.1)), surface=Surface(mu=1.0 + i / 1000))
                    for i in range(surfaces))
     spec = chain(joints)
@@ -77,7 +77,7 @@ def seen(count):
     (loose, size_limits.MAX_LINKS, 'has 501 links that fixed joints do not merge; at most 500 are'),
     (seen, size_limits.MAX_SHAPES, 'has 5001 collisions and visuals; at most 5000 are accepted'),
 ])
-def test_more_than_the_engine_takes_is_refused(meshes, made, most, said):
+def test_model_beyond_a_limit_of_the_engine_is_rejected(meshes, made, most, said):
     compile_model(made(most), meshes)
     with pytest.raises(ModelError) as caught:
         compile_model(made(most + 1), meshes)
@@ -85,7 +85,7 @@ def test_more_than_the_engine_takes_is_refused(meshes, made, most, said):
     assert str(caught.value).startswith(f"model '{made(1).name}': ")
 
 
-def test_a_complaint_begins_with_where_the_description_is(meshes):
+def test_error_begins_with_the_location_of_the_description(meshes):
     too_many = loose(size_limits.MAX_LINKS + 1).links
     with pytest.raises(ModelError, match=r'^robot_description, line 1: the model has 501 links'):
         compile_model(replace(urdf_spec(box_urdf('1 1 1', 1.0)), links=too_many), meshes)
@@ -101,7 +101,7 @@ def test_a_complaint_begins_with_where_the_description_is(meshes):
     (BOLT.format('fixed', '</joint>'), 'surface'),
     (BOLT.format('revolute', LIMIT), 'hull'),
 ])
-def test_what_moves_is_a_hull_and_what_stands_an_exact_surface(tmp_path, meshes, extra, kind):
+def test_mesh_is_a_hull_if_movable_and_exact_if_static(tmp_path, meshes, extra, kind):
     source = tmp_path / 'm.obj'
     source.write_text(TETRAHEDRON)
     model = compile_model(urdf_spec(MESH_LINK.format(file=source) + extra), meshes)
@@ -112,7 +112,7 @@ def test_what_moves_is_a_hull_and_what_stands_an_exact_surface(tmp_path, meshes,
     assert model.size == len(text) + Path(file).stat().st_size
 
 
-def test_the_files_of_a_model_stay_as_long_as_it_does(tmp_path, meshes):
+def test_files_exist_as_long_as_their_model(tmp_path, meshes):
     source = tmp_path / 'm.obj'
     source.write_text(TETRAHEDRON)
     model = compile_model(urdf_spec(MESH_LINK.format(file=source)), meshes)
@@ -128,7 +128,7 @@ def test_the_files_of_a_model_stay_as_long_as_it_does(tmp_path, meshes):
     assert not path.exists()
 
 
-def test_looks_names_and_places_are_not_the_engines(meshes):
+def test_content_does_not_depend_on_names_visuals_and_pose(meshes):
     spec = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
     (link,) = spec.links
     other = replace(spec, name='other', location='elsewhere', left_out=('a plugin',),

@@ -1,4 +1,4 @@
-"""How much energy a free rigid body gains in PyBullet's steps, beside what theory says."""
+"""Energy that a free rigid body gains per step in PyBullet, compared with theory."""
 
 import pytest
 
@@ -10,20 +10,20 @@ MOMENTS = (0.1, 0.2, 0.3)
 @pytest.mark.parametrize(('moments', 'velocity'), [
     (MOMENTS, (0.0, 50.0, 0.0)),  # about a principal axis
     ((0.2, 0.2, 0.2), (3.0, 4.0, 5.0)),  # a ball
-    ((0.0, 1.0, 1.0), (1.0, 2.0, 3.0)),  # one that cannot turn
+    ((0.0, 1.0, 1.0), (1.0, 2.0, 3.0)),  # rotation locked
     (MOMENTS, (0.0, 0.0, 0.0)),
 ])
-def test_what_needs_no_torque_to_turn_on_gains_nothing(moments, velocity):
+def test_torque_free_rotation_gains_no_energy(moments, velocity):
     assert energy_growth_rate(moments, velocity, 1e-3) == 0.0
 
 
-def test_the_share_gained_grows_with_the_square_of_the_speed_and_with_the_step():
+def test_relative_gain_grows_with_speed_squared_and_step_size():
     share = energy_growth_rate(MOMENTS, (3.0, 4.0, 5.0), 1e-3)
     assert energy_growth_rate(MOMENTS, (6.0, 8.0, 10.0), 1e-3) == pytest.approx(4.0 * share)
     assert energy_growth_rate(MOMENTS, (3.0, 4.0, 5.0), 2e-3) == pytest.approx(2.0 * share)
 
 
-def test_the_share_gained_is_that_of_a_step_of_explicit_euler():
+def test_relative_gain_is_that_of_explicit_euler():
     (a, b, c), (x, y, z), dt = MOMENTS, (3.0, 4.0, 5.0), 1e-5
     after = (x + dt * (b - c) / a * y * z, y + dt * (c - a) / b * z * x,
              z + dt * (a - b) / c * x * y)

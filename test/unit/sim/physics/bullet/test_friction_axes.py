@@ -1,4 +1,4 @@
-"""In which directions a surface holds how much, and along which of them a link can slip."""
+"""Friction scales along the axes of a surface, and axes of slip of a link."""
 
 import math
 
@@ -22,19 +22,19 @@ def scales(link=None, turn=NO_ROTATION, friction=1.0, **surface):
 
 @pytest.mark.parametrize(('surface', 'expected'), [
     ({'mu': 0.4, 'mu2': 0.4, 'fdir1': (1.0, 0.0, 0.0)}, ISOTROPIC),
-    ({'mu': 100.0, 'mu2': 50.0}, ISOTROPIC),  # as the ground: the other mu is less
+    ({'mu': 100.0, 'mu2': 50.0}, ISOTROPIC),  # as the ground
     ({'mu': 0.5, 'mu2': 0.1}, (0.2, 1.0, 0.2)),
     ({'mu': 0.1, 'mu2': 0.5}, (1.0, 0.2, 1.0)),
     ({'mu': 5.0, 'mu2': 0.5}, (0.5, 1.0, 0.5)),
     ({'mu': 5.0, 'mu2': 0.5, 'friction': 5.0}, (0.1, 1.0, 0.1)),
     ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (0.0, 0.0, 3.0)}, (0.2, 0.2, 1.0)),
-    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, ISOTROPIC),  # none of its axes
+    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, ISOTROPIC),  # along none of its axes
 ])
-def test_friction_is_weaker_along_the_direction_of_the_lesser_mu(surface, expected):
+def test_friction_is_scaled_along_the_axis_of_the_lesser_mu(surface, expected):
     assert scales(**surface) == pytest.approx(expected)
 
 
-def test_without_a_direction_the_first_mu_acts_along_the_models_y_axis():
+def test_mu_acts_along_the_models_y_axis_without_fdir1():
     side = LinkSpec('wheel', Pose((0.0, 0.0, 0.0), from_rpy(-math.pi / 2.0, 0.0, 0.0)))
     assert scales(side, mu=0.5, mu2=0.1) == pytest.approx((0.2, 0.2, 1.0))
     turned = from_rpy(0.0, 0.0, math.pi / 2.0)  # the part's y axis is the link's -x
@@ -42,7 +42,7 @@ def test_without_a_direction_the_first_mu_acts_along_the_models_y_axis():
 
 
 @pytest.mark.parametrize(('turns', 'can'), [((0.0, math.pi / 2), True), ((0.0, 0.3), False)])
-def test_a_link_slips_along_what_is_an_axis_of_all_its_parts(turns, can):
+def test_link_can_slip_along_a_common_axis_of_its_parts(turns, can):
     body, places = Body(0), [Place(0, index) for index in range(len(turns))]
     body.surfaces = {'wheel': places}
     body.friction_axes = {place: FrictionAxes(from_rpy(turn, 0.0, 0.0), ISOTROPIC)

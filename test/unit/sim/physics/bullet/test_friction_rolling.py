@@ -1,4 +1,4 @@
-"""What resists rolling."""
+"""Rolling resistance."""
 
 import pytest
 
@@ -10,5 +10,5 @@ AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')
 
 
 @pytest.mark.parametrize(('joint', 'arm'), [(None, 5e-4), (AXLE, 0.0)])
-def test_a_loose_cylinder_resists_rolling_and_a_wheel_does_not(joint, arm):
+def test_free_cylinder_has_rolling_resistance_and_a_wheel_has_none(joint, arm):
     assert rolling_arm([TYRE], joint) == pytest.approx(arm)

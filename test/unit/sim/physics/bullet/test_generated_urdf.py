@@ -1,4 +1,4 @@
-"""What PyBullet is given to read."""
+"""The URDF generated for PyBullet."""
 
 from xml.etree import ElementTree
 
@@ -9,7 +9,7 @@ from rosbots_description.sim.physics.bullet.generated_urdf import describe_tree,
 from rosbots_description.sim.physics.bullet.shape_groups import surface_groups
 
 
-def test_no_picture_is_made_of_what_touches():
+def test_generated_urdf_has_no_visuals():
     (tree,) = kinematic_trees(robot_spec())
     count = len(tree.links)
     groups = [surface_groups(tree, i) for i in range(count)]

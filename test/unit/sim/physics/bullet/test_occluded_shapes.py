@@ -1,4 +1,4 @@
-"""Which shapes of a body lie within the hull of the others."""
+"""Shapes of a body within the convex hull of the others."""
 
 import warnings
 
@@ -28,7 +28,7 @@ TURN = from_rpy(0.3, 0.2, 0.1)
 
 
 def inner(*collisions):
-    """Return the names of those that are within."""
+    """Return the names of the occluded collisions."""
     marks = occluded_shapes(collisions, None)
     return {one.name for one, mark in zip(collisions, marks, strict=True) if mark}
 
@@ -42,38 +42,38 @@ def inner(*collisions):
     (Collision('box', Box((0.2, 0.2, 0.1)), Pose((0.0, 0.0, 0.2), from_rpy(0.1, 0.1, 0.8))), True),
     (Collision('box', Box((0.2, 0.4, 0.1)), Pose((0.0, 0.0, 0.2))), False),
 ])
-def test_what_stands_between_two_plates_is_within_them(shape, within):
+def test_shape_between_two_plates_is_occluded(shape, within):
     assert inner(*PLATES, shape) == ({shape.name} if within else set())
     assert inner(shape, *PLATES) == ({shape.name} if within else set())
 
 
-def test_what_is_flush_with_plates_that_come_first_is_within_them():
+def test_shape_flush_with_earlier_plates_is_occluded():
     assert inner(*PLATES, Collision('post', Cylinder(0.02, 0.21), Pose((0.15, 0.1, 0.2))))
 
 
-def test_of_twins_one_touches():
+def test_one_of_two_equal_shapes_is_occluded():
     assert len(inner(*PLATES, *PLATES)) == 2
 
 
 @pytest.mark.parametrize('alone', [Box((1.0, 1.0, 1.0)), Sphere(1.0), Cylinder(1.0, 1.0)])
-def test_what_is_alone_touches(alone):
+def test_single_shape_is_not_occluded(alone):
     assert not inner(Collision('alone', alone))
 
 
-def test_beside_a_plane_everything_touches():
+def test_no_shape_is_occluded_beside_a_plane():
     assert not inner(*PLATES, Collision('post', Sphere(0.01), Pose((0.0, 0.0, 0.2))),
                      Collision('ground', Plane((0.0, 0.0, 1.0))))
 
 
 @pytest.mark.parametrize('size', [1e-300, 1e-9, 1e9, 1e200, 1.7e308])
-def test_absurd_sizes_are_no_fault(size):
+def test_extreme_sizes_are_accepted(size):
     with warnings.catch_warnings():
         warnings.simplefilter('error')
         found = inner(*PLATES, Collision('odd', Box((size,) * 3), Pose((size, 0.0, 0.2), TURN)))
     assert ('odd' in found) == (size < 1.0)
 
 
-def test_of_the_robot_of_the_article_plates_and_caster_touch():
+def test_plates_and_caster_of_the_articles_robot_are_not_occluded():
     collisions, meshes = robot_spec().links[0].collisions, EngineFiles()
     files = {one.geometry: meshes.engine_file(one.geometry, exact=False)
              for one in collisions if isinstance(one.geometry, Mesh)}
@@ -96,14 +96,14 @@ places = st.builds(
     st.tuples(*[st.floats(-1.0, 1.0)] * 3),
     st.builds(from_rpy, *[st.floats(-3.0, 3.0)] * 3),
 )
-WAYS = np.random.default_rng(1).normal(size=(200, 3))
-WAYS /= np.linalg.norm(WAYS, axis=1)[:, None]
+DIRECTIONS = np.random.default_rng(1).normal(size=(200, 3))
+DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
-def reach(collision, way):
+def extent(collision, direction):
     """Return how far a shape reaches in a direction [m]."""
     q = collision.pose.orientation
-    x, y, z = rotate((-q[0], -q[1], -q[2], q[3]), tuple(way))
+    x, y, z = rotate((-q[0], -q[1], -q[2], q[3]), tuple(direction))
     match collision.geometry:
         case Box((a, b, c)):
             far = (a * abs(x) + b * abs(y) + c * abs(z)) / 2.0
@@ -111,13 +111,14 @@ def reach(collision, way):
             far = radius
         case Cylinder(radius, length):
             far = radius * np.hypot(x, y) + length * abs(z) / 2.0
-    return far + float(np.dot(way, collision.pose.position))
+    return far + float(np.dot(direction, collision.pose.position))
 
 
 @given(st.lists(st.builds(Collision, st.just('one'), shapes, places), min_size=2, max_size=8))
-def test_nothing_that_is_within_reaches_beyond_all_that_touch(collisions):
+def test_occluded_shapes_do_not_extend_beyond_the_others(collisions):
     marks = occluded_shapes(collisions, None)
     touching = [one for one, mark in zip(collisions, marks, strict=True) if not mark]
     for one, mark in zip(collisions, marks, strict=True):
-        for way in WAYS if mark else ():
-            assert reach(one, way) <= max(reach(other, way) for other in touching) + 1e-5
+        for direction in DIRECTIONS if mark else ():
+            most = max(extent(other, direction) for other in touching)
+            assert extent(one, direction) <= most + 1e-5

@@ -1,4 +1,4 @@
-"""What stands for a wheel."""
+"""Contact shapes of a wheel."""
 
 import math
 from dataclasses import replace
@@ -22,12 +22,12 @@ AXLE = JointSpec('axle', REVOLUTE, 'base', 'wheel')
 
 
 def wheel(tilt=0.0):
-    """Return a wheel's link; its axle is along y but for this tilt [rad]."""
+    """Return the link of a wheel with its axle along y, tilted by `tilt` [rad]."""
     return LinkSpec('wheel', Pose((0.0, 0.2, 0.1), from_rpy(math.pi / 2.0 + tilt, 0.0, 0.0)))
 
 
 @pytest.mark.parametrize('tilt', [0.0, 5e-5, -5e-5])
-def test_a_level_wheel_touches_in_its_middle_and_at_both_ends(tilt):
+def test_level_wheel_has_crests_in_the_middle_and_at_both_ends(tilt):
     *crests, lower = crowned(TYRE, wheel(tilt), AXLE)
     assert [crest.pose.position[2] for crest in crests] == pytest.approx([-0.024, 0.0, 0.024])
     assert {crest.geometry for crest in crests} == {Cylinder(TYRE.geometry.radius, 0.002)}
@@ -37,19 +37,19 @@ def test_a_level_wheel_touches_in_its_middle_and_at_both_ends(tilt):
 
 
 @pytest.mark.parametrize(('collision', 'link', 'joint'), [
-    (TYRE, wheel(0.0008), AXLE),  # it touches with one side
+    (TYRE, wheel(0.0008), AXLE),  # tilted: one edge touches
     (TYRE, wheel(), None),
     (TYRE, wheel(), replace(AXLE, type=FIXED)),
-    (TYRE, wheel(), replace(AXLE, axis=(1.0, 0.0, 0.0))),  # it tumbles
-    (TYRE, LinkSpec('turntable'), AXLE),  # it lies on its face
+    (TYRE, wheel(), replace(AXLE, axis=(1.0, 0.0, 0.0))),  # the axis is not that of the cylinder
+    (TYRE, LinkSpec('turntable'), AXLE),  # a turntable
     (Collision('box', Box((1.0, 1.0, 1.0))), wheel(), AXLE),
 ])
-def test_what_is_no_level_wheel_stays_as_it_is(collision, link, joint):
+def test_other_shape_than_a_level_wheel_is_unchanged(collision, link, joint):
     assert crowned(collision, link, joint) == (collision,)
 
 
 @pytest.mark.parametrize('length', [1e-6, 100.0])
-def test_a_crown_has_a_size_whatever_the_wheels(length):
+def test_crowned_profile_has_positive_size_for_any_wheel(length):
     for shape in crowned(Collision('odd', Cylinder(0.1, length)), wheel(), AXLE):
         assert 0.05 <= shape.geometry.radius <= 0.1
         assert 0.0 < shape.geometry.length <= length

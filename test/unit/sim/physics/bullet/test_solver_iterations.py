@@ -1,4 +1,4 @@
-"""The solver makes more iterations while a motor misses its target though it could do more."""
+"""The solver runs more iterations while an unsaturated motor misses its target."""
 
 import pytest
 
@@ -8,7 +8,7 @@ LOOKS = 100
 
 
 def iterations_after(*motors, looks=LOOKS):
-    """Return all numbers of iterations that were set while motors did this."""
+    """Return all iteration counts that were set with these motors."""
     told = []
     effort = SolverEffort(told.append)
     effort.start(11)
@@ -18,29 +18,29 @@ def iterations_after(*motors, looks=LOOKS):
 
 
 @pytest.mark.parametrize('motor', [
-    (0.9, 1.0, 0.5, 1.0),  # it misses its target by a tenth
-    (-0.02, 0.0, 0.5, 1.0),  # it is to stand
-    (1e-3, 0.0, 0.5, 1.0),  # it creeps
+    (0.9, 1.0, 0.5, 1.0),  # misses its target by 10 %
+    (-0.02, 0.0, 0.5, 1.0),  # the target is zero
+    (1e-3, 0.0, 0.5, 1.0),  # creeps at target zero
 ])
-def test_a_motor_that_misses_its_target_gets_more_iterations(motor):
+def test_motor_that_misses_its_target_raises_the_iterations(motor):
     assert iterations_after(motor) == [11, 44, 176]
 
 
 @pytest.mark.parametrize('motor', [
-    (0.99, 1.0, 0.5, 1.0),  # near enough
-    (0.1, 1.0, -1.0, 1.0),  # it does what it can
+    (0.99, 1.0, 0.5, 1.0),  # within the tolerance
+    (0.1, 1.0, -1.0, 1.0),  # saturated
     (1e-3, 1e-3, 0.5, 1.0),
     (5e-5, 0.0, 0.5, 1.0),
 ])
-def test_a_motor_that_does_what_it_can_gets_no_more(motor):
+def test_saturated_motor_does_not_raise_the_iterations(motor):
     assert iterations_after(motor) == [11]
 
 
-def test_one_look_changes_nothing():
+def test_one_sample_changes_nothing():
     assert iterations_after((0.9, 1.0, 0.5, 1.0), looks=1) == [11]
 
 
-def test_when_all_motors_reach_their_targets_fewer_do():
+def test_iterations_are_lowered_when_all_motors_reach_their_targets():
     told = []
     effort = SolverEffort(told.append)
     effort.start(11)
@@ -50,7 +50,7 @@ def test_when_all_motors_reach_their_targets_fewer_do():
     assert told == [11, 44, 176, 44, 11]
 
 
-def test_who_needs_more_iterations_gets_enough_to_miss_by_less():
+def test_iterations_are_raised_until_the_error_is_small():
     told = []
     effort = SolverEffort(told.append)
     effort.start(11)
@@ -61,14 +61,14 @@ def test_who_needs_more_iterations_gets_enough_to_miss_by_less():
 
 
 def tries(effort, told, looks, target=1.0):
-    """Return how often fewer iterations are tried by a motor that needs 44."""
+    """Return how often fewer iterations are tried for a motor that needs 44."""
     before = told.count(11)
     for _ in range(looks):
         effort.update([(0.9 * target if told[-1] < 44 else target, target, 0.1, 1.0)])
     return told.count(11) - before
 
 
-def test_fewer_iterations_are_tried_ever_more_rarely_until_a_target_changes():
+def test_attempts_with_fewer_iterations_become_rarer_until_a_target_changes():
     told = []
     effort = SolverEffort(told.append)
     effort.start(11)

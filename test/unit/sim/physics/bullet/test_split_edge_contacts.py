@@ -1,4 +1,4 @@
-"""Shapes of a robot's body with edges come twice, and touch a floor with both ends of an edge."""
+"""Shapes with edges are doubled, so that a body touches a floor with both ends of an edge."""
 
 import math
 from itertools import product
@@ -34,13 +34,13 @@ JOINT = JointSpec('axle', REVOLUTE, 'body', 'wheel')
 
 
 def corners(collision):
-    """Return the eight corners of a box, in the frame that it is given in [m]."""
+    """Return the eight corners of a box in its parent frame [m]."""
     x, y, z = collision.geometry.size
     return [compose(collision.pose, Pose((i * x, j * y, k * z))).position
             for i, j, k in product((-0.5, 0.5), repeat=3)]
 
 
-def side_that_is_lowest(collision):
+def lowest_side(collision):
     """Return the y [m] of the lowest corners."""
     return min(corners(collision), key=lambda corner: corner[2])[1]
 
@@ -48,27 +48,27 @@ def side_that_is_lowest(collision):
 @pytest.mark.parametrize('turn', [
     (0.0, 0.0, 0.0), (0.0, 0.0, QUARTER), (QUARTER, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4),
 ])
-def test_a_box_comes_twice_in_one_place_and_each_is_lowest_on_its_side(turn):
+def test_box_is_doubled_and_each_copy_is_lowest_on_its_side(turn):
     box = Collision('box', Box((0.5, 0.3, 0.1)), Pose((0.2, 0.0, 0.1), from_rpy(*turn)))
     both = split_edges([box], AXLE, UP)
     for one in both:
         for corner, original in zip(corners(one), corners(box), strict=True):
             assert 0.0 < math.dist(corner, original) < 1e-4
-    assert sorted(math.copysign(1.0, side_that_is_lowest(one)) for one in both) == [-1.0, 1.0]
+    assert sorted(math.copysign(1.0, lowest_side(one)) for one in both) == [-1.0, 1.0]
 
 
-def test_in_a_frame_that_is_upside_down_each_is_highest_on_its_side():
+def test_copies_in_an_upside_down_frame_are_highest_on_their_side():
     for lower, upper in zip(
             split_edges([BOX], AXLE, DOWN), split_edges([BOX], AXLE, UP), strict=True):
-        assert side_that_is_lowest(lower) == pytest.approx(-side_that_is_lowest(upper), abs=1e-4)
+        assert lowest_side(lower) == pytest.approx(-lowest_side(upper), abs=1e-4)
 
 
-def test_what_is_round_comes_once():
+def test_round_shape_is_not_doubled():
     shapes = [Collision('ball', Sphere(0.1)), Collision('can', Cylinder(0.1, 0.2))]
     assert split_edges(shapes, AXLE, UP) == tuple(shapes)
 
 
-def test_a_mesh_has_edges_too():
+def test_mesh_is_doubled():
     assert len(split_edges([Collision('hull', Mesh('hull.stl'))], AXLE, UP)) == 2
 
 
@@ -84,7 +84,7 @@ def groups_of(tree):
     return [surface_groups(tree, i) for i in range(len(tree.links))]
 
 
-def test_the_body_that_carries_a_wheel_touches_with_both_ends_of_its_edges():
+def test_body_with_a_wheel_has_split_edge_contacts():
     tree = Tree([BODY, WHEEL], [None, JOINT], fixed_base=False)
     (body, wheel), occluded_first = grouped(tree, groups_of(tree), no_file)
     assert not occluded_first
@@ -92,7 +92,7 @@ def test_the_body_that_carries_a_wheel_touches_with_both_ends_of_its_edges():
     assert [kinds(group) for group in wheel] == [[Cylinder] * 4]  # crests and shoulders
 
 
-def test_what_lies_inside_comes_once():
+def test_occluded_shape_is_not_doubled():
     smooth = Collision('skid', Sphere(0.05), Pose((-0.2, 0.0, -0.1)), surface=Surface(mu=0.1))
     plates = tuple(Collision(f'plate{z}', Box((0.5, 0.3, 0.01)), Pose((0.0, 0.0, z)))
                    for z in (0.0, 0.2))
@@ -112,5 +112,5 @@ def test_what_lies_inside_comes_once():
          [None, JointSpec('elbow', REVOLUTE, 'body', 'arm'),
           JointSpec('axle', REVOLUTE, 'arm', 'wheel')], fixed_base=False),
 ])
-def test_a_body_that_carries_no_wheel_stays_as_it_is(tree):
+def test_body_without_a_wheel_is_unchanged(tree):
     assert grouped(tree, groups_of(tree), no_file)[0][0] == [BODY.collisions]

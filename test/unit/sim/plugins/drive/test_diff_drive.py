@@ -1,4 +1,4 @@
-"""The diff drive's timing, ramps, odometry and parameters, with joints that obey at once."""
+"""The diff drive's timing, ramps, odometry and parameters, on the fake engine."""
 
 import logging
 import math
@@ -36,14 +36,14 @@ def test_an_update_rate_of_zero_means_every_step():
     assert len(odometry) == 5
 
 
-def test_forward_turns_both_wheels_forward_and_left_turns_the_right_wheel_more():
+def test_wheels_turn_forward_and_the_right_one_faster_in_a_left_turn():
     plugin = make(wheelAcceleration='0')
     plugin.command(0.5, 0.5)
     run(plugin, PERIOD_STEPS + 1)
     assert rim_speeds(plugin) == pytest.approx((0.5 - 0.275, 0.5 + 0.275))
 
 
-def test_the_ramp_gains_eleven_milliseconds_of_acceleration_every_ten():
+def test_ramp_adds_eleven_milliseconds_of_acceleration_every_ten():
     plugin = make()
     plugin.command(0.5, 0.0)
     run(plugin, PERIOD_STEPS * 10 + 1)
@@ -57,9 +57,9 @@ def test_a_ramp_ends_at_the_target_when_one_wheel_is_near_it():
     assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
 
 
-def test_a_wheel_within_a_centimetre_per_second_ends_the_ramp_of_both():
+def test_ramp_of_both_wheels_ends_when_one_is_within_1_cm_per_s():
     plugin = make()
-    plugin.command(0.55, 1.0)  # the left wheel stands still and is to stand still
+    plugin.command(0.55, 1.0)  # the left wheel stands, and its target is zero
     run(plugin, PERIOD_STEPS + 1)
     assert rim_speeds(plugin) == pytest.approx((0.0, 1.1))
 
@@ -68,7 +68,7 @@ def test_the_setpoint_is_not_synchronised_with_the_wheels():
     plugin = make()
     plugin.command(0.5, 0.0)
     run(plugin, PERIOD_STEPS * 5 + 1)
-    turn(plugin, left=0.0, right=0.0)  # something blocks the wheels
+    turn(plugin, left=0.0, right=0.0)  # the wheels are blocked
     run(plugin, PERIOD_STEPS)
     assert rim_speeds(plugin) == pytest.approx((6 * 0.011,) * 2)
 
@@ -79,14 +79,14 @@ def test_the_torque_limit_is_wheel_torque():
     assert make(torque='20').model.joints['left'].effort == 5.0
 
 
-def test_the_last_command_holds_without_end():
+def test_last_command_holds_without_timeout():
     plugin = make()
     plugin.command(0.5, 0.0)
     run(plugin, 20_000)
     assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
 
 
-def test_reset_forgets_the_command_and_keeps_the_ramp():
+def test_reset_clears_the_command_and_keeps_the_ramp():
     plugin = make()
     plugin.command(0.5, 0.0)
     run(plugin, 1000)
@@ -97,7 +97,7 @@ def test_reset_forgets_the_command_and_keeps_the_ramp():
     assert rim_speeds(plugin) == pytest.approx((0.0, 0.0))
 
 
-def test_world_odometry_is_the_pose_of_the_model_and_its_twist_turned_into_the_body():
+def test_world_odometry_is_the_pose_of_the_model_and_its_twist_in_body_axes():
     plugin = make()
     odometry = collect(plugin.odometry)
     pose = Pose((1.0, 2.0, -0.12), from_rpy(0.0, 0.0, math.pi / 2))
@@ -123,7 +123,7 @@ def test_encoder_odometry_starts_at_zero_and_follows_the_wheels():
     assert pose.position[2] == 0.0
 
 
-def test_encoder_odometry_begins_again_at_zero_after_a_reset_however_late():
+def test_encoder_odometry_restarts_at_zero_after_a_reset_at_any_time():
     plugin = make(odometrySource='encoder', wheelAcceleration='0')
     odometry = collect(plugin.odometry)
     plugin.command(0.5, 0.5)
@@ -173,12 +173,12 @@ def test_wheel_transforms_are_relative_to_the_model_whatever_the_parent():
         ('publishWheelJointState', {'joint_states'}),
     ],
 )
-def test_what_is_switched_off_is_no_output(tag, gone):
+def test_disabled_output_does_not_exist(tag, gone):
     tags = dict.fromkeys(('publishWheelTF', 'publishWheelJointState'), 'true')
     assert make(**tags).outputs.keys() - make(**(tags | {tag: 'false'})).outputs.keys() == gone
 
 
-def test_the_model_is_asked_once_for_all_that_is_published():
+def test_state_of_the_model_is_read_once_per_update():
     plugin = make(publishWheelTF='true', publishWheelJointState='true')
     for output in plugin.outputs.values():
         collect(output)
@@ -188,14 +188,14 @@ def test_the_model_is_asked_once_for_all_that_is_published():
     assert looks == [1]
 
 
-def test_nothing_is_computed_while_nobody_listens():
+def test_nothing_is_computed_without_readers():
     plugin = make(publishWheelTF='true', publishWheelJointState='true')
-    plugin.model.state = plugin.model.links = None  # any look would fail
+    plugin.model.state = plugin.model.links = None  # any access would fail
     run(plugin, 50)
     assert plugin.world.clock.steps == 50
 
 
-def test_missing_tags_are_named_with_upstreams_defaults(caplog):
+def test_missing_tags_are_logged_with_upstreams_defaults(caplog):
     make(wheelSeparation=None, updateRate=None)
     messages = [record.getMessage() for record in caplog.records]
     for text in (
@@ -214,35 +214,35 @@ def test_the_namespace_is_the_models_name_unless_given(tag, namespace):
     assert make(robotNamespace=tag).namespace == namespace
 
 
-def test_a_missing_joint_is_named_together_with_those_there_are():
+def test_error_about_a_missing_joint_lists_the_joints():
     with pytest.raises(PluginError, match=r'hinge joint named wheel.*its joints: left, right'):
         make(leftJoint='wheel')
 
 
-def test_a_rate_that_is_hardly_one_is_refused():
+def test_extreme_update_rate_is_rejected():
     with pytest.raises(PluginError, match='updateRate'):
         make(updateRate='1e-300')
 
 
 @pytest.mark.parametrize('text', ['wide', 'nan', '0', '-1'])
-def test_a_separation_that_makes_no_sense_is_refused(text):
+def test_invalid_separation_is_rejected(text):
     with pytest.raises(PluginError, match='wheelSeparation'):
         make(wheelSeparation=text)
 
 
-def test_a_boolean_that_is_none_keeps_the_default_and_says_so(caplog):
+def test_invalid_boolean_gives_the_default_with_a_warning(caplog):
     assert make(publishOdomTF='maybe').outputs['odometry_transform']
     assert "<publishOdomTF> is 'maybe'" in caplog.text
 
 
-def test_tags_that_nobody_reads_are_reported_once(caplog):
+def test_unknown_tags_are_reported_once(caplog):
     make(torque='20', legacyMode='false', alwaysOn='true')
     lines = [r.getMessage() for r in caplog.records if 'not read' in r.getMessage()]
     assert len(lines) == 1
     assert '<torque>, <legacyMode>' in lines[0]
 
 
-def test_numbers_that_contradict_the_wheels_are_one_warning(caplog):
+def test_tags_that_contradict_the_wheels_give_one_warning(caplog):
     make(wheel_collisions=wheel_of(0.23))
     lines = [r for r in caplog.records if 'contradict' in r.getMessage()]
     assert len(lines) == 1
@@ -251,12 +251,12 @@ def test_numbers_that_contradict_the_wheels_are_one_warning(caplog):
     assert lines[0].levelno == logging.WARNING
 
 
-def test_numbers_that_fit_the_wheels_are_no_warning(caplog):
+def test_tags_that_fit_the_wheels_give_no_warning(caplog):
     make(wheel_collisions=wheel_of(0.23), wheelDiameter='0.46', wheelSeparation='0.8')
     assert 'contradict' not in caplog.text
 
 
-def test_a_left_joint_on_the_right_side_is_one_warning_with_the_cure(caplog):
+def test_left_joint_on_the_right_side_gives_one_warning_with_the_cure(caplog):
     make(wheel_collisions=wheel_of(0.26), leftJoint='right', rightJoint='left')
     lines = [r.getMessage() for r in caplog.records if 'this robot will' in r.getMessage()]
     assert len(lines) == 1
@@ -264,6 +264,6 @@ def test_a_left_joint_on_the_right_side_is_one_warning_with_the_cure(caplog):
     assert lines[0].endswith('swap <leftJoint> and <rightJoint>')
 
 
-def test_wheels_on_their_sides_are_no_warning(caplog):
+def test_wheels_on_their_sides_give_no_warning(caplog):
     make(wheel_collisions=wheel_of(0.26))
     assert 'this robot will' not in caplog.text

@@ -1,4 +1,4 @@
-"""Planar movement: what velocity it sets when, and what odometry tells of it."""
+"""Planar movement: velocity, timing and odometry."""
 
 import math
 
@@ -33,7 +33,7 @@ def test_the_velocity_is_set_at_every_step_in_the_models_own_axes():
     assert twist.angular == (0.0, 0.0, 0.3)
 
 
-def test_odometry_at_20_hz_comes_each_51_ms():
+def test_odometry_at_20_hz_has_a_period_of_51_ms():
     plugin = make()
     times = []
     plugin.odometry.connect(lambda _: times.append(plugin.world.clock.steps))
@@ -41,16 +41,16 @@ def test_odometry_at_20_hz_comes_each_51_ms():
     assert times == [51, 102, 153, 204]
 
 
-def test_a_rate_of_zero_means_no_odometry():
+def test_rate_of_zero_disables_odometry():
     plugin = make(odometryRate='0')
     assert not plugin.outputs
 
 
-def test_the_twist_is_told_from_two_poses():
+def test_twist_is_the_difference_of_two_poses():
     plugin = make()
     odometry = collect(plugin.odometry)
     plugin.command(0.0, 1.0)
-    yaws = (math.pi - 0.01, -math.pi + 0.02)  # it passes the back
+    yaws = (math.pi - 0.01, -math.pi + 0.02)  # across the wrap of yaw
     for k, yaw in enumerate(yaws):
         place(plugin, Pose((0.0, -0.1 * k, 0.0), from_rpy(0.0, 0.0, yaw)))
         run(plugin, 51)
@@ -60,7 +60,7 @@ def test_the_twist_is_told_from_two_poses():
     assert linear[1] == pytest.approx(0.1 / 0.051 * math.cos(0.02), rel=1e-3)
 
 
-def test_who_turns_too_fast_to_tell_is_said_to_turn_as_commanded():
+def test_odometry_of_a_too_fast_turn_is_the_command():
     plugin = make()
     odometry = collect(plugin.odometry)
     plugin.command(0.0, 100.0)
@@ -68,7 +68,7 @@ def test_who_turns_too_fast_to_tell_is_said_to_turn_as_commanded():
     assert odometry[-1].twist.angular[2] == 100.0
 
 
-def test_a_command_is_forgotten_after_its_timeout():
+def test_command_expires_after_its_timeout():
     plugin = make(cmdTimeout='0.1')
     plugin.command(0.5, 0.0)
     run(plugin, 100)
@@ -77,7 +77,7 @@ def test_a_command_is_forgotten_after_its_timeout():
     assert plugin.model.twist.linear[0] == 0.0
 
 
-def test_a_command_without_timeout_holds_and_a_reset_leaves_it():
+def test_command_without_timeout_holds_even_after_a_reset():
     plugin = make()
     plugin.command(0.5, 0.0)
     plugin.reset()

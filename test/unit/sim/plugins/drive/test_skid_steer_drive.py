@@ -1,4 +1,4 @@
-"""The skid steer drive's tags, timing, wheels and odometry, with joints that obey at once."""
+"""The skid steer drive's tags, timing, wheels and odometry, on the fake engine."""
 
 import pytest
 from support.fake_drive import collect, fake_model, make_drive, place, run
@@ -33,13 +33,13 @@ def test_all_tags_have_upstreams_defaults_and_its_warnings(caplog):
     assert f'{prefix}<broadcastTF>, defaults to false' in caplog.messages
 
 
-def test_what_others_call_a_topic_is_named_as_not_read(caplog):
+def test_topic_tag_of_other_plugins_is_reported_as_unknown(caplog):
     make(topicName='cmd_vel')
     assert 'not read by this plugin: <topicName>' in caplog.text
 
 
 @pytest.mark.parametrize('joint', JOINTS)
-def test_each_of_the_four_wheels_must_be_there(joint):
+def test_missing_wheel_is_an_error(joint):
     with pytest.raises(PluginError, match=joint):
         make([name for name in JOINTS if name != joint])
 
@@ -47,12 +47,12 @@ def test_each_of_the_four_wheels_must_be_there(joint):
 @pytest.mark.parametrize(('tag', 'value'), [
     ('wheelDiameter', '0'), ('wheelSeparation', '-1'), ('updateRate', '1e-9'), ('torque', 'much'),
 ])
-def test_a_tag_that_makes_no_sense_is_refused(tag, value):
+def test_invalid_tag_is_rejected(tag, value):
     with pytest.raises(PluginError, match=tag):
         make(**{tag: value})
 
 
-def test_front_and_rear_wheels_turn_alike_and_at_once():
+def test_front_and_rear_wheels_get_equal_speeds_at_once():
     plugin = make(wheelSeparation='0.5', wheelDiameter='0.2', torque='7')
     plugin.command(1.0, 2.0)
     run(plugin, 10)
@@ -62,7 +62,7 @@ def test_front_and_rear_wheels_turn_alike_and_at_once():
     assert {joint.effort for joint in plugin.model.joints.values()} == {7.0}
 
 
-def test_odometry_comes_one_step_late_and_is_where_the_robot_truly_is():
+def test_odometry_is_the_true_pose_one_step_late():
     plugin = make()
     odometry, edges = collect(plugin.odometry), collect(plugin.odometry_transform)
     there = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.5707963267948966))
@@ -70,12 +70,12 @@ def test_odometry_comes_one_step_late_and_is_where_the_robot_truly_is():
     run(plugin, 31)
     assert len(odometry) == len(edges) == 3
     pose, twist = odometry[-1]
-    assert pose == Pose((1.0, 2.0, 0.0), there.orientation)  # the transform is not flat
+    assert pose == Pose((1.0, 2.0, 0.0), there.orientation)  # the transform is not projected
     assert edges[-1] == ('odom', 'base_footprint', there)
     assert twist.linear == pytest.approx((0.5, 0.0, 0.0))
 
 
-def test_a_reset_leaves_the_command():
+def test_reset_keeps_the_command():
     plugin = make()
     plugin.command(0.3, 0.0)
     plugin.reset()

@@ -1,4 +1,4 @@
-"""The tricycle drive's tags, ramps, steering and odometry, with joints that obey at once."""
+"""The tricycle drive's tags, ramps, steering and odometry, on the fake engine."""
 
 import math
 
@@ -28,24 +28,24 @@ def test_all_tags_have_upstreams_defaults(caplog):
 
 
 @pytest.mark.parametrize('joint', JOINTS)
-def test_each_of_the_four_joints_must_be_there(joint):
+def test_missing_joint_is_an_error(joint):
     with pytest.raises(PluginError, match=joint):
         make([name for name in JOINTS if name != joint])
 
 
-def test_the_same_joint_cannot_serve_twice():
+def test_duplicate_joint_is_an_error():
     with pytest.raises(PluginError, match='two of its joints are one'):
         make(steeringJoint='front_wheel_joint')
 
 
-def test_forward_is_the_speed_of_the_driven_wheels_rim():
+def test_forward_speed_is_the_rim_speed_of_the_driven_wheel():
     plugin = make(actuatedWheelDiameter='0.5')
     plugin.command(1.0, 0.0)
     run(plugin, 11)
     assert plugin.model.joints['front_wheel_joint'].velocity == pytest.approx(4.0)
 
 
-def test_a_reset_of_the_world_leaves_command_and_odometry():
+def test_reset_of_the_world_keeps_command_and_odometry():
     plugin = make(odometrySource='encoder')
     plugin.command(1.0, 0.2)
     turn(plugin, left_wheel_joint=0.5, right_wheel_joint=0.5)
@@ -58,7 +58,7 @@ def test_a_reset_of_the_world_leaves_command_and_odometry():
     assert (plugin.target, plugin.encoders.place) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
-def test_it_speeds_up_by_the_deceleration_and_slows_down_by_the_acceleration():
+def test_acceleration_and_deceleration_are_swapped_as_upstream():
     plugin = make(wheelAcceleration='1', wheelDeceleration='5', actuatedWheelDiameter='0.2')
     wheel = plugin.model.joints['front_wheel_joint']
     plugin.command(1.0, 0.0)
@@ -70,7 +70,7 @@ def test_it_speeds_up_by_the_deceleration_and_slows_down_by_the_acceleration():
     assert wheel.velocity == pytest.approx(9.0 - 1 * 0.011)
 
 
-def test_a_wheel_within_the_tolerance_goes_on_as_it_does():
+def test_wheel_within_the_tolerance_keeps_its_speed():
     plugin = make(wheelAcceleration='1', wheelSpeedTolerance='0.5', actuatedWheelDiameter='2')
     turn(plugin, front_wheel_joint=0.6)
     plugin.command(1.0, 0.0)
@@ -87,14 +87,14 @@ def test_steering_turns_towards_the_angle_at_its_speed(angle, speed, forward):
     assert plugin.model.joints['front_steering_joint'].velocity == speed
 
 
-def test_steering_without_speed_is_at_its_angle_at_once_and_not_beyond_straight_across():
+def test_steering_without_a_speed_limit_is_immediate_and_within_90_degrees():
     plugin = make()
     plugin.command(0.0, 3.0)
     run(plugin, 11)
     assert plugin.model.joints['front_steering_joint'].position == pytest.approx(math.pi / 2)
 
 
-def test_encoder_odometry_turns_the_wrong_way_round_and_has_speeds_in_its_own_frame():
+def test_encoder_odometry_has_the_yaw_sign_and_twist_frame_of_upstream():
     plugin = make(odometrySource='encoder', encoderWheelDiameter='0.2')
     odometry = collect(plugin.odometry)
     turn(plugin, left_wheel_joint=-5.0, right_wheel_joint=-3.0)

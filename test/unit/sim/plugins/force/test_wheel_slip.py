@@ -1,4 +1,4 @@
-"""Which tyres slip by how much."""
+"""Slip compliances of tyres."""
 
 import threading
 
@@ -25,9 +25,9 @@ def load(*wheels, model=None, namespace=None):
     return load_plugin(WheelSlip, model or fake_model(wheel_of(0.1)), element)
 
 
-def test_slip_grows_with_the_speed_of_the_rim_and_shrinks_with_the_normal_force():
+def test_slip_compliance_is_proportional_to_rim_speed_over_normal_force():
     plugin = load(wheel())
-    for speed in (-4.0, 8.0):  # [rad/s] in one step and the next
+    for speed in (-4.0, 8.0):  # [rad/s] in consecutive steps
         turn(plugin, left=speed)
         run(plugin, 1)
         rim = abs(speed) * 0.1
@@ -35,7 +35,7 @@ def test_slip_grows_with_the_speed_of_the_rim_and_shrinks_with_the_normal_force(
             'left_link': pytest.approx((rim / 50 * 0.5, rim / 50 * 0.25))}
 
 
-def test_a_radius_that_is_given_counts_and_a_negative_compliance_is_none():
+def test_given_radius_is_used_and_negative_compliance_is_zero():
     plugin = load(wheel(wheel_radius='0.2', slip_compliance_lateral='-3'))
     turn(plugin, left=1.0)
     run(plugin, 1)
@@ -48,13 +48,13 @@ def test_a_radius_that_is_given_counts_and_a_negative_compliance_is_none():
     (wheel(wheel_normal_force=None), '<wheel_normal_force> must be above 0'),
     (wheel(slip_compliance_lateral='lots'), 'takes a finite number'),
 ])
-def test_a_wheel_that_makes_no_sense_is_left_out_with_a_sentence(bad, told, caplog):
+def test_invalid_wheel_is_left_out_with_an_error(bad, told, caplog):
     plugin = load(bad, wheel('right_link'))
     assert told in caplog.text
     assert [one.joint.name for one in plugin.wheels] == ['right']
 
 
-def test_a_wheel_whose_axle_the_engine_does_not_know_is_left_out(caplog):
+def test_wheel_whose_axle_is_no_principal_axis_is_left_out(caplog):
     model = fake_model(wheel_of(0.1))
     model.engine.rigid = {'left_link'}
     with pytest.raises(PluginError, match='no <wheel> that can slip'):
@@ -66,17 +66,17 @@ def test_a_wheel_whose_axle_the_engine_does_not_know_is_left_out(caplog):
     (None, 'robot/wheel_slip'), ('', 'robot/wheel_slip'), ('/', 'robot/wheel_slip'),
     ('rear', 'robot/rear'),
 ])
-def test_its_namespace_is_within_that_of_the_model(given, used):
+def test_namespace_is_within_that_of_the_model(given, used):
     assert load(wheel(), namespace=given).namespace == used
 
 
-def test_compliances_can_be_changed_for_all_wheels_and_negative_ones_leave_them():
+def test_compliances_change_for_all_wheels_unless_negative():
     plugin = load(wheel(), wheel('right_link'))
     plugin.set_compliance(lateral=2.0, longitudinal=-1.0)
     assert {(one.lateral, one.longitudinal) for one in plugin.wheels} == {(2.0, 0.25)}
 
 
-def test_dynamic_reconfigure_hands_its_numbers_to_the_plugin(monkeypatch):
+def test_dynamic_reconfigure_sets_the_compliances(monkeypatch):
     monkeypatch.setattr(wheel_slip.PluginReconfigure, '__init__',
                         lambda self, *_: setattr(self, 'mutex', threading.Lock()))
     plugin = load(wheel())

@@ -1,4 +1,4 @@
-"""The joint state publisher: which joints it tells of, in which order and when."""
+"""The joint state publisher: its joints, their order, and timing."""
 
 import pytest
 from support.fake_drive import collect, fake_model, make_drive, run, turn
@@ -13,7 +13,7 @@ def make(**tags):
     return make_drive(JointStatePublisher, fake_model(), **tags)
 
 
-def test_joints_are_told_of_in_the_order_written_with_positions_and_velocities():
+def test_joints_are_in_the_order_of_the_tag_with_positions_and_velocities():
     plugin = make(jointName=' right,\n left ', updateRate='0')
     readings = collect(plugin.joint_states)
     turn(plugin, left=2.0, right=-1.0)
@@ -35,11 +35,11 @@ def test_the_mean_rate_is_exact_and_the_first_reading_a_step_late(rate, steps):
     assert found[:4] == steps
 
 
-def test_who_is_not_read_sleeps():
+def test_plugin_without_readers_is_not_due():
     assert make(jointName='left').due == NEVER
 
 
-def test_a_missing_tag_is_said_with_its_default(caplog):
+def test_missing_tag_is_logged_with_its_default(caplog):
     plugin = make(jointName='left')
     assert caplog.messages == [f'{PREFIX}missing <updateRate>, defaults to 100.000000']
     assert plugin.namespace == 'robot'
@@ -47,14 +47,14 @@ def test_a_missing_tag_is_said_with_its_default(caplog):
 
 
 @pytest.mark.parametrize('names', [None, '', ' , '])
-def test_without_names_empty_states_are_told(names):
+def test_states_are_empty_without_names(names):
     plugin = make(jointName=names, updateRate='0')
     readings = collect(plugin.joint_states)
     run(plugin, 1)
     assert readings == [((), (), (), ())]
 
 
-def test_a_joint_that_is_not_there_is_named_and_the_others_are_told(caplog):
+def test_unknown_joint_is_reported_and_left_out(caplog):
     plugin = make(jointName='left,nope', updateRate='0')
     assert caplog.messages == [
         f"{PREFIX}Joint nope does not exist! It is left out: model 'robot' has no joint 'nope'; "

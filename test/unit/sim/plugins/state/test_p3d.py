@@ -1,4 +1,4 @@
-"""P3D: which tags it reads, when it tells what, and what noise and frames do to it."""
+"""P3D: tags, timing, noise and frames."""
 
 import logging
 import math
@@ -37,7 +37,7 @@ def told(plugin, pose=TILTED, twist=MOVING):
     return readings[-1]
 
 
-def test_defaults_are_upstreams_and_said_at_debug_level_only(caplog):
+def test_defaults_are_upstreams_and_logged_at_debug_level(caplog):
     caplog.set_level(logging.INFO)
     plugin = make()
     assert plugin.params.values == {
@@ -57,13 +57,13 @@ def test_defaults_are_upstreams_and_said_at_debug_level_only(caplog):
     ({'gaussianNoise': 'inf'}, "<gaussianNoise> is 'inf'; it takes a finite number"),
     ({'updateRate': '1e-9'}, '<updateRate> is 1e-09 Hz; it must be at least'),
 ])
-def test_tags_that_make_no_sense_are_refused_in_a_sentence(tags, sentence):
+def test_invalid_tags_are_rejected_with_a_message(tags, sentence):
     with pytest.raises(PluginError) as raised:
         make(**tags)
     assert str(raised.value).startswith(f'gazebo_ros_p3d plugin: {sentence}')
 
 
-def test_the_old_names_of_the_offsets_are_not_read_and_said_so(caplog):
+def test_old_names_of_the_offsets_are_reported_as_unknown(caplog):
     make(xyzOffsets='1 2 3')
     assert caplog.messages == [
         'gazebo_ros_p3d plugin: not read by this plugin: <xyzOffsets> (the offset is <xyzOffset>)']
@@ -76,16 +76,16 @@ def test_the_old_names_of_the_offsets_are_not_read_and_said_so(caplog):
     ('-1', [1, 2, 3, 4, 5]),
     ('1e6', [1, 2, 3, 4, 5]),
 ])
-def test_the_first_reading_comes_at_once_and_then_one_for_each_begun_period(rate, steps):
+def test_first_reading_is_immediate_and_then_one_per_started_period(rate, steps):
     plugin = make(updateRate=rate)
-    run(plugin, 100)  # nobody reads
+    run(plugin, 100)  # without readers
     begin, found = plugin.world.clock.steps, []
     plugin.odometry.connect(lambda _: found.append(plugin.world.clock.steps - begin))
     run(plugin, 140)
     assert found[:5] == steps
 
 
-def test_who_is_not_read_sleeps():
+def test_plugin_without_readers_is_not_due():
     plugin = make()
     assert plugin.due == NEVER
     readings = collect(plugin.odometry)
@@ -96,21 +96,21 @@ def test_who_is_not_read_sleeps():
 
 
 @pytest.mark.parametrize('frame', ['world', '/world', 'map', '/map'])
-def test_the_world_has_upstreams_names(frame):
+def test_names_of_the_world_frame_are_upstreams(frame):
     pose, twist = told(make(frameName=frame))
     assert pose.position == TILTED.position
     assert pose.orientation == pytest.approx(TILTED.orientation)
     assert twist == MOVING
 
 
-def test_a_frame_that_is_not_there_is_an_error_and_nothing_is_told(caplog):
+def test_unknown_frame_is_an_error_and_gives_no_readings(caplog):
     plugin = make(frameName='odom')
     assert caplog.messages[0].startswith(
         'gazebo_ros_p3d plugin: frameName: odom does not exist, will not publish pose: ')
     assert not plugin.outputs
 
 
-def test_offsets_are_added_and_multiplied_in_the_axes_of_the_frame():
+def test_offsets_are_in_the_axes_of_the_frame():
     pose, twist = told(make(xyzOffset='1 2 3', rpyOffset='0.1 0.2 0.5'))
     assert pose.position == (2.0, 4.0, 6.0)
     expected = multiply(from_rpy(0.1, 0.2, 0.5), TILTED.orientation)
@@ -118,7 +118,7 @@ def test_offsets_are_added_and_multiplied_in_the_axes_of_the_frame():
     assert twist == MOVING
 
 
-def test_another_links_frame_turns_velocities_and_multiplies_rotations_as_upstream(monkeypatch):
+def test_frame_of_another_link_is_applied_as_upstream(monkeypatch):
     plugin = make(frameName='left_link')
     body, frame = (TILTED, MOVING), (Pose((0.5, 0.0, 0.0), from_rpy(0.0, 0.2, 1.0)),
                                      Twist((0.0, 1.0, 0.0), (0.0, 0.0, 0.1)))
@@ -143,7 +143,7 @@ def noisy(name='drive', seed=0):
     return readings
 
 
-def test_noise_is_on_the_twist_only_and_as_large_as_asked_for():
+def test_noise_has_the_given_deviation_and_affects_the_twist_only():
     readings = noisy()
     (pose,) = {reading.pose for reading in readings}
     assert pose.orientation == pytest.approx(TILTED.orientation)
@@ -154,7 +154,7 @@ def test_noise_is_on_the_twist_only_and_as_large_as_asked_for():
             assert math.isclose(statistics.fmean(values), MOVING[part][axis], abs_tol=0.005)
 
 
-def test_noise_repeats_and_does_not_depend_on_who_has_read_before():
+def test_noise_is_repeatable_and_independent_of_readers():
     first = noisy()
     assert noisy() == first
     assert noisy('another')[0] != first[0]
