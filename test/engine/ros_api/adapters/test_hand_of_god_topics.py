@@ -1,4 +1,4 @@
-"""The hand of god on the wire: it follows a frame of TF, and tells where its link is."""
+"""Topics of the hand of god: it follows a TF frame and publishes the pose of its link."""
 
 from contextlib import closing
 
@@ -33,7 +33,7 @@ def transform(parent, child):
     return TFMessage([edge, bad])
 
 
-def test_the_hand_of_god_follows_a_frame_and_tells_where_it_is(world, monkeypatch):
+def test_hand_of_god_follows_a_frame_and_publishes_its_pose(world, monkeypatch):
     wire = Wire(monkeypatch)
     spec = urdf_spec(box('base', (1.0, 1.0, 1.0), 1.0) + PLUGIN)
     plugin = world.spawn(spec, 'thing', Pose()).plugin('hand_of_god')

@@ -1,4 +1,4 @@
-"""Whatever a service is asked, it answers, and the world lives on."""
+"""Property tests of services: any request is answered, and the world remains intact."""
 
 import math
 
@@ -25,8 +25,8 @@ from support.requests import TEXTS, messages
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
-MOST_STEPS = 50  # as many as are asked for are made, so not too many
-NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood
+MOST_STEPS = 50  # limits the requested number of steps
+NEAR = 1e-3  # [m] permitted drift of the bystander
 
 
 @pytest.fixture(scope='module')
@@ -55,13 +55,13 @@ def _set(message, field, value):
 CALLS = st.lists(st.sampled_from(sorted(ALL)).flatmap(requests), min_size=1, max_size=5)
 
 
-def live(bench, calls):
-    """Make the calls, with some steps after each; begin again; return where the bystander is."""
+def run_calls(bench, calls):
+    """Make the calls with some steps after each, reset; return the pose of the bystander."""
     world = bench.world
     for name, request in calls:
         bench.call(name, request)
         world.run(3)
-    world.run(PERIOD)  # whatever was broken has been rebuilt
+    world.run(PERIOD)  # diverged models have been rebuilt
     check_untouched(world)
     world.set_physics(PhysicsSettings())
     world.reset_simulation()
@@ -69,7 +69,7 @@ def live(bench, calls):
     for model in world.models.values():
         assert model.pose.position == pytest.approx(model.initial_pose.position)
         turns = zip(model.pose.orientation, model.initial_pose.orientation, strict=True)
-        assert abs(sum(a * b for a, b in turns)) == pytest.approx(1.0)  # either sign means the same
+        assert abs(sum(a * b for a, b in turns)) == pytest.approx(1.0)  # q and -q are equal
     world.run(PERIOD)
     check_untouched(world)
     return world.models[BYSTANDER].pose.position
@@ -81,14 +81,14 @@ def check_untouched(world):
 
 @given(CALLS)
 @settings(max_examples=settings.default.max_examples // 2)
-def test_services_answer_whatever_they_are_asked_and_a_reset_mends_all(bench, calls):
-    position = isolated(lambda: live(bench, calls))
+def test_any_calls_are_answered_and_a_reset_restores_the_world(bench, calls):
+    position = isolated(lambda: run_calls(bench, calls))
     assert math.dist(position, PLACE.position) < NEAR
 
 
 @pytest.mark.parametrize('name', sorted(ALL))
 @given(data=st.data())
 @settings(max_examples=1 + settings.default.max_examples // 20)
-def test_each_service_answers(bench, name, data):
+def test_each_service_answers_any_request(bench, name, data):
     calls = data.draw(st.lists(requests(name), min_size=5, max_size=10))
-    isolated(lambda: live(bench, calls))
+    isolated(lambda: run_calls(bench, calls))

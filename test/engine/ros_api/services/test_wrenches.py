@@ -1,4 +1,4 @@
-"""Pushes on links, asked for by the service."""
+"""Wrenches applied to links by the service."""
 
 import math
 
@@ -15,7 +15,7 @@ from rosbots_description.sim.formats.sdf.sdf import load_sdf
 QUARTER = from_rpy(0.0, 0.0, math.pi / 2.0)
 
 
-def test_a_wrench_may_be_given_in_the_frame_of_a_model_within_another():
+def test_wrench_may_be_given_in_the_frame_of_a_nested_model():
     with empty_world() as world:
         spec, _ = load_sdf(NESTED, 'outer', find_model=lambda _: None)
         world.spawn(spec, 'outer', Pose((0.0, 10.0, 1.0), QUARTER))

@@ -1,4 +1,4 @@
-"""Whatever comes by a topic, nobody else notices, and the next good message counts."""
+"""Property tests of topics: any message is handled, and the next valid one takes effect."""
 
 import math
 
@@ -16,9 +16,9 @@ from support.wire import Wire
 from rosbots_description.ros_api.topics import state_commands
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
-NEAR = 1e-3  # [m] as far as a box that nobody touches may be from where it stood
+NEAR = 1e-3  # [m] permitted drift of the bystander
 KINDS = {'set_model_state': ModelState, 'set_link_state': LinkState, 'cmd_vel': Twist}
-# Whoever raises the ground lifts all that stands above it.
+# Without the ground: raising it lifts all models on it.
 LOOSE = tuple(name for name in NAMES if 'ground' not in name)
 SENT = st.sampled_from(sorted(KINDS)).flatmap(
     lambda kind: st.tuples(st.just(kind), messages(KINDS[kind], LOOSE)))
@@ -33,7 +33,7 @@ def bench():
 
 @pytest.fixture
 def listeners(bench, monkeypatch):
-    """Return what is called with the messages of a topic, by the last part of its name."""
+    """Return the callbacks of topics, by the last part of the name."""
     wire = Wire(monkeypatch)
     monkeypatch.setattr(state_commands, 'rospy', wire)
     state_commands.subscribe_states(bench.server)
@@ -44,8 +44,8 @@ def listeners(bench, monkeypatch):
     return heard
 
 
-def live(bench, listeners, sent):
-    """Hand messages over, with some steps after each, then drive; return what has become of all."""
+def run_messages(bench, listeners, sent):
+    """Deliver messages with some steps after each, then drive; return the final states."""
     world = bench.world
     for kind, message in sent:
         listeners[kind](message)
@@ -65,8 +65,8 @@ def live(bench, listeners, sent):
 
 @given(sent=st.lists(SENT, min_size=1, max_size=6))
 @settings(max_examples=settings.default.max_examples // 2)
-def test_topics_take_whatever_is_sent(bench, listeners, sent):
-    bystander, wheels, finite = isolated(lambda: live(bench, listeners, sent))
+def test_any_messages_are_handled(bench, listeners, sent):
+    bystander, wheels, finite = isolated(lambda: run_messages(bench, listeners, sent))
     assert math.dist(bystander, PLACE.position) < NEAR
     assert finite
     assert min(wheels) > 0.1  # [rad/s], on the way to 1.9

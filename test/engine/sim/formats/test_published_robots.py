@@ -1,4 +1,4 @@
-"""What is odd about robots that people publish, and Gazebo takes, costs a warning and no robot."""
+"""Irregular robots, as published and accepted by Gazebo, are simulated with warnings."""
 
 import pytest
 from support import empty_world
@@ -8,9 +8,9 @@ from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.search_path import ModelSearch
 
-DROP, STEPS = 0.5, 1000  # [m], [ms] it has fallen and stands
+DROP, STEPS = 0.5, 1000  # [m], [ms] until the robot stands
 THICK = 0.1  # [m]
-HIGHEST, LOWEST = 0.6, 0.04  # [m] of a box that lies or carries another, and how it may tilt
+HIGHEST, LOWEST = 0.6, 0.04  # [m] of the box, lying, tilted or under another one
 
 MASS = '<mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>'
 BOX = f'<geometry><box size="0.4 0.3 {THICK}"/></geometry>'
@@ -37,7 +37,7 @@ def gazebo(inside, reference='a'):
 
 TWO = link('a') + link('b')
 NO_MASS = f'<inertial>{MASS}</inertial>'.replace('"1"', '"0"').replace('0.1', '0')
-# What is odd -> the robot, and how many lines are logged about it.
+# Irregularity -> the robot, and the number of log lines about it.
 ROBOTS = {
     'root without mass': (
         '<link name="base_footprint"/>' + link()
@@ -51,7 +51,7 @@ ROBOTS = {
     'axis that is no unit vector': (TWO + joint(inside='<axis xyz="0 3 4"/>'), 0),
     'link without mass on a joint': (link() + link('b', NO_MASS) + joint(), 1),
     'fixed link without mass': (link() + link('b', NO_MASS) + joint('fixed'), 0),
-    'inertia that no body has': (
+    'unphysical inertia': (
         link('a', BODY.replace('ixx="0.1"', 'ixx="0.5"')), 1),
     'one moment of zero': (link('a', BODY.replace('ixx="0.1"', 'ixx="0"')), 1),
     'floating joint': (TWO + joint('floating'), 1),
@@ -61,14 +61,14 @@ ROBOTS = {
         <safety_controller k_velocity="10"/><calibration rising="0.0"/>'''), 0),
     'limits crossed': (TWO + joint(
         'revolute', '<limit lower="0.1" upper="-0.1" effort="0" velocity="0"/>'), 1),
-    'limits without end': (TWO + joint(
+    'infinite limits': (TWO + joint(
         'revolute', '<limit lower="-inf" upper="INF" effort="inf" velocity="1e30"/>'), 0),
     'negative damping': (TWO + joint(inside='<dynamics damping="-0.1"/>'), 1),
     'transmission': (
         TWO + joint() + '<transmission name="t"><joint name="to_b"/></transmission>', 0),
     'material twice': (2 * '<material name="m"><color rgba="1 0 0 1"/></material>' + look(
         more='<material name="m"/>'), 0),
-    'material nobody defines': (look(more='<material name="m"/>'), 1),
+    'undefined material': (look(more='<material name="m"/>'), 1),
     'colour of three numbers': (
         look(more='<material name="m"><color rgba="1 0 0"/></material>'), 1),
     'mesh of a Windows path': (look(r'<mesh filename="C:\meshes\m.STL"/>'), 1),
@@ -76,7 +76,7 @@ ROBOTS = {
     'mesh of no size': (look('<mesh filename="/m.dae" scale="1 0 0"/>'), 1),
     'collision of no size': (
         link('a', f'{BODY}<collision><geometry><box size="0 0 0"/></geometry></collision>'), 1),
-    'block of a link that is not there': (link() + gazebo('<mu1>1</mu1>', 'b')[len(link()):], 1),
+    'block of a missing link': (link() + gazebo('<mu1>1</mu1>', 'b')[len(link()):], 1),
     'empty blocks': (link() + '<gazebo/><gazebo reference="a"/>', 0),
     'numbers in any form': (
         gazebo('<mu1 value="0.5"/><mu2> .5 </mu2><kp>1e+6</kp><kd>1.\n</kd>'), 0),
@@ -86,14 +86,14 @@ ROBOTS = {
     'material of a script that Gazebo lacks': (gazebo('<material>Robot/Paint</material>'), 1),
     'sensors': (gazebo('<sensor type="ray" name="s">'
                        + PLUGIN.format('libgazebo_ros_laser.so') + '</sensor>'), 1),
-    'plugins that are not here': (
+    'unavailable plugins': (
         link() + f'<gazebo>{PLUGIN.format("libgazebo_ros_control.so")}</gazebo>'
         f'<gazebo>{PLUGIN.format("libmine.so")}<plugin name="x"/></gazebo>', 3),
     'names of any kind': (
         TWO.replace('"a"', '"my base/link"') + joint().replace('"a"', '"my base/link"'), 0),
     'tags of other languages': (
         '<xacro:property name="x" value="1"/><sensor:ray/>' + link(), 2),
-    'collision settings of old': (
+    'obsolete collision settings': (
         link('a', BODY.replace('</collision>', '<contact_coefficients mu="0"/></collision>')), 0),
 }
 
@@ -105,7 +105,7 @@ def world():
 
 
 @pytest.mark.parametrize('name', ROBOTS)
-def test_an_odd_robot_stands_and_every_oddity_is_said_once(name, world, caplog):
+def test_irregular_robot_stands_and_each_irregularity_is_logged_once(name, world, caplog):
     body, lines = ROBOTS[name]
     spec, _ = load_urdf(f'<robot name="r">{body}</robot>', 'bot')
     model = world.spawn(spec, 'bot', Pose((0.0, 0.0, DROP)))
@@ -129,19 +129,20 @@ MODELS = {
     'old frame attribute': (
         MODEL.replace('<collision', '<pose frame="">0 0 0 0 0 0</pose><collision'),
         ' version="1.6"', 0),
-    'model that is not there': (f'{MODEL}<include><uri>model://hokuyo</uri></include>',
+    'missing model': (f'{MODEL}<include><uri>model://hokuyo</uri></include>',
                                 ' version="1.4"', 1),
-    'package that is not there': (MODEL + MESH.format('package://nowhere/m.dae'),
+    'missing package': (MODEL + MESH.format('package://nowhere/m.dae'),
                                   ' version="1.4"', 1),
     'model path of three slashes': (MODEL + MESH.format('model:///nowhere/m.dae'),
                                     ' version="1.4"', 1),
-    'joint to nowhere': (f'{MODEL}<joint name="j" type="fixed"><parent>a</parent><child>x</child>'
+    'joint to a missing link': (
+        f'{MODEL}<joint name="j" type="fixed"><parent>a</parent><child>x</child>'
                          '</joint>', ' version="1.6"', 1),
 }
 
 
 @pytest.mark.parametrize('name', MODELS)
-def test_an_odd_model_stands_and_every_oddity_is_said_once(name, world, caplog):
+def test_irregular_model_stands_and_each_irregularity_is_logged_once(name, world, caplog):
     body, version, lines = MODELS[name]
     spec, _ = load_sdf(f'<sdf{version}><model name="m">{body}</model></sdf>', 'bot',
                        find_model=ModelSearch(), find_package={}.get)

@@ -1,4 +1,4 @@
-"""Models in the crash sandbox: who passes, who does not, and that nothing is left."""
+"""Models in the crash sandbox: accepted, rejected, and no process left behind."""
 
 import contextlib
 import errno
@@ -32,12 +32,12 @@ from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
-SHORT = 0.3  # [s] for a model that is never done with
+SHORT = 0.3  # [s] for a model that does not finish
 LONG = 50.0  # [s] never reached
 
 
 class OddEngine(Engine):
-    """An engine that does things when models but the ground come, and step."""
+    """An engine that calls functions when models other than the ground are added, and at steps."""
 
     def __init__(self, does=lambda: None, at_step=lambda: None):
         super().__init__(PhysicsSettings())
@@ -55,7 +55,7 @@ class OddEngine(Engine):
 
 
 class Sandbox:
-    """A sandbox with an engine of its own; counts the trials it begins."""
+    """A sandbox with its own engine; counts the tests that it starts."""
 
     def __init__(self, **odds):
         self._count = mmap.mmap(-1, 8)  # shared with the children
@@ -85,21 +85,21 @@ class Sandbox:
 
 
 def burn(seconds):
-    """Use up so much of this process's time on the processor."""
+    """Use `seconds` of processor time."""
     end = time.process_time() + seconds
     while time.process_time() < end:
         pass
 
 
 def allow(monkeypatch, processor):
-    """Let a trial take so much processor time [s], whatever it is of."""
+    """Allow a test `processor` seconds of processor time, for any model."""
     monkeypatch.setattr(crash_sandbox, 'MIN_ALLOWANCE', processor)
     monkeypatch.setattr(crash_sandbox, 'PER_PART', 0.0)
     monkeypatch.setattr(crash_sandbox, 'PER_BYTE', 0.0)
 
 
-def steps_of_a_trial(does=lambda: None, at_step=lambda: None):
-    """Return how many steps the engine makes with a crate."""
+def steps_of_a_test(does=lambda: None, at_step=lambda: None):
+    """Return the number of steps of the engine in the test of a crate."""
     steps = mmap.mmap(-1, 1)  # shared with the child
 
     def count():
@@ -127,11 +127,11 @@ def fixture_nothing_is_left():
     before = os.listdir('/proc/self/fd')
     yield
     assert os.listdir('/proc/self/fd') == before
-    with contextlib.suppress(ChildProcessError):  # there is none at all
+    with contextlib.suppress(ChildProcessError):  # no child at all
         assert os.waitpid(-1, os.WNOHANG) == (0, 0)
 
 
-def test_a_content_is_tried_once_whatever_it_is_called_and_looks_like():
+def test_equal_content_is_tested_once_whatever_its_name_and_visuals():
     with Sandbox() as sandbox:
         sandbox.require()
         assert sandbox.trials == 1
@@ -149,7 +149,7 @@ def mesh_spec(source):
         '<box size="1 1 1"/>', f'<mesh filename="file://{source}"/>'))
 
 
-def test_a_mesh_is_known_by_what_its_file_holds(tmp_path):
+def test_mesh_is_identified_by_the_content_of_its_file(tmp_path):
     source = tmp_path / 'part.stl'
     with Sandbox() as sandbox:
         for height in (1.0, 1.0, 2.0):
@@ -168,7 +168,7 @@ def tetrahedron(height):
     ) + 'endsolid t\n'
 
 
-def test_the_contents_that_passed_first_are_forgotten_first(monkeypatch):
+def test_oldest_accepted_contents_are_forgotten_first(monkeypatch):
     monkeypatch.setattr(crash_sandbox, 'REMEMBERED', 1)
     static = replace(CRATE, static=True)
     with Sandbox() as sandbox:
@@ -177,35 +177,35 @@ def test_the_contents_that_passed_first_are_forgotten_first(monkeypatch):
             assert sandbox.trials == tried
 
 
-def test_the_robot_of_the_article_passes():
+def test_robot_of_the_article_is_accepted():
     passes(robot_spec())
 
 
-def test_a_heap_of_boxes_in_one_place_passes():
+def test_coincident_boxes_are_accepted():
     box = replace(CRATE.links[0], self_collide=True, visuals=())
     passes(ModelSpec('heap', tuple(replace(box, name=f'box{i}') for i in range(50))))
 
 
 @pytest.mark.parametrize('number', [signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT, signal.SIGFPE])
-def test_a_model_that_crashes_the_engine_is_refused(number):
+def test_model_that_crashes_the_engine_is_rejected(number):
     assert fault_of(lambda: os.kill(os.getpid(), number)) == (
         "model 'crate' is rejected: tested in a process of its own, it crashed the physics "
         f'engine ({number.name}); leave out parts of it to find the one that does it, meshes first')
 
 
-def test_a_model_that_is_never_done_with_is_refused(monkeypatch):
+def test_model_that_hangs_the_engine_is_rejected(monkeypatch):
     allow(monkeypatch, SHORT)
     assert f'needed more than {SHORT} s of processor time for it;' in fault_of(
         lambda: burn(math.inf))
 
 
-def test_a_model_that_sleeps_for_ever_is_refused(monkeypatch):
+def test_model_that_blocks_the_engine_is_rejected(monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
     assert 'the physics engine hung for 10 s;' in fault_of(signal.pause)
 
 
 @pytest.mark.parametrize('share', ['PER_PART', 'PER_BYTE'])
-def test_a_model_may_take_the_longer_the_more_it_holds(share, monkeypatch, tmp_path):
+def test_time_limit_grows_with_the_size_of_the_model(share, monkeypatch, tmp_path):
     source = tmp_path / 'part.stl'
     source.write_text(tetrahedron(1.0))
     with Sandbox(does=lambda: burn(2.0 * SHORT)) as sandbox:
@@ -216,28 +216,28 @@ def test_a_model_may_take_the_longer_the_more_it_holds(share, monkeypatch, tmp_p
         sandbox.require(mesh_spec(source))
 
 
-def test_a_model_makes_twenty_steps(monkeypatch):
+def test_sandbox_makes_twenty_steps(monkeypatch):
     monkeypatch.setattr(crash_sandbox, 'BUDGET', math.inf)
-    assert steps_of_a_trial() == 20
+    assert steps_of_a_test() == 20
 
 
-def test_a_model_that_is_slow_to_step_makes_fewer():
-    assert steps_of_a_trial(at_step=lambda: burn(crash_sandbox.BUDGET)) == 1
+def test_sandbox_makes_fewer_steps_with_a_slow_model():
+    assert steps_of_a_test(at_step=lambda: burn(crash_sandbox.BUDGET)) == 1
 
 
-def test_a_model_that_is_slow_to_bring_in_makes_a_step_all_the_same():
-    assert steps_of_a_trial(does=lambda: burn(crash_sandbox.BUDGET)) == 1
+def test_sandbox_makes_a_step_with_a_model_slow_to_add():
+    assert steps_of_a_test(does=lambda: burn(crash_sandbox.BUDGET)) == 1
 
 
 def in_the_background(stack, call):
-    """Begin a call on another thread, which is awaited at the end."""
+    """Start a call on another thread, joined at the end."""
     thread = threading.Thread(target=call)
     thread.start()
     stack.callback(thread.join)
     return thread
 
 
-def test_a_model_does_not_wait_for_the_trial_of_another(tmp_path):
+def test_several_models_are_tested_in_parallel(tmp_path):
     wait = tmp_path / 'wait'
     wait.touch()
     (link,) = CRATE.links
@@ -263,7 +263,7 @@ def test_a_model_does_not_wait_for_the_trial_of_another(tmp_path):
         assert other.is_alive()
 
 
-def test_who_asks_for_what_is_being_tried_waits_for_that():
+def test_request_for_content_under_test_waits_for_its_result():
     with contextlib.ExitStack() as stack:
         sandbox = stack.enter_context(Sandbox(does=lambda: time.sleep(SHORT)))
         for _ in range(3):
@@ -272,7 +272,7 @@ def test_who_asks_for_what_is_being_tried_waits_for_that():
     assert sandbox.trials == 1
 
 
-def test_a_trial_that_nobody_waits_for_is_given_up(monkeypatch):
+def test_run_without_a_waiting_client_is_cancelled(monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
     monkeypatch.setattr(fork_server, 'MAX_SLEEPING_POLLS', 10**6)
     with Sandbox(does=signal.pause) as sandbox:
@@ -281,11 +281,11 @@ def test_a_trial_that_nobody_waits_for_is_given_up(monkeypatch):
                 sandbox.require(is_wanted=lambda: False)
 
 
-def test_a_model_that_ends_the_process_is_refused():
+def test_model_that_ends_the_process_is_rejected():
     assert 'it ended the process (exit code 3)' in fault_of(lambda: os._exit(3))
 
 
-def test_a_model_that_is_lost_at_once_is_refused():
+def test_model_that_diverges_at_once_is_rejected():
     heavy = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
     links = (LinkSpec('near', inertial=heavy), LinkSpec('far', Pose((1e150, 0.0, 0.0)), heavy))
     spec = ModelSpec('wide', links, (JointSpec('joint', REVOLUTE, 'near', 'far'),))
@@ -293,7 +293,7 @@ def test_a_model_that_is_lost_at_once_is_refused():
         passes(spec)
 
 
-def test_a_model_that_failed_is_tried_again():
+def test_rejected_model_is_tested_again():
     with Sandbox(does=lambda: os.kill(os.getpid(), signal.SIGSEGV)) as sandbox:
         for tried in (1, 2):
             with pytest.raises(ModelError):
@@ -301,7 +301,7 @@ def test_a_model_that_failed_is_tried_again():
             assert sandbox.trials == tried
 
 
-def test_nothing_of_a_trial_is_seen(capfd, caplog):
+def test_output_and_log_of_a_test_are_discarded(capfd, caplog):
     def chatter():
         os.write(1, b'b3Warning: no inertial')
         os.write(2, b'Fatal Python error')
@@ -312,7 +312,7 @@ def test_nothing_of_a_trial_is_seen(capfd, caplog):
     assert caplog.text == ''
 
 
-def test_where_no_process_can_be_made_a_model_passes_with_a_warning(caplog):
+def test_model_is_accepted_with_a_warning_if_no_process_can_be_made(caplog):
     with Sandbox() as sandbox:
         os.kill(sandbox._sandbox._children._server, signal.SIGKILL)
         sandbox.require()
@@ -324,7 +324,7 @@ def test_where_no_process_can_be_made_a_model_passes_with_a_warning(caplog):
     OSError(number, os.strerror(number))
     for number in (errno.EISDIR, errno.EMFILE, errno.ENOMEM, errno.ENOSPC)
 ] + [MemoryError()])
-def test_a_failure_of_the_system_is_blamed_on_nobody_else(fault):
+def test_failure_of_the_operating_system_is_reported_as_such(fault):
     def fail():
         raise fault
 
@@ -334,12 +334,12 @@ def test_a_failure_of_the_system_is_blamed_on_nobody_else(fault):
         f'system failed ({reason}); fix that and spawn the model again')
 
 
-def test_a_trial_that_the_system_kills_for_want_of_memory_is_blamed_on_nobody_else():
+def test_kill_for_lack_of_memory_is_reported_as_a_failure_of_the_system():
     sentence = fault_of(lambda: os.kill(os.getpid(), signal.SIGKILL))
     assert 'the operating system failed (it killed the process (SIGKILL)' in sentence
 
 
-def test_a_process_out_of_memory_says_so():
+def test_lack_of_memory_is_reported():
     def eat():
         resource.setrlimit(resource.RLIMIT_AS, (0, resource.RLIM_INFINITY))
         bytearray(1 << 28)
@@ -347,10 +347,10 @@ def test_a_process_out_of_memory_says_so():
     assert 'the operating system failed (Cannot allocate memory)' in fault_of(eat)
 
 
-@pytest.mark.parametrize('spare', [0, 1])  # to describe the model, and to read what describes it
-def test_a_process_without_file_handles_says_so(spare):
+@pytest.mark.parametrize('spare', [0, 1])  # for the model's description, and for reading it
+def test_lack_of_file_descriptors_is_reported(spare):
     def use_up():
-        taken = [os.open(os.devnull, os.O_RDONLY) for _ in range(100)]  # gaps are filled, too
+        taken = [os.open(os.devnull, os.O_RDONLY) for _ in range(100)]  # fills gaps too
         resource.setrlimit(resource.RLIMIT_NOFILE, (taken[-1] + 1, 1 << 12))
         for descriptor in taken[:spare]:
             os.close(descriptor)
@@ -358,7 +358,7 @@ def test_a_process_without_file_handles_says_so(spare):
     assert 'the operating system failed (Too many open files)' in fault_of(use_up)
 
 
-def test_a_folder_where_the_file_of_a_mesh_was_is_named(tmp_path):
+def test_error_names_a_folder_in_the_place_of_a_mesh_file(tmp_path):
     source = tmp_path / 'part.stl'
     source.write_text(tetrahedron(1.0))
     with Sandbox() as sandbox:
@@ -370,7 +370,7 @@ def test_a_folder_where_the_file_of_a_mesh_was_is_named(tmp_path):
             sandbox._sandbox.require(model, PhysicsSettings())
 
 
-def test_a_model_whose_trial_the_system_disturbed_is_tried_again(tmp_path):
+def test_model_is_tested_again_after_a_failure_of_the_system(tmp_path):
     disturbed = tmp_path / 'disturbed'
     disturbed.touch()
 
@@ -385,7 +385,7 @@ def test_a_model_whose_trial_the_system_disturbed_is_tried_again(tmp_path):
         sandbox.require()
 
 
-def test_a_trial_leaves_the_world_as_it_is():
+def test_sandbox_does_not_change_the_world():
     motions = []
     for tries in (False, True):
         with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
@@ -399,7 +399,7 @@ def test_a_trial_leaves_the_world_as_it_is():
     assert motions[0] == motions[1]
 
 
-def test_models_are_tried_while_the_world_goes_on():
+def test_models_are_tested_while_the_world_runs():
     with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
         add_empty_world(world)
         world.spawn(CRATE, 'crate', Pose((0.0, 0.0, 0.7)))

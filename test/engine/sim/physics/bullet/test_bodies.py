@@ -1,4 +1,4 @@
-"""Bodies move as rigid-body mechanics has it, and as their description says."""
+"""Bodies move by rigid-body mechanics and as described."""
 
 import gc
 import math
@@ -58,7 +58,7 @@ def test_the_velocity_is_that_of_the_link_origin():
 
 
 @pytest.mark.parametrize('moments', [(0.01, 0.01, 0.03), (1.0, 100.0, 1.0)])
-def test_a_tensor_no_solid_can_have_still_turns(moments):
+def test_body_with_an_unphysical_tensor_rotates(moments):
     with empty_world() as world:
         model = world.spawn(free_ball(Inertial(1.0, Pose(), *moments)), 'b', Pose((0, 0, 50.0)))
         model.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
@@ -87,11 +87,11 @@ def test_a_passive_joint_swings_freely():
         for _ in range(40):
             world.run(50)
             highest = max(highest, model.joint('hinge').position)
-        # From level it swings through and comes up on the other side: half a turn.
+        # From horizontal it swings to the other side: half a turn.
         assert highest == pytest.approx(math.pi, abs=0.05)
 
 
-def test_joint_limits_hold():
+def test_joint_stays_within_its_limits():
     motion = '<limit lower="-0.5" upper="0.5" effort="10" velocity="10"/>'
     spec = urdf_spec(ARM.format(type='revolute', motion=motion))
     with empty_world() as world:
@@ -108,7 +108,7 @@ def test_a_model_whose_root_is_the_world_is_fixed_to_it():
         assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 2.0))
 
 
-def test_a_joint_between_the_world_and_the_root_moves():
+def test_joint_between_world_and_root_moves():
     gate = """<link name="world"/>
       <link name="gate"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
       <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
@@ -122,7 +122,7 @@ def test_a_joint_between_the_world_and_the_root_moves():
         assert list(model.links) == ['gate']
 
 
-def test_a_static_model_hangs_in_the_air():
+def test_static_model_does_not_fall():
     spec = urdf_spec(box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>'))
     with empty_world() as world:
         model = world.spawn(spec, 'box', Pose((0.0, 0.0, 3.0)))
@@ -130,7 +130,7 @@ def test_a_static_model_hangs_in_the_air():
         assert model.pose.position == (0.0, 0.0, 3.0)
 
 
-def test_the_files_of_a_submesh_go_with_the_last_model_that_has_it():
+def test_files_of_a_submesh_are_removed_with_the_last_model():
     shape = (f'<geometry><mesh><uri>file://{ROOT}/meshes/wheel.dae</uri>'
              '<submesh><name>wheel</name><center>1</center></submesh></mesh></geometry>')
     text = (f'<sdf version="1.6"><model name="m"><link name="l"><collision name="c">{shape}'
@@ -144,7 +144,7 @@ def test_the_files_of_a_submesh_go_with_the_last_model_that_has_it():
         del model, spec
         for name, left in (('first', 1), ('second', 0)):
             world.delete(name)
-            gc.collect()  # a model and its links hold each other
+            gc.collect()  # models and links reference each other
             assert len(list(folder.iterdir())) == left
 
 
@@ -175,8 +175,8 @@ def test_a_box_slides_on_a_slope_when_it_is_steeper_than_its_friction(mu, slides
         assert way > 0.5 if slides else abs(way) < 0.005
 
 
-def test_collisions_of_one_link_can_have_different_friction():
-    # A sledge on a slippery skid; the load on top, which never touches, is rough.
+def test_collisions_of_one_link_may_differ_in_friction():
+    # A sledge with a slippery runner; the rough load on top does not touch.
     sledge = (
         box_urdf('0.5 0.5 0.5', 1.0)
         + """
@@ -194,7 +194,7 @@ def test_collisions_of_one_link_can_have_different_friction():
 
 
 @pytest.mark.parametrize('depth', [0.25, 0.1, 0.01])
-def test_a_box_spawned_inside_the_ground_comes_out_without_a_jump(depth):
+def test_box_spawned_inside_the_ground_rises_without_a_jump(depth):
     with empty_world() as world:
         box = world.spawn(
             urdf_spec(box_urdf('0.5 0.5 0.5', 1.0)), 'box', Pose((0, 0, 0.25 - depth))
@@ -208,7 +208,7 @@ def test_a_box_spawned_inside_the_ground_comes_out_without_a_jump(depth):
 
 
 @pytest.mark.parametrize('kp', ['1e5', '1e6', '1e9'])
-def test_a_contact_spring_does_not_shoot_what_is_spawned_inside_the_ground(kp):
+def test_contact_stiffness_does_not_eject_a_body_from_the_ground(kp):
     block = f'<gazebo reference="box"><kp>{kp}</kp><kd>100</kd><maxVel>0.1</maxVel></gazebo>'
     with empty_world() as world:
         spec = urdf_spec(box_urdf('0.5 0.5 0.5', 2.0, block))
@@ -221,7 +221,7 @@ def test_a_contact_spring_does_not_shoot_what_is_spawned_inside_the_ground(kp):
         assert box.pose.position[2] == pytest.approx(0.25, abs=0.002)
 
 
-def test_what_the_world_holds_cannot_be_set_in_motion():
+def test_velocity_of_a_link_fixed_to_the_world_stays_zero():
     spec = urdf_spec(ARM.format(type='continuous', motion=''))
     with empty_world() as world:
         model = world.spawn(spec, 'arm', Pose())
@@ -230,7 +230,7 @@ def test_what_the_world_holds_cannot_be_set_in_motion():
         assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 2.0))
 
 
-def test_a_motor_asked_for_an_endless_speed_leaves_the_world_whole():
+def test_infinite_motor_speed_does_not_harm_the_world():
     with empty_world() as world:
         witness = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5.0, 0.0, 0.5)))
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
@@ -241,7 +241,7 @@ def test_a_motor_asked_for_an_endless_speed_leaves_the_world_whole():
         assert witness.pose.position == pytest.approx((5.0, 0.0, 0.5), abs=0.01)
 
 
-def test_a_model_whose_motion_is_no_number_any_more_does_not_take_the_others_along(caplog):
+def test_diverged_model_does_not_affect_the_others(caplog):
     with empty_world() as world:
         witness = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'witness', Pose((5, 0, 0.5)))
         mover = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'mover', Pose((-5, 0, 0.5)))
@@ -261,7 +261,7 @@ def test_a_model_whose_motion_is_no_number_any_more_does_not_take_the_others_alo
     assert lines[0].startswith("model 'rosbots' diverged:")
 
 
-def test_two_boxes_in_one_place_part_gently():
+def test_two_coincident_boxes_separate_slowly():
     spec = urdf_spec(box_urdf('0.5 0.5 0.5', 1.0))
     with empty_world() as world:
         boxes = [world.spawn(spec, f'box{i}', Pose((0.1 * i, 0.0, 0.25))) for i in range(2)]
@@ -273,7 +273,7 @@ def test_two_boxes_in_one_place_part_gently():
         assert math.dist(boxes[0].pose.position, boxes[1].pose.position) > 0.49
 
 
-def test_five_boxes_stand_on_each_other():
+def test_stack_of_five_boxes_stands():
     spec = urdf_spec(box_urdf('0.5 0.5 0.5', 1.0))
     with empty_world() as world:
         boxes = [world.spawn(spec, f'box{i}', Pose((0.0, 0.0, 0.25 + i / 2))) for i in range(5)]
@@ -282,7 +282,7 @@ def test_five_boxes_stand_on_each_other():
             assert box.pose.position == pytest.approx((0.0, 0.0, 0.25 + i / 2), abs=0.01)
 
 
-def test_the_courses_obstacle_stands_and_does_not_explode():
+def test_obstacle_of_the_course_stands_stably():
     shape = '<origin xyz="2 0 1"/><geometry><box size="1 1 2"/></geometry>'
     write_error = urdf_spec(f"""<link name="my_box"><inertial><origin xyz="2 0 0"/><mass value="1"/>
       <inertia ixx="1" iyy="100" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -291,5 +291,5 @@ def test_the_courses_obstacle_stands_and_does_not_explode():
         model = world.spawn(write_error, 'my_object', Pose((1.0, 0.0, 1.0)))
         world.run(5 * SECOND)
         assert model.pose.position == pytest.approx((1.0, 0.0, 0.0), abs=0.01)
-        # It still rocks: even the nearest inertia of a body is a hundred times that of such a box.
+        # It rocks: the nearest physical inertia is a hundred times that of such a box.
         assert max(map(abs, model.twist.linear)) < 0.05

@@ -1,4 +1,4 @@
-"""Links that pass through each other do so as long as they are there, and nobody else does."""
+"""The collision filter covers its links as long as they exist, and no others."""
 
 import pytest
 from support import box_urdf, empty_world, urdf_spec
@@ -23,7 +23,7 @@ def box():
     return urdf_spec(box_urdf('1 1 1', 1.0))
 
 
-def test_loose_links_of_a_model_pass_through_each_other():
+def test_unconnected_links_of_a_model_do_not_collide():
     with empty_world() as world:
         pile = world.spawn(loose_links(), 'pile', Pose())
         world.run(SECOND)
@@ -32,8 +32,8 @@ def test_loose_links_of_a_model_pass_through_each_other():
 
 
 @pytest.mark.parametrize('static', [False, True])
-def test_what_comes_after_loose_links_touches(static):
-    # PyBullet gives the numbers of the links to the boxes.
+def test_models_spawned_after_unconnected_links_collide(static):
+    # PyBullet reuses the ids of the links for the boxes.
     base = urdf_spec(box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>' * static))
     with empty_world() as world:
         world.spawn(loose_links(), 'pile', Pose())
@@ -44,7 +44,7 @@ def test_what_comes_after_loose_links_touches(static):
         assert load.pose.position[2] == pytest.approx(1.5, abs=0.01)
 
 
-def test_loose_links_pass_through_each_other_after_another_model_went():
+def test_unconnected_links_do_not_collide_after_a_deletion():
     with empty_world() as world:
         world.spawn(box(), 'gone', Pose((5.0, 0.0, 0.5)))
         pile = world.spawn(loose_links(), 'pile', Pose())
@@ -56,7 +56,7 @@ def test_loose_links_pass_through_each_other_after_another_model_went():
             assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_what_stands_may_have_several_surfaces():
+def test_static_model_may_have_several_surfaces():
     floor = box_urdf('4 4 0.2', 1.0) + """
       <link name="ice"><collision><origin xyz="4 0 0"/><geometry><box size="4 4 0.2"/></geometry>
         </collision></link>
@@ -81,7 +81,7 @@ SLIPPERY = '<surface><friction><ode><mu>{}</mu></ode></friction></surface>'
 
 
 def two_faced(name, place, extra=(), self_collide=0):
-    """Return a link of two boxes with other friction, the second of which rides on it."""
+    """Return a link of two boxes with different friction; the second is on an auxiliary link."""
     shapes = ''.join(
         f"""<collision name="{side}"><pose>{x} 0 0 0 0 0</pose><geometry><box><size>1 1 1</size>
         </box></geometry>{SLIPPERY.format(mu)}</collision>"""
@@ -96,7 +96,7 @@ def sdf_model(*parts):
     return load_sdf(text, 'm', source='test', find_model=lambda _: None)[0]
 
 
-def test_loose_links_pass_through_each_other_with_all_their_surfaces():
+def test_unconnected_links_do_not_collide_with_any_of_their_surfaces():
     with empty_world() as world:
         low, high = two_faced('low', '0 0 0.5'), two_faced('high', '0 0 2')
         pile = world.spawn(sdf_model(low, high), 'm', Pose())
@@ -105,8 +105,8 @@ def test_loose_links_pass_through_each_other_with_all_their_surfaces():
             assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_a_joint_keeps_all_surfaces_of_its_links_from_touching():
-    # They overlap to one side; were they to push each other, the hinge would turn.
+def test_links_of_a_joint_do_not_collide_with_any_of_their_surfaces():
+    # They overlap on one side; a contact would turn the hinge.
     hinge = """<joint name="hinge" type="revolute"><parent>post</parent><child>arm</child>
       <axis><xyz>1 0 0</xyz></axis></joint>"""
     third = [('third', 0.0, 0.5)]

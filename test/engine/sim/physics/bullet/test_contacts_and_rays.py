@@ -1,4 +1,4 @@
-"""What touches and what rays meet, by the names in the description, and what joints pass on."""
+"""Contacts and ray hits by the names of the description, and joint reactions."""
 
 import math
 
@@ -39,13 +39,13 @@ def names(side):
     return side.link, side.collision
 
 
-def test_contacts_name_the_collisions_and_add_up_to_the_weight():
+def test_contacts_name_the_collisions_and_balance_the_weight():
     with empty_world() as world:
         thing = world.spawn(urdf_spec(TWO), 'thing', Pose((0.0, 0.0, 0.1)))
         world.run(1500)
         ground = world.models['ground_plane']
         contacts = world.engine.contacts(thing.body)
-        # A URDF's collisions are called as sdformat calls them.
+        # Collisions of a URDF are named as by sdformat.
         of = {name: [c for c in contacts if name in c.one.collision]
               for name in thing.links['body'].collisions}
         assert len(of) == 3
@@ -65,7 +65,7 @@ def test_contacts_name_the_collisions_and_add_up_to_the_weight():
         assert below[0].normal == pytest.approx((0.0, 0.0, -1.0))
 
 
-def test_the_wheels_and_the_caster_of_the_robot_carry_its_weight():
+def test_wheels_and_caster_of_the_robot_carry_its_weight():
     with empty_world() as world:
         robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(2500)
@@ -82,7 +82,7 @@ def test_the_wheels_and_the_caster_of_the_robot_carry_its_weight():
 
 
 @pytest.mark.parametrize('shape', ['box', 'sphere'])
-def test_friction_acts_against_what_slides(shape):
+def test_friction_opposes_sliding(shape):
     urdf = box_urdf('0.2 0.2 0.2', 1.0)
     if shape == 'sphere':
         urdf = urdf.replace('<box size="0.2 0.2 0.2"/>', '<sphere radius="0.1"/>')
@@ -96,7 +96,7 @@ def test_friction_acts_against_what_slides(shape):
         assert total(world.engine.contacts(ground))[0] == pytest.approx(WEIGHT, rel=0.02)
 
 
-def test_two_links_of_a_model_that_touch_are_one_contact():
+def test_touching_links_of_a_model_give_one_contact():
     leg = ('<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
            'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.2"/>'
            '</geometry></collision></link><gazebo reference="{0}"><selfCollide>1</selfCollide>'
@@ -120,7 +120,7 @@ def test_two_links_of_a_model_that_touch_are_one_contact():
         assert mirrored.force == pytest.approx([-x for x in contact.force])
 
 
-def test_rays_tell_how_far_what_and_nothing():
+def test_rays_give_distance_and_name_or_no_hit():
     with empty_world() as world:
         thing = world.spawn(urdf_spec(TWO), 'thing', Pose((0.0, 0.0, 1.1)))
         starts = [(0.5, 0.0, 5.0), (-0.5, 0.3, 5.0), (-0.5, -0.3, 5.0), (3.0, 0.0, 5.0),
@@ -142,13 +142,13 @@ def test_rays_tell_how_far_what_and_nothing():
 
 @pytest.mark.parametrize(('starts', 'told'), [
     ([0.0, 0.0, 1.0], 'shape'), ([(0.0, 0.0)], 'shape'), ([(0.0, 0.0, math.nan)], 'finite')])
-def test_rays_of_no_sense_are_refused_with_a_sentence(starts, told):
+def test_invalid_rays_are_rejected_with_a_message(starts, told):
     with empty_world() as world, pytest.raises(SimError, match=told):
         world.engine.cast_rays(starts, starts)
 
 
 @pytest.mark.parametrize('lift', [0.0, 2.0])
-def test_a_joint_passes_on_what_carries_the_child(lift):
+def test_joint_reaction_balances_the_child(lift):
     with empty_world() as world:
         model = world.spawn(urdf_spec(LIFTED), 'model', Pose((0.0, 0.0, 0.1 + lift)))
         model.joints['shoulder'].set_motor(0.0, 9.0)
@@ -158,7 +158,7 @@ def test_a_joint_passes_on_what_carries_the_child(lift):
         engine.measure_reaction(body, 'shoulder')
         engine.step(300)
         force, torque = engine.joint_reaction(body, 'shoulder')
-        if lift:  # in free fall nothing needs to be carried
+        if lift:  # in free fall the reaction is zero
             assert (*force, *torque) == pytest.approx((0.0,) * 6, abs=1e-3)
             return
         weight = 0.5 * WEIGHT
@@ -171,7 +171,7 @@ def test_a_joint_passes_on_what_carries_the_child(lift):
         assert engine.joint_reaction(body, 'shoulder').force == (0.0, 0.0, 0.0)
 
 
-def test_a_wheel_passes_on_what_the_ground_carries():
+def test_reaction_of_a_wheel_joint_is_its_load():
     with empty_world() as world:
         robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         joint = next(j for j in robot.joints.values() if j.spec.child == 'wheel_left_link')

@@ -1,4 +1,4 @@
-"""Friction has directions, things bounce, tyres slip: as far as the engine can."""
+"""Anisotropic friction, restitution and slip of tyres, within the accuracy of the engine."""
 
 import math
 
@@ -12,9 +12,9 @@ from rosbots_description.sim.resources.search_path import ModelSearch
 
 SKID4 = ROOT / 'test' / 'data' / 'gazebo' / 'robots' / 'skid4.urdf'
 GRAVITY = 9.8
-LOAD = 4 * 29.4  # [N] that the four wheels of skid4 carry
+LOAD = 4 * 29.4  # [N] on the four wheels of skid4
 SPEED = 0.5  # [m/s]
-# Away from the world's axes and their diagonals, two directions of friction mix a little.
+# Off the world's axes and diagonals, the two directions of friction mix slightly.
 SLIP_SHARE, MIXED_SHARE = 0.05, 0.25
 BOX_SHARE = 0.001
 COMPLIANCES = [(0.1, 0.0, 20.0), (0.4, 0.0, -8.0)]  # lateral, longitudinal, side force [N]
@@ -29,7 +29,7 @@ def box(surface, size='0.3 0.3 0.2', more=''):
 
 
 def slide(surface, direction, yaw=0.0, speed=1.5):
-    """Return how far a box slides that is given a speed in a direction of its own [rad]."""
+    """Return how far a box slides that starts in a direction of its own frame [rad]."""
     with empty_world() as world:
         model = world.spawn(box(surface), 'box', Pose((0.0, 0.0, 0.1), from_rpy(0.0, 0.0, yaw)))
         world.run(200)
@@ -46,13 +46,13 @@ def friction(mu, mu2, more=''):
 
 @pytest.mark.parametrize(('mu', 'mu2'), [(0.5, 0.2), (0.3, 0.6)])
 @pytest.mark.parametrize('yaw', [0.0, math.pi / 2.0])
-def test_the_second_mu_acts_along_x_and_the_first_along_y_of_the_model(mu, mu2, yaw):
+def test_mu2_acts_along_x_and_mu_along_y_of_the_model(mu, mu2, yaw):
     way = 1.5**2 / 2.0 / GRAVITY
     assert slide(friction(mu, mu2), 0.0, yaw) == pytest.approx(way / mu2, rel=0.04)
     assert slide(friction(mu, mu2), math.pi / 2.0, yaw) == pytest.approx(way / mu, rel=0.04)
 
 
-def test_fdir1_says_along_which_direction_the_first_mu_acts():
+def test_mu_acts_along_fdir1():
     surface = friction(0.5, 0.2, '<fdir1>1 0 0</fdir1>')
     way = 1.5**2 / 2.0 / GRAVITY
     assert slide(surface, 0.0) == pytest.approx(way / 0.5, rel=0.04)
@@ -61,7 +61,7 @@ def test_fdir1_says_along_which_direction_the_first_mu_acts():
 
 @pytest.mark.parametrize('yaw', [0.0, math.pi / 2.0])
 @pytest.mark.parametrize(('slip1', 'slip2', 'speed'), [(0.0, 0.05, 0.1), (0.2, 0.02, 0.04)])
-def test_what_slips_slides_by_its_slip_times_the_force(slip1, slip2, speed, yaw):
+def test_slip_velocity_is_slip_times_force(slip1, slip2, speed, yaw):
     surface = friction(1, 1, f'<slip1>{slip1}</slip1><slip2>{slip2}</slip2>')
     with empty_world() as world:
         model = world.spawn(box(surface), 'box', Pose((0.0, 0.0, 0.1), from_rpy(0.0, 0.0, yaw)))
@@ -73,7 +73,7 @@ def test_what_slips_slides_by_its_slip_times_the_force(slip1, slip2, speed, yaw)
 
 
 @pytest.mark.parametrize('slab_comes', ['first', 'second'])
-def test_what_slips_on_a_slab_does_so_whichever_of_them_was_there_first(slab_comes):
+def test_slip_on_a_slab_does_not_depend_on_the_order_of_spawns(slab_comes):
     spawns = [
         (box('', '4 4 0.1', '<static>1</static>'), 'slab', Pose((0.0, 0.0, 0.05))),
         (box(friction(1, 1, '<slip1>0.2</slip1><slip2>0.02</slip2>')), 'box',
@@ -90,7 +90,7 @@ def test_what_slips_on_a_slab_does_so_whichever_of_them_was_there_first(slab_com
 
 
 def bounce(restitution, max_vel):
-    """Return what share of its height a ball comes up to that falls onto a plate by 1 m."""
+    """Return the rebound height of a ball that falls 1 m onto a plate [m]."""
     surface = (
         f'<surface><bounce><restitution_coefficient>{restitution}</restitution_coefficient>'
         '<threshold>0.1</threshold></bounce>'
@@ -117,16 +117,16 @@ def bounce(restitution, max_vel):
 
 
 @pytest.mark.parametrize('restitution', [0.5, 0.8])
-def test_what_bounces_comes_up_to_the_square_of_its_restitution(restitution):
+def test_rebound_height_is_restitution_squared(restitution):
     assert bounce(restitution, 10000) == pytest.approx(restitution**2, abs=0.04)
 
 
-def test_nothing_bounces_with_the_usual_max_vel():
+def test_no_rebound_with_the_default_max_vel():
     assert bounce(0.8, 0.01) < 0.002
 
 
 def drift(lateral, longitudinal, force, yaw):
-    """Return how fast skid4 then drives, ahead and to the left [m/s], while a force acts on it.
+    """Return the forward and lateral speed of skid4 [m/s] while a force acts on it.
 
     Args:
         force: on its body, in its own axes [N].
@@ -158,23 +158,23 @@ def drift(lateral, longitudinal, force, yaw):
 
 @pytest.mark.parametrize(('lateral', 'longitudinal', 'force'), COMPLIANCES)
 @pytest.mark.parametrize('yaw', [0.0, math.pi / 4.0])
-def test_a_tyre_slips_sideways_by_its_lateral_compliance(lateral, longitudinal, force, yaw):
+def test_lateral_slip_follows_the_lateral_compliance(lateral, longitudinal, force, yaw):
     x, y = drift(lateral, longitudinal, (0.0, force, 0.0), yaw)
     assert y == pytest.approx(SPEED * lateral * force / LOAD, rel=SLIP_SHARE)
     assert x == pytest.approx(SPEED, rel=0.01)
 
 
-def test_a_tyre_slips_ahead_by_its_longitudinal_compliance():
+def test_longitudinal_slip_follows_the_longitudinal_compliance():
     x, _ = drift(0.0, 0.5, (-20.0, 0.0, 0.0), 0.0)
     assert SPEED - x == pytest.approx(SPEED * 0.5 * 20.0 / LOAD, rel=SLIP_SHARE)
 
 
-def test_between_the_axes_of_the_world_slip_is_less_exact():
+def test_slip_between_the_axes_of_the_world_is_less_exact():
     _, y = drift(0.1, 0.0, (0.0, 20.0, 0.0), 0.3)
     assert y == pytest.approx(SPEED * 0.1 * 20.0 / LOAD, rel=MIXED_SHARE)
 
 
-def test_without_compliance_nothing_slips():
+def test_no_slip_without_compliance():
     x, y = drift(0.0, 0.0, (-20.0, 20.0, 0.0), 0.3)
     assert abs(y) < 1e-3
     assert x == pytest.approx(SPEED, rel=0.01)

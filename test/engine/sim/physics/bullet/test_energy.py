@@ -1,4 +1,4 @@
-"""What turns freely keeps its energy, however fast it turns; nothing gains any by itself."""
+"""Free rotation conserves energy at any speed; no system gains energy."""
 
 import math
 
@@ -36,7 +36,7 @@ HIGH = Pose((0.0, 0.0, 2000.0))
 
 
 def energies(model):
-    """Return all energy of a model, and the kinetic energy about its centre of mass [J]."""
+    """Return the total energy of a model, and the kinetic energy about its centre of mass [J]."""
     height, kinetic, momentum, mass = 0.0, 0.0, np.zeros(3), 0.0
     for link in model.links.values():
         inertial = link.spec.inertial
@@ -61,7 +61,7 @@ def body(moments, com=(0.0, 0.0, 0.0), mu=1.0):
 
 
 def chain(count, length, mass=1.0, hangs=True):
-    """Return a chain of rods along x; its first end hangs on the world, if it does."""
+    """Return a chain of rods along x; if `hangs`, its first end is on a joint to the world."""
     rod = Inertial(mass, Pose((length / 2.0, 0.0, 0.0)), mass * 1e-4,
                    mass * length**2 / 12.0, mass * length**2 / 12.0)
     links = tuple(LinkSpec(f'link{i}', Pose((i * length, 0.0, 0.0)), rod) for i in range(count))
@@ -71,7 +71,7 @@ def chain(count, length, mass=1.0, hangs=True):
 
 
 def share_kept(spec, velocity, seconds, **settings):
-    """Return the least and most of its energy that a thrown model has as it flies."""
+    """Return the least and the greatest share of its initial energy of a flying model."""
     world = World(PhysicsSettings(**settings))
     try:
         model = world.spawn(spec, 'model', HIGH)
@@ -94,7 +94,7 @@ def share_kept(spec, velocity, seconds, **settings):
     ((0.01, 0.105, 0.11), (0.4, 0.0, 0.1), 10.0, 2.0),
     ((0.3, 0.2, 0.2), (0.0, 0.0, 0.0), 60.0, 1.0),
 ])
-def test_a_body_that_spins_keeps_its_energy(moments, com, speed, mu):
+def test_spinning_body_keeps_its_energy(moments, com, speed, mu):
     least, most = share_kept(body(moments, com, mu), (0.01 * speed, speed, 0.03 * speed), 10.0)
     assert least > 0.97
     assert most < 1.02
@@ -102,25 +102,25 @@ def test_a_body_that_spins_keeps_its_energy(moments, com, speed, mu):
 
 @pytest.mark.parametrize('speed', [300.0, 3e3, 1e5])
 @pytest.mark.parametrize('mu', [1.0, 0.5])
-def test_one_that_spins_beyond_reason_gains_nothing(speed, mu):
+def test_extreme_spin_gains_no_energy(speed, mu):
     _, most = share_kept(body((0.1, 0.2, 0.3), mu=mu), (3.0, speed, 0.0), 2.0)
     assert most < 1.02
 
 
-def test_longer_steps_keep_it_as_well():
+def test_energy_is_kept_with_longer_steps():
     least, most = share_kept(body((0.1, 0.2, 0.3)), (1.0, 40.0, 0.0), 10.0, step_size=0.004)
     assert (least, most) == pytest.approx((1.0, 1.0), abs=0.02)
 
 
 @pytest.mark.parametrize('velocity', [(60.0, 0.0, 1.0), (7.0, -15.0, 10.0)])
-def test_a_robot_that_tumbles_keeps_its_energy(velocity):
+def test_tumbling_robot_keeps_its_energy(velocity):
     least, most = share_kept(robot_spec(), velocity, 10.0)
     assert least > 0.9
     assert most < 1.02
 
 
 def swing(spec, seconds):
-    """Return how all energy changes [J], and the fastest link [m/s]."""
+    """Return the changes of the total energy [J], and the greatest speed of a link [m/s]."""
     world = World()
     try:
         model = world.spawn(spec, 'model', Pose())
@@ -137,27 +137,27 @@ def swing(spec, seconds):
 
 
 @pytest.mark.parametrize(('count', 'length'), [(2, 0.2), (2, 1.0), (4, 0.5)])
-def test_a_pendulum_of_several_rods_gains_nothing_and_goes_on(count, length):
+def test_pendulum_of_several_rods_gains_no_energy_and_keeps_swinging(count, length):
     changes, _ = swing(chain(count, length), 6.0)
-    there = GRAVITY * length * count**2 / 2.0  # what it can lose in height [J]
+    there = GRAVITY * length * count**2 / 2.0  # greatest loss of potential energy [J]
     assert max(changes) < 0.02 * there
     assert min(changes) > -0.35 * there
 
 
 @pytest.mark.parametrize(('count', 'length', 'mass'), [(30, 0.1, 1.0), (40, 0.2, 0.1),
                                                        (50, 0.1, 5.0)])
-def test_a_long_chain_that_is_let_go_has_no_more_than_its_energy(count, length, mass):
+def test_released_long_chain_gains_no_energy(count, length, mass):
     changes, fastest = swing(chain(count, length, mass), 3.0)
     assert max(changes) < 0.02 * GRAVITY * mass * length * count**2 / 2.0
     assert fastest < 15.0 * math.sqrt(GRAVITY * count * length)
 
 
-def test_a_single_pendulum_swings_as_high_as_before():
+def test_single_pendulum_keeps_its_amplitude():
     changes, _ = swing(chain(1, 1.0), 4.0)
     assert max(map(abs, changes)) < 0.005 * GRAVITY
 
 
-def test_a_free_chain_that_is_thrown_and_falls_down_comes_to_no_speed_of_its_own():
+def test_thrown_chain_gains_no_speed():
     spec = chain(30, 0.1, hangs=False)
     links = tuple(LinkSpec(link.name, link.pose, link.inertial,
                            (Collision('ball', Box((0.08, 0.04, 0.04)), Pose((0.05, 0.0, 0.0))),))
@@ -171,7 +171,7 @@ def test_a_free_chain_that_is_thrown_and_falls_down_comes_to_no_speed_of_its_own
             assert energies(model)[0] < 1.02 * start
 
 
-def test_a_motor_may_turn_what_it_drives_ever_faster():
+def test_motor_may_add_energy_to_its_load():
     arm = chain(2, 0.5)
     with empty_world() as world:
         model = world.spawn(arm, 'arm', Pose((0.0, 0.0, 5.0)))
@@ -185,7 +185,7 @@ def test_a_motor_may_turn_what_it_drives_ever_faster():
     ((0.2, 0.2, 0.02), 25.0, 2.0, 1.0), ((1.0, 0.4, 0.04), 5.0, 1.0, 1.0),
     ((0.4, 0.4, 0.1), 20.0, 1.5, 5.0),
 ])
-def test_a_box_that_spins_about_the_vertical_lands_flat(size, speed, height, inertia):
+def test_box_spinning_about_the_vertical_lands_flat(size, speed, height, inertia):
     x, y, z = (inertia * length**2 / 12.0 for length in size)
     text = box_urdf(' '.join(map(str, size)), 1.0).replace(
         'ixx="0.1" iyy="0.1" izz="0.1"', f'ixx="{y + z}" iyy="{x + z}" izz="{x + y}"')

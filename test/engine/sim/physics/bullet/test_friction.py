@@ -1,4 +1,4 @@
-"""A pair of surfaces holds with the lesser of its friction coefficients, whatever they are."""
+"""Friction of a pair of surfaces is limited by the lesser coefficient."""
 
 import math
 from dataclasses import replace
@@ -25,7 +25,7 @@ def rough(mu, size='0.4 0.4 0.1', mass=1.0, static=False):
 
 
 def acceleration_down(slope, mu_box, mu_ramp, steps=SECOND):
-    """Return how fast a box gets faster down a ramp [m/s^2], which slopes by an angle [rad]."""
+    """Return the acceleration of a box down a ramp [m/s^2] of an angle `slope` [rad]."""
     turn = Pose((0.0, 0.0, 30.0), from_rpy(0.0, slope, 0.0))
     with empty_world() as world:
         world.spawn(rough(mu_ramp, '40 4 0.2', static=True), 'ramp', turn)
@@ -41,7 +41,7 @@ def acceleration_down(slope, mu_box, mu_ramp, steps=SECOND):
     (0.4, 1.0, 0.4), (100.0, 0.4, 0.4), (0.4, 100.0, 0.4), (0.0, 0.7, 0.0),
     (1.2, 1.2, 1.2), (1.2, 2.0, 1.2), (1.0, 1.0, 1.0), (1e6, 1.3, 1.3), (1.0, 1e6, 1.0),
 ])
-def test_what_slides_is_held_back_by_the_lesser_mu(mu_box, mu_ramp, mu):
+def test_sliding_friction_is_that_of_the_lesser_mu(mu_box, mu_ramp, mu):
     holds, slides = math.atan(mu) - 0.02, math.atan(mu) + 0.1
     if mu:
         assert abs(acceleration_down(holds, mu_box, mu_ramp)) < 1e-3
@@ -52,7 +52,7 @@ def test_what_slides_is_held_back_by_the_lesser_mu(mu_box, mu_ramp, mu):
 @pytest.mark.parametrize(('cone', 'mu', 'speed'), [
     (False, 0.5, 1.5), (True, 0.5, 1.5), (False, 0.2, 1.0), (True, 0.2, 1.0),
 ])
-def test_what_slides_on_a_diagonal_is_held_by_a_pyramid_or_a_cone(cone, mu, speed):
+def test_friction_on_the_diagonal_is_that_of_pyramid_or_cone(cone, mu, speed):
     along = math.sqrt(0.5) * speed
     with empty_world() as world:
         world.set_physics(replace(world.physics, friction_cone=cone))
@@ -65,7 +65,7 @@ def test_what_slides_on_a_diagonal_is_held_by_a_pyramid_or_a_cone(cone, mu, spee
 
 
 @pytest.mark.parametrize('mu', [2.0, 10.0, 100.0, 1e6])
-def test_rough_surfaces_hold_what_is_pushed_hard(mu):
+def test_high_friction_resists_a_strong_push(mu):
     with empty_world() as world:
         box = world.spawn(rough(mu, '0.6 0.6 0.05', 2.0), 'box', Pose((0.0, 0.0, 0.025)))
         world.run(200)
@@ -81,7 +81,7 @@ def test_rough_surfaces_hold_what_is_pushed_hard(mu):
     (0.5, 0.5, 0.5), (0.3, 0.6, 0.3), (0.6, 0.3, 0.3), (1.0, 0.4, 0.4), (0.4, 1.0, 0.4),
     (100.0, 0.5, 0.5), (100.0, 1.0, 1.0),
 ])
-def test_a_box_slides_on_a_heavy_one_that_moves_by_the_lesser_mu(mu_low, mu_high, mu):
+def test_friction_between_movable_boxes_is_that_of_the_lesser_mu(mu_low, mu_high, mu):
     with empty_world() as world:
         low = world.spawn(rough(mu_low, '8 2 0.1', 20.0), 'low', Pose((0.0, 0.0, 0.05)))
         high = world.spawn(rough(mu_high), 'high', Pose((0.0, 0.0, 0.15)))
@@ -96,7 +96,7 @@ def test_a_box_slides_on_a_heavy_one_that_moves_by_the_lesser_mu(mu_low, mu_high
             assert gained == pytest.approx(slides, rel=0.05, abs=2e-3)
 
 
-def test_a_floor_can_be_slippery_and_what_comes_later_knows_it():
+def test_slippery_floor_applies_to_models_spawned_later():
     with empty_world() as world:
         ground = world.models['ground_plane'].spec
         (link,) = ground.links
@@ -128,7 +128,7 @@ def test_a_slippery_floor_can_be_moved():
             assert box.pose.position[2] == pytest.approx(3.15, abs=1e-3)
 
 
-def test_a_robot_of_very_many_slippery_links_moves_all_the_same():
+def test_robot_of_many_slippery_links_moves():
     link = """<link name="l{0}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0"
       ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.1"/></geometry></collision>
       </link><gazebo reference="l{0}"><mu1>0.5</mu1></gazebo>"""
@@ -142,7 +142,7 @@ def test_a_robot_of_very_many_slippery_links_moves_all_the_same():
         assert model.pose.position[2] == pytest.approx(0.1, abs=1e-3)
 
 
-def test_more_surfaces_than_can_be_told_apart_still_meet():
+def test_surfaces_beyond_the_number_of_collision_groups_still_collide():
     pairs = FrictionPairs()
     coefficients = [0.01 * k for k in range(60)]
     for mu in coefficients:
@@ -154,7 +154,7 @@ def test_more_surfaces_than_can_be_told_apart_still_meet():
         assert max(group, mask) < 1 << 31
 
 
-def test_a_surface_of_mu_1_is_one_part_and_others_are_two():
+def test_surface_of_mu_1_is_one_contact_part_and_others_are_two():
     with empty_world() as world:
         for mu, parts in ((1.0, 1), (0.5, 2), (3.0, 2)):
             box = world.spawn(rough(mu), f'box{mu}', Pose((0.0, mu, 0.05)))

@@ -1,4 +1,4 @@
-"""Robots fall, stand and drive as they do in the real Gazebo."""
+"""Robots fall, stand and drive as in Gazebo."""
 
 import math
 from functools import cache
@@ -14,43 +14,43 @@ from support.motion import (
 )
 from support.recorded import exceeded, load
 
-RAMP_TOLERANCE = 0.015  # [s] by which a speed is reached earlier or later
+RAMP_TOLERANCE = 0.015  # [s] permitted difference of the time to reach a speed
 REST_HEIGHT = (-0.120, 0.002)  # [m] of base_footprint: the wheels reach 0.12 m below it
 IDLE_CREEP = 1e-4  # [m] in thirty seconds
-TREMBLING = 1e-3  # [m/s or rad/s] of a robot at rest; in Gazebo it is 0.004 and 0.016
+RESIDUAL_SPEED = 1e-3  # [m/s or rad/s] of a robot at rest; in Gazebo it is 0.004 and 0.016
 DRIVES = [(name, command) for name in ROBOTS for command in load(name)['drives']]
 
-# What is further from Gazebo than the tolerances of support/motion.py: how far, and why.
-HAIR = '5 % of the speed lie between what is left of it there and here'
-TREMBLES = 'its ramps begin at the measured speed, which trembles in Gazebo'
+# Differences above the tolerances of support/motion.py: permitted share, and reason.
+MARGIN = 'the last speeds, there and here, are on either side of 5 %'
+NOISY = 'its ramps begin at the measured speed, which fluctuates in Gazebo'
 KNOWN = (
-    ('box4 arc_v0.5_w0.5', 'stop_w', 8.0, HAIR),
+    ('box4 arc_v0.5_w0.5', 'stop_w', 8.0, MARGIN),
     ('box4 turn_w1.0', 'odom', 2.7, 'its front wheels slip by 4 mm/s'),
     ('article turn_w1.0', 'lateral', 2.1, 'it turns about a point 1.1 cm further ahead'),
     ('article turn_w1.0', 'path', 1.9, 'the same'),
     ('article turn_w1.0', 'rest place', 1.3, 'the same'),
-    ('tricycle back_v-0.3_a-0.3', '', 1.6, TREMBLES),
-    ('tricycle straight_v0.5', '', 1.7, TREMBLES),
+    ('tricycle back_v-0.3_a-0.3', '', 1.6, NOISY),
+    ('tricycle straight_v0.5', '', 1.7, NOISY),
     ('tricycle steer_v0.5_a0.5', 'odom', 3.6, 'speeds in the odometry frame turn with its heading'),
     ('tricycle steer_v0.5_a0.5', 'left_joint', 1.5, 'it turns by 2 % more'),
-    ('tricycle steer_v0.5_a0.5', 't90', 2.7, TREMBLES),
+    ('tricycle steer_v0.5_a0.5', 't90', 2.7, NOISY),
 )  # fmt: skip
 
 samples = cache(drive_as_recorded)
 
 
 @pytest.mark.parametrize(('name', 'command'), DRIVES)
-def test_a_drive_is_gazebos_in_each_quantity(name, command):
+def test_each_quantity_of_a_drive_agrees_with_gazebo(name, command):
     differences = compare_drive(name, command, samples=samples(name, command))
     assert exceeded(differences, KNOWN) == []
 
 
 @pytest.mark.parametrize('name', ['burger', 'skid4', 'tricycle'])
-def test_a_robot_that_nobody_commands_stays_where_it_is(name):
+def test_robot_without_commands_does_not_move(name):
     assert exceeded(compare_idle(name), KNOWN) == []
 
 
-def test_speeding_up_and_slowing_down_follow_gazebos_ramp():
+def test_acceleration_and_braking_follow_gazebos_ramp():
     article, straight = load('article'), samples('article', 'straight_v0.5')
     ramp, end = article['ramp'], article['drives']['straight_v0.5']['seconds']
     delays = ramp_delays(straight, ramp['start'], 0.0, rising=True)
@@ -58,7 +58,7 @@ def test_speeding_up_and_slowing_down_follow_gazebos_ramp():
     assert max(map(abs, delays)) <= RAMP_TOLERANCE
 
 
-def test_the_robot_stands_on_its_wheels_and_neither_creeps_nor_trembles():
+def test_standing_robot_does_not_creep_or_vibrate():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(SETTLED)
@@ -67,7 +67,7 @@ def test_the_robot_stands_on_its_wheels_and_neither_creeps_nor_trembles():
         for _ in range(30_000 // 37):
             world.run(37)  # no divisor of the plugin's period
             twist = model.twist
-            assert max(map(abs, (*twist.linear, *twist.angular))) < TREMBLING
+            assert max(map(abs, (*twist.linear, *twist.angular))) < RESIDUAL_SPEED
         assert math.dist(before, model.pose.position) < IDLE_CREEP
 
 

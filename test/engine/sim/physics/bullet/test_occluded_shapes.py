@@ -1,4 +1,4 @@
-"""What lies between other shapes of a robot: no floor looks at it, everything else meets it."""
+"""Occluded shapes of a robot do not collide with floors, but with everything else."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ CORNERS = list(product((-0.2, 0.2), (-0.15, 0.15), (0.145, 0.355)))  # of the pl
 
 
 def robot(ixz):
-    """Return a robot of two plates, eight posts between them, two wheels and a belly.
+    """Return a robot of two plates, eight posts between them, two wheels and a sphere below.
 
     Args:
         ixz: product of inertia [kg m^2] that turns its principal axes.
@@ -46,24 +46,24 @@ def world():
 
 
 def corners(model):
-    """Return where the corners of the plates are in the world [m]."""
+    """Return the corners of the plates in the world frame [m]."""
     return [compose(model.pose, Pose(corner)).position for corner in CORNERS]
 
 
-def test_a_robot_with_posts_stands_as_any_other(world, spec):
+def test_robot_with_occluded_posts_stands(world, spec):
     model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
     world.run(2000)
     assert model.pose.position == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
 
 
 @pytest.mark.parametrize('roll', [math.pi / 2.0, math.pi])
-def test_one_that_has_fallen_lies_on_its_plates(world, spec, roll):
+def test_overturned_robot_lies_on_its_plates(world, spec, roll):
     model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.5), from_rpy(roll, 0.0, 0.0)))
     world.run(4000)
     assert min(z for _, _, z in corners(model)) == pytest.approx(0.0, abs=1e-3)
 
 
-def test_posts_pass_through_a_floor(world, spec):
+def test_occluded_posts_do_not_collide_with_a_floor(world, spec):
     model = world.spawn(spec, 'robot', Pose((0.0, 0.0, -0.2)))
     world.run(1)
     (number,) = model.body.bodies
@@ -71,7 +71,7 @@ def test_posts_pass_through_a_floor(world, spec):
     assert {index for _, _, _, index, *_ in contacts} == {0, 1, 2}  # the plates and the wheels
 
 
-def test_a_floor_that_comes_later_carries_it(world, spec):
+def test_robot_stands_on_a_floor_spawned_later(world, spec):
     ground = world.models['ground_plane'].spec
     world.delete('ground_plane')
     model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
@@ -80,7 +80,7 @@ def test_a_floor_that_comes_later_carries_it(world, spec):
     assert model.pose.position[2] == pytest.approx(0.0, abs=1e-3)
 
 
-def test_what_flies_between_the_plates_meets_a_post(world, spec):
+def test_body_flying_between_the_plates_hits_a_post(world, spec):
     world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
     world.run(500)
     model = world.spawn(urdf_spec(ball('ball', 0.03, 0.1)), 'ball', Pose((-0.3, 0.1, 0.25)))
@@ -89,7 +89,7 @@ def test_what_flies_between_the_plates_meets_a_post(world, spec):
     assert model.pose.position[0] < -0.15
 
 
-def test_what_stands_between_the_plates_meets_a_post(world, spec):
+def test_static_body_between_the_plates_hits_a_post(world, spec):
     model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))
     world.run(500)
     pole = replace(urdf_spec(box('pole', (0.02, 0.02, 0.1), 1.0)), static=True)
@@ -99,7 +99,7 @@ def test_what_stands_between_the_plates_meets_a_post(world, spec):
     assert model.pose.position[0] > -0.05
 
 
-def test_another_robot_that_comes_and_goes_leaves_those_that_stand_in_touch(spec):
+def test_spawn_and_deletion_of_another_robot_keep_existing_contacts(spec):
     def driven(disturbed):
         with empty_world() as world:
             model = world.spawn(spec, 'robot', Pose((0.0, 0.0, 0.001)))

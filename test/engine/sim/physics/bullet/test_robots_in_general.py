@@ -1,4 +1,4 @@
-"""What the engine's settings were chosen for: robots and things that are not the article's."""
+"""Scenes with analytic results, by which the engine's settings were chosen."""
 
 import math
 from dataclasses import replace
@@ -9,8 +9,8 @@ from support.scenes import SCENES, SPEED, box, castered, drive, forward_speed, l
 
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, yaw_of
 
-# The largest error of each scene, in its unit; measured ones are in doc/physics.md.
-# A veer is held to that of the article's robot in Gazebo: 0.42 rad in 20 s at 1 m/s.
+# Largest permitted error of each scene; measured ones are in doc/physics.md.
+# The bound of a veer is that of the article's robot in Gazebo: 0.42 rad in 20 s at 1 m/s.
 BOUNDS = {
     'one dragging caster': 0.002,
     'two casters, mu 1': 0.01,
@@ -37,21 +37,21 @@ BOUNDS = {
 SKID_TURNS = (0.5, 1.0)  # share of the rate without slip
 
 
-def test_every_scene_is_looked_at():
+def test_every_scene_has_a_bound():
     assert set(SCENES) == {*BOUNDS, 'skid steer turns'}
 
 
 @pytest.mark.parametrize('name', BOUNDS)
-def test_mechanics_is_obeyed(name):
+def test_error_is_within_its_bound(name):
     assert SCENES[name]() <= BOUNDS[name]
 
 
-def test_a_skid_steer_turns_though_its_wheels_slip():
+def test_skid_steer_turns_with_slipping_wheels():
     least, most = SKID_TURNS
     assert least < SCENES['skid steer turns']() < most
 
 
-def test_two_casters_drive_on_a_floor_that_is_no_plane():
+def test_robot_on_two_casters_drives_on_a_box_as_floor():
     with empty_world() as world:
         world.delete('ground_plane')
         slab = replace(urdf_spec(box('slab', (40.0, 40.0, 1.0), 1.0)), static=True)
@@ -61,7 +61,7 @@ def test_two_casters_drive_on_a_floor_that_is_no_plane():
         assert forward_speed(model) == pytest.approx(SPEED, rel=0.01)
 
 
-def test_a_can_that_is_pushed_rolls_and_slowly_stops():
+def test_pushed_can_rolls_and_stops_slowly():
     can = urdf_spec(link('can', '<cylinder radius="0.1" length="0.2"/>', 1.0, (6e-3, 6e-3, 5e-3)))
     with empty_world() as world:
         model = world.spawn(can, 'can', Pose((0.0, 0.0, 0.1), from_rpy(math.pi / 2.0, 0.0, 0.0)))

@@ -1,4 +1,4 @@
-"""Snapshots: the world goes on from them bit for bit, whatever has happened in between."""
+"""Snapshots: bit-identical continuation, whatever happened in between."""
 
 import math
 import random
@@ -12,7 +12,7 @@ from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 
-# A pair of links that turn on each other, one on a spring; of inertia that makes it tumble.
+# Two links on a joint with a spring, with an inertia that makes them tumble.
 ARM = (
     '<link name="a"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0" '
     'ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.2 0.2 0.1"/></geometry>'
@@ -26,13 +26,13 @@ ARM = (
 
 
 def motion(world):
-    """Return how all links and joints stand and move."""
+    """Return the states of all links and joints."""
     return [(world.engine.link_states(model.body), world.engine.joint_states(model.body))
             for model in world.models.values()]
 
 
 def states(world):
-    """Return that, and all contacts."""
+    """Return the states of all links and joints, and the contacts."""
     return motion(world), [[contact[2:] for contact in world.engine.contacts(model.body)]
                            for model in world.models.values()]
 
@@ -50,7 +50,7 @@ def go_on(world, steps=1000):
 
 
 def mix_up(world, chance):
-    """Let everything be elsewhere, fast, and driven differently."""
+    """Set random poses, high speeds and other motor targets."""
     for model in world.models.values():
         if model.static:
             continue
@@ -70,7 +70,7 @@ def pile(world, chance, boxes):
 
 
 @pytest.mark.parametrize(('seed', 'boxes', 'robots'), [(1, 0, 1), (2, 2, 1), (3, 8, 1), (4, 4, 3)])
-def test_a_world_goes_on_from_a_snapshot_bit_for_bit(seed, boxes, robots):
+def test_continuation_from_a_snapshot_is_bit_identical(seed, boxes, robots):
     chance = random.Random(seed)
     with empty_world() as world:
         pile(world, chance, boxes)
@@ -95,12 +95,12 @@ def test_a_world_goes_on_from_a_snapshot_bit_for_bit(seed, boxes, robots):
             assert all(same), f'differs from step {20 * same.index(False)}'
 
 
-# PyBullet mixes up the contact points of a body of several shapes, as the robot is one. The box
+# PyBullet reorders the contact points of a body of several shapes, such as the robot. The box
 # is in worlds of its own, since the solver's iterations are common to all and follow the motors.
 @pytest.mark.parametrize(('make_spec', 'tolerances'), [
     (lambda: urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), (0.0, 0.0)), (robot_spec, (1e-6, 1e-4)),
 ], ids=['box', 'robot'])
-def test_taking_a_snapshot_hardly_moves_anything(make_spec, tolerances):
+def test_taking_a_snapshot_hardly_changes_the_motion(make_spec, tolerances):
     with empty_world() as world, empty_world() as other:
         models = [one.spawn(make_spec(), 'thing', SPAWN_POSE) for one in (world, other)]
         for one in (world, other):
@@ -112,7 +112,7 @@ def test_taking_a_snapshot_hardly_moves_anything(make_spec, tolerances):
             assert math.dist(*(model.pose.position for model in models)) <= tolerance  # [m]
 
 
-def test_what_turns_fast_slips_is_pushed_and_runs_in_other_steps_goes_on_as_before():
+def test_continuation_is_bit_identical_with_spin_slip_forces_and_new_step_size():
     with empty_world() as world:
         arm = world.spawn(urdf_spec(ARM), 'arm', Pose((0.0, 0.0, 90.0)))
         box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((3.0, 0.0, 0.1)))
@@ -135,7 +135,7 @@ def test_what_turns_fast_slips_is_pushed_and_runs_in_other_steps_goes_on_as_befo
             assert go_on(world, 400) == wanted
 
 
-def test_what_stands_is_put_back_where_it_stood():
+def test_static_model_is_restored_to_its_pose():
     with empty_world() as world:
         shelf = urdf_spec(box_urdf('1 1 0.2', 1.0, '<gazebo><static>true</static></gazebo>'))
         stand = world.spawn(shelf, 'shelf', Pose((0.0, 0.0, 1.0)))
@@ -150,7 +150,7 @@ def test_what_stands_is_put_back_where_it_stood():
         assert go_on(world, 500) == wanted
 
 
-def test_a_snapshot_of_other_models_is_refused_with_a_sentence():
+def test_snapshot_of_other_models_is_rejected_with_a_message():
     with empty_world() as world:
         snapshot = world.engine.snapshot()
         world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
@@ -162,7 +162,7 @@ def test_a_snapshot_of_other_models_is_refused_with_a_sentence():
             world.engine.restore(strictly_after)
 
 
-def test_after_a_reset_a_world_that_was_saved_moves_as_a_new_one():
+def test_reset_world_with_a_snapshot_moves_like_a_new_one():
     found = []
     for saves in (False, True):
         with empty_world() as world:
@@ -175,7 +175,7 @@ def test_after_a_reset_a_world_that_was_saved_moves_as_a_new_one():
     assert found[0] == found[1]
 
 
-def test_snapshots_that_nobody_holds_are_freed():
+def test_unreferenced_snapshots_are_freed():
     with empty_world() as world:
         for _ in range(20):
             snapshot = world.engine.snapshot()
@@ -184,7 +184,7 @@ def test_snapshots_that_nobody_holds_are_freed():
         assert not world.engine._snapshots._states
 
 
-def test_a_restore_takes_some_steps_time():
+def test_restore_costs_as_much_as_some_steps():
     with empty_world() as world:
         world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.engine.step(2500)

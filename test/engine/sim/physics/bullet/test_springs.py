@@ -1,4 +1,4 @@
-"""Springs and dampers of joints do as mechanics says, however strong they are."""
+"""Springs and dampers of joints obey mechanics at any stiffness and damping."""
 
 import math
 
@@ -23,7 +23,7 @@ SPRUNG = '<gazebo reference="{}"><springStiffness>{}</springStiffness></gazebo>'
 
 
 def weight(mass, inertia=1.0, **joint):
-    """Return a weight on an upright joint of the world."""
+    """Return a mass on a vertical joint of the world."""
     link = LinkSpec('weight', inertial=Inertial(mass, Pose(), inertia, inertia, inertia))
     return ModelSpec('weight', (link,), (
         JointSpec('joint', joint.pop('type', PRISMATIC), 'world', 'weight', **joint),))
@@ -49,10 +49,10 @@ def states(spec, steps, velocity=0.0, **physics):
 @pytest.mark.parametrize(('mass', 'stiffness', 'reference', 'step'), [
     (2.0, 50.0, 0.0, 0.001), (0.5, 2000.0, 0.3, 0.001), (30.0, 200.0, -0.2, 0.004),
 ])
-def test_a_weight_swings_on_its_spring_for_ever(mass, stiffness, reference, step):
+def test_mass_on_a_spring_oscillates_without_loss(mass, stiffness, reference, step):
     sag, rate = mass * GRAVITY / stiffness, math.sqrt(stiffness / mass)
     spec = weight(mass, stiffness=stiffness, reference=reference)
-    # It begins at zero: both ends of its way are as far from where it would rest.
+    # It starts at zero; both extremes are equally far from the equilibrium.
     way = abs(reference - sag)
     steps = round(50.0 * math.tau / rate / step)
     positions = [position for position, _ in states(spec, steps, step_size=step)]
@@ -65,15 +65,15 @@ def test_a_weight_swings_on_its_spring_for_ever(mass, stiffness, reference, step
 
 @pytest.mark.parametrize('stiffness', [10.0, 1e4, 1e6, 1e9, 1e300])
 @pytest.mark.parametrize('step', [0.001, 0.01])
-def test_a_spring_of_any_stiffness_gains_nothing(stiffness, step):
+def test_spring_of_any_stiffness_gains_no_energy(stiffness, step):
     spec = weight(1.0, 0.01, type=REVOLUTE, stiffness=stiffness)
     found = states(spec, 3000, velocity=0.5, step_size=step, gravity=(0.0, 0.0, 0.0))
     assert max(abs(velocity) for _, velocity in found) <= 0.5 * 1.16  # 1 / cos of 30 degrees
-    assert max(abs(velocity) for _, velocity in found[-200:]) >= 0.49  # and loses nothing
+    assert max(abs(velocity) for _, velocity in found[-200:]) >= 0.49  # and loses none
 
 
 @pytest.mark.parametrize('damping', [0.1, 5.0, 15.0, 40.0, 1e4, 1e300])
-def test_a_damper_of_any_strength_turns_no_motion_round(damping):
+def test_damper_of_any_strength_does_not_reverse_motion(damping):
     spec = weight(1.0, 0.01, type=REVOLUTE, damping=damping)
     velocities = [velocity for _, velocity in states(spec, 100, velocity=1.0)]
     assert velocities == sorted(velocities, reverse=True)
@@ -85,7 +85,7 @@ def test_a_damper_of_any_strength_turns_no_motion_round(damping):
     (1e9, 0.0), (1e9, 1e9), (20.0, 1e9), (1e3, 0.0), (0.0, 1e9),
 ])
 @pytest.mark.parametrize('count', [2, 6, 12])
-def test_a_chain_on_springs_that_floats_stays_calm(stiffness, damping, count):
+def test_floating_chain_with_springs_is_stable(stiffness, damping, count):
     rod = Inertial(0.2, Pose((0.05, 0.0, 0.0)), 1e-4, 1e-4, 1e-4)
     links = tuple(LinkSpec(f'link{i}', Pose((0.1 * i, 0.0, 0.0)), rod) for i in range(count))
     joints = tuple(JointSpec(
@@ -103,7 +103,7 @@ def test_a_chain_on_springs_that_floats_stays_calm(stiffness, damping, count):
 
 
 def carriage(mass, stiffness, damping):
-    """Return a body on four sprung feet; both numbers are those of each foot."""
+    """Return a body on four sprung feet; stiffness and damping are per foot."""
     text = box('base', (0.5, 0.4, 0.1), mass)
     for i, (x, y) in enumerate(((0.2, 0.2), (0.2, -0.2), (-0.2, 0.2), (-0.2, -0.2))):
         text += (
@@ -119,7 +119,7 @@ def carriage(mass, stiffness, damping):
 @pytest.mark.parametrize(('mass', 'stiffness', 'damping'), [
     (8.0, 2000.0, 50.0), (8.0, 2000.0, 1e6), (40.0, 1e4, 500.0), (1.0, 300.0, 10.0),
 ])
-def test_a_sprung_body_sinks_in_by_its_weight(mass, stiffness, damping):
+def test_deflection_of_a_sprung_body_is_weight_over_stiffness(mass, stiffness, damping):
     with empty_world() as world:
         model = world.spawn(carriage(mass, stiffness, damping), 'carriage', Pose((0.0, 0.0, 0.17)))
         world.run(4000)
@@ -128,7 +128,7 @@ def test_a_sprung_body_sinks_in_by_its_weight(mass, stiffness, damping):
         assert model.pose.position[2] == pytest.approx(0.15 - sag, abs=1e-3)
 
 
-def test_springs_too_stiff_for_the_steps_stand_still_under_a_body():
+def test_springs_too_stiff_for_the_step_size_are_at_rest_under_a_body():
     with empty_world() as world:
         model = world.spawn(carriage(8.0, 1e12, 0.0), 'carriage', Pose((0.0, 0.0, 0.17)))
         world.run(3000)
@@ -138,7 +138,7 @@ def test_springs_too_stiff_for_the_steps_stand_still_under_a_body():
             assert max(abs(joint.velocity) for joint in model.joints.values()) < 1e-3
 
 
-def test_a_spring_works_beside_a_push_a_motor_and_after_changes():
+def test_spring_acts_beside_efforts_and_motors_and_after_changes():
     with empty_world() as world:
         model = world.spawn(weight(1.0, stiffness=100.0, damping=5.0), 'weight', HIGH)
         joint = model.joint('joint')
@@ -150,12 +150,12 @@ def test_a_spring_works_beside_a_push_a_motor_and_after_changes():
         world.run(4000)
         rest = -GRAVITY / 100.0
         assert model.joint('joint').position == pytest.approx(rest, rel=1e-3)
-        model.joint('joint').set_motor(0.1, 3.0)  # drives against the spring until that is stronger
+        model.joint('joint').set_motor(0.1, 3.0)  # drives against the spring until both balance
         world.run(4000)
         assert model.joint('joint').position == pytest.approx(rest + 0.03, rel=0.01)
 
 
-def test_a_reset_begins_anew_bit_for_bit():
+def test_motion_after_a_reset_is_bit_identical():
     with empty_world() as world:
         model = world.spawn(weight(1.0, stiffness=100.0), 'weight', HIGH)
         ways = []

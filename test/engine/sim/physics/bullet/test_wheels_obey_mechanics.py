@@ -1,4 +1,4 @@
-"""Wheels are ordinary contacts: what mechanics demands of robots that drive, park, lie and ride."""
+"""Mechanics of wheels in contact: robots that drive, park, overturn and ride on moving bodies."""
 
 import itertools
 import math
@@ -49,7 +49,7 @@ def command(model, forward, turning):
 
 
 def tilted_floor(world, roll=0.0, pitch=0.0):
-    """Lay a large board; return the frame in its upper face."""
+    """Spawn a large board; return the frame of its upper face."""
     tilt = from_rpy(math.radians(roll), math.radians(pitch), 0.0)
     board = replace(urdf_spec(box('board', (60.0, 60.0, 1.0), 1.0)), static=True)
     world.delete('ground_plane')
@@ -58,7 +58,7 @@ def tilted_floor(world, roll=0.0, pitch=0.0):
 
 
 def placed(world, spec, frame=None, yaw=0.0):
-    """Return the robot standing in a frame for half a second."""
+    """Return the robot after half a second at rest in a frame."""
     pose = Pose((0.0, 0.0, spec_height(spec)), from_rpy(0.0, 0.0, yaw))
     model = world.spawn(spec, 'robot', compose(frame or Pose(), pose))
     world.run(500)
@@ -70,7 +70,7 @@ def within(frame, model):
 
 
 def turned(model, world, steps):
-    """Return the angle that a model turns by within so many steps [rad]."""
+    """Return the angle by which a model turns within `steps` [rad]."""
     total, before = 0.0, yaw_of(model.pose.orientation)
     for _ in range(steps // 50):
         world.run(50)
@@ -83,7 +83,7 @@ def turned(model, world, steps):
 @pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
     (MIDDLE, 20.0, 0.5), (LIGHT, -20.0, 0.2), (HEAVY, 15.0, 0.8), (MIDDLE, 20.0, 0.0),
 ])
-def test_a_robot_that_drives_across_a_slope_does_not_slide_down(spec, degrees, speed):
+def test_robot_driving_across_a_slope_does_not_slide_down(spec, degrees, speed):
     with empty_world() as world:
         frame = tilted_floor(world, roll=degrees)
         model = placed(world, spec, frame)
@@ -100,11 +100,11 @@ def test_a_robot_that_drives_across_a_slope_does_not_slide_down(spec, degrees, s
     (LIGHT, 10.0, 0.2, math.pi), (castered(1.0, 0.2), 15.0, 1.0, 0.3), (MIDDLE, -20.0, 1.0, 0.8),
     (castered(20.0, 0.6, casters=1), 20.0, 1.0, 0.3),
     (castered(20.0, 0.6, mu=0.1), 25.0, 0.5, 0.8),
-    # At 1 m/s^2 its upper wheel, which carries a quarter of the weight, would spin.
+    # At 1 m/s^2 the upper wheel, with a quarter of the weight, would spin.
     (castered(5.0, 0.4, casters=1, acceleration=0.2), 25.0, 0.5, 0.8),
 ])
-def test_the_tyres_of_a_robot_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
-    """Measured along the axle: wheels that lag turn the robot a little, which is no slip."""
+def test_tyres_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
+    """Lateral slip along the axle; motor velocity error turns the robot slightly, without slip."""
     with empty_world() as world:
         model = placed(world, spec, tilted_floor(world, roll=degrees), heading)
         command(model, speed, 0.0)
@@ -124,7 +124,7 @@ def test_the_tyres_of_a_robot_on_a_slope_do_not_slip_sideways(spec, degrees, spe
 @pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
     (LIGHT, 15.0, 0.02), (LIGHT, 20.0, 0.22), (LIGHT, 12.0, 0.03), (MIDDLE, 10.0, 0.05),
 ])
-def test_a_robot_creeps_up_a_ramp_as_asked_and_never_rolls_back(spec, degrees, speed):
+def test_slow_robot_climbs_a_ramp_as_commanded_without_rolling_back(spec, degrees, speed):
     with empty_world() as world:
         frame = tilted_floor(world, pitch=-degrees)
         model = placed(world, spec, frame)
@@ -139,7 +139,7 @@ def test_a_robot_creeps_up_a_ramp_as_asked_and_never_rolls_back(spec, degrees, s
 
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE, HEAVY], ids=['1 kg', '5 kg', '50 kg'])
-def test_slow_commands_are_obeyed_on_the_flat(spec):
+def test_slow_commands_are_followed_on_level_ground(spec):
     with empty_world() as world:
         model = placed(world, spec)
         command(model, 0.01, 0.0)
@@ -153,7 +153,7 @@ def test_slow_commands_are_obeyed_on_the_flat(spec):
     (MIDDLE, 0.1), (MIDDLE, -0.1), (LIGHT, 0.1), (HEAVY, -0.1),
     (castered(0.2, 0.12, casters=1), 0.1), (castered(20.0, 0.6, casters=1), -0.1),
 ])
-def test_slow_turns_are_obeyed(spec, rate):
+def test_slow_turns_are_followed(spec, rate):
     with empty_world() as world:
         model = placed(world, spec)
         command(model, 0.0, rate)
@@ -162,11 +162,11 @@ def test_slow_turns_are_obeyed(spec, rate):
 
 
 def share_turned(size, mu):
-    """Return the share of the command at which a robot on two casters turns, by Coulomb's law.
+    """Return the yaw rate of a robot on two casters relative to the command, by Coulomb's law.
 
-    Eight points carry alike: a caster in front and behind, and three crests of each wheel. At the
-    full rate a wheel turns about its middle: the inner crest pushes, the outer one holds back, the
-    middle one does what it can. If that is less than its caster asks for, the middle slips too, and
+    Eight points carry equal loads: two casters, and three crests of each wheel. At the
+    full rate a wheel turns about its middle: the inner crest drives, the outer one brakes, the
+    middle one is below its limit. If its caster needs more than that, the middle slips too, and
     the wheel turns about its outer crest.
     """
     track = caster = 0.4 * size  # from the middle of the robot to that of a wheel, to a caster [m]
@@ -180,7 +180,7 @@ def share_turned(size, mu):
     (5.0, 0.4, 1.0, 0.3, 0.0), (20.0, 0.6, 1.0, -0.1, 0.4), (50.0, 1.0, 1.0, 0.1, 0.0),
     (0.2, 0.12, 0.6, 0.1, 0.4), (1.0, 0.2, 0.7, 0.3, 0.0), (5.0, 0.4, 0.6, -0.1, 0.4),
 ])
-def test_broad_wheels_that_drag_casters_turn_a_robot_as_coulomb_has_it(mass, size, mu, rate, yaw):
+def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, mu, rate, yaw):
     with empty_world() as world:
         model = placed(world, castered(mass, size, casters=2, mu=mu), yaw=yaw)
         command(model, 0.0, rate)
@@ -202,7 +202,7 @@ def test_a_parked_robot_does_not_creep(spec, degrees, yaw):
 
 
 def tall(mass=4.0, size=0.4):
-    """Return a robot whose body reaches far above its wheels: on its roof they turn in the air."""
+    """Return a robot with a tall body: when overturned, its wheels turn in the air."""
     body = box('base', (size, 0.7 * size, size), 0.9 * mass)
     for side, y in (('left', 0.4 * size), ('right', -0.4 * size)):
         body += wheel(f'{side}_wheel', f'{side}_joint', 0.15 * size, 0.1 * size, 0.05 * mass,
@@ -215,7 +215,7 @@ def tall(mass=4.0, size=0.4):
     (4.0, 0.4, 0.5, 0.0), (1.0, 0.2, 0.2, 1.0), (40.0, 0.8, -1.0, 0.0),
 ])
 @pytest.mark.parametrize('degrees', [0.0, 5.0])
-def test_a_robot_on_its_roof_stays_there_though_its_wheels_turn(
+def test_overturned_robot_with_turning_wheels_stays_in_place(
     mass, size, forward, turning, degrees
 ):
     with empty_world() as world:
@@ -245,7 +245,7 @@ TURNTABLE = ('<joint name="j" type="continuous"><parent link="world"/><child lin
     (MIDDLE, BED, 0.2, 0.05), (LIGHT, BED, -0.5, 0.02), (MIDDLE, TURNTABLE, 0.2, 0.02),
     (LIGHT, TURNTABLE, -0.3, 0.05),
 ])
-def test_a_robot_rides_along_on_what_moves(spec, joint, moves, speed):
+def test_robot_on_a_moving_platform_moves_with_it(spec, joint, moves, speed):
     with empty_world() as world:
         bed = world.spawn(urdf_spec('<link name="world"/>' + box('bed', (6.0, 6.0, 0.1), 500.0)
                                     + joint), 'bed', Pose((0.0, 0.0, 0.5)))
@@ -264,19 +264,19 @@ def test_a_robot_rides_along_on_what_moves(spec, joint, moves, speed):
 
 
 class Touch(NamedTuple):
-    """A contact of a robot in the last step."""
+    """A contact of a robot in the latest step."""
 
     limit: float  # mu times the load [N]
-    held: float  # greatest friction along one of the axes [N]
+    held: float  # greatest friction component [N]
     power: float  # of the friction [W]
 
 
 def touches(world, model):
-    """Yield all contacts of a robot on a floor that stands."""
+    """Yield all contacts of a robot with a static floor."""
     client = world.engine._client
     for link, places in model.body.surfaces.items():
         pose, (linear, angular) = world.engine.link_state(model.body, link)
-        origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # when it touched
+        origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # at contact
         for place in places:
             for point in pybullet.getContactPoints(
                 place.body, linkIndexA=place.link, physicsClientId=client
@@ -290,7 +290,7 @@ def touches(world, model):
 
 
 @pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])
-def test_in_no_step_friction_speeds_up_a_robot_that_slides(spec, heading):
+def test_friction_never_accelerates_a_sliding_robot(spec, heading):
     with empty_world() as world:
         model = placed(world, spec, yaw=heading)
         model.set_twist(Twist((0.3 * math.cos(heading) - 0.4 * math.sin(heading),
@@ -301,7 +301,7 @@ def test_in_no_step_friction_speeds_up_a_robot_that_slides(spec, heading):
             assert math.hypot(*model.twist.linear[:2]) <= fastest
 
 
-# Robots on one caster tip onto their front edge when they back at once, and back again.
+# Robots on one caster tip onto their front edge and back when they start backwards.
 @pytest.mark.parametrize(('spec', 'heading', 'degrees', 'commands'), [
     (LIGHT, 0.4, 0.0, ((0.5, 0.0), (-0.5, 0.0))), (LIGHT, 0.4, 12.0, ((1.0, 1.0), (-1.0, 0.0))),
     (MIDDLE, 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
@@ -309,8 +309,8 @@ def test_in_no_step_friction_speeds_up_a_robot_that_slides(spec, heading):
     (HEAVY, 0.0, 0.0, ((0.0, 1.5), (0.5, 0.0))),
     (robot_spec(), 0.4, 0.0, ((-0.5, 0.0), (0.5, 0.0))),
 ])
-def test_friction_stays_within_its_limit_and_does_no_work(spec, heading, degrees, commands):
-    """At most mu N of each contact, but for what one keeps that loses its load in the same step."""
+def test_friction_is_within_its_limit_and_adds_no_energy(spec, heading, degrees, commands):
+    """At most mu N per contact, except for one that loses its load within the step."""
     with empty_world() as world:
         frame = tilted_floor(world, roll=degrees) if degrees else None
         model = placed(world, spec, frame, heading)
@@ -333,7 +333,7 @@ def test_friction_stays_within_its_limit_and_does_no_work(spec, heading, degrees
 
 
 def soft(spec, kp):
-    """Return a robot whose wheels have that stiffness [N/m]."""
+    """Return a robot with a contact stiffness of its wheels [N/m]."""
     return replace(spec, links=tuple(
         replace(one, collisions=tuple(
             replace(shape, surface=replace(shape.surface, kp=kp))
@@ -366,7 +366,7 @@ def on_light_wheels(mass, wheel_mass, size):
 @pytest.mark.parametrize(('mass', 'wheel_mass', 'size', 'speed'), [
     (100.0, 0.03, 1.0, 0.22), (50.0, 0.05, 0.8, 0.4), (20.0, 0.02, 0.5, 0.1),
 ])
-def test_a_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, speed):
+def test_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, speed):
     with empty_world() as world:
         model = placed(world, on_light_wheels(mass, wheel_mass, size))
         command(model, speed, 0.0)
@@ -380,7 +380,7 @@ def test_a_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, sp
 @pytest.mark.parametrize(('spec', 'sunk'), [
     (MIDDLE, 0.1), (MIDDLE, 0.2), (LIGHT, 0.03), (LIGHT, 0.1), (HEAVY, 0.05), (HEAVY, 0.5),
 ])
-def test_a_robot_spawned_in_the_floor_rises_calmly(spec, sunk, plugins):
+def test_robot_spawned_in_the_floor_rises_without_a_jump(spec, sunk, plugins):
     rest = spec_height(spec) - 0.001
     with empty_world() as world:
         model = world.spawn(spec if plugins else replace(spec, plugins=()), 'robot',
@@ -397,7 +397,7 @@ def test_a_robot_spawned_in_the_floor_rises_calmly(spec, sunk, plugins):
 @pytest.mark.parametrize(('spec', 'turning'), [
     (robot_spec(), 1.0), (robot_spec(), -0.6), (MIDDLE, 1.5), (LIGHT, -1.0),
 ])
-def test_a_robot_that_turned_and_is_told_to_stand_is_at_rest_at_once(spec, turning):
+def test_turning_robot_stops_at_once_on_command(spec, turning):
     with empty_world() as world:
         model = world.spawn(spec, 'robot', SPAWN_POSE)
         world.run(SETTLED)
@@ -415,7 +415,7 @@ def test_a_robot_that_turned_and_is_told_to_stand_is_at_rest_at_once(spec, turni
 
 
 def burger(mu, lean):
-    """Return a small robot on two wheels and a caster of one friction; wheels lean by `lean`."""
+    """Return a small robot on two wheels and a caster with friction mu; wheels tilt by `lean`."""
     body = box('base', (0.14, 0.14, 0.05), 0.8) + ball('caster', 0.005, 0.005)
     body += ('<joint name="caster_joint" type="fixed"><parent link="base"/><child link="caster"/>'
              '<origin xyz="-0.06 0 -0.028"/></joint>') + surface('caster', mu)
@@ -431,7 +431,7 @@ def burger(mu, lean):
 @pytest.mark.parametrize(('mu', 'lean', 'turning'), [
     (0.1, 8e-4, 0.314), (0.1, 0.0, -0.314), (0.3, 8e-4, 1.0),
 ])
-def test_slippery_wheels_turn_a_robot_on_the_spot_as_asked(mu, lean, turning):
+def test_slippery_wheels_turn_a_robot_on_the_spot_as_commanded(mu, lean, turning):
     with empty_world() as world:
         model = placed(world, burger(mu, lean))
         command(model, 0.0, turning)
@@ -479,8 +479,8 @@ def test_four_wheels_drive_an_arc_as_in_gazebo():
 
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE, robot_spec()], ids=['1 kg', '5 kg', 'article'])
-def test_a_left_joint_on_the_right_side_drives_as_straight(spec):
-    """Swap left and right in the tags: the robot turns the other way, and drives the same."""
+def test_swapped_joints_drive_equally_straight(spec):
+    """With left and right swapped in the tags, the robot turns the other way."""
     (plugin,) = spec.plugins
     children = []
     sides = {'leftJoint': 'rightJoint', 'rightJoint': 'leftJoint'}
@@ -499,8 +499,8 @@ def test_a_left_joint_on_the_right_side_drives_as_straight(spec):
     assert yaws[0] == pytest.approx(yaws[1], abs=1e-3)
 
 
-def angle_told_by(transform):
-    """Return how far a wheel's transform turns it about its axle [rad], within half a turn."""
+def axle_angle(transform):
+    """Return the rotation of a wheel's transform about its axle [rad], in (-pi, pi]."""
     x, y, z, w = transform.pose.orientation
     back = from_rpy(math.pi / 2.0, 0.0, 0.0)
     x, y, z, w = compose(Pose(orientation=back), Pose(orientation=(x, y, z, w))).orientation
@@ -509,7 +509,7 @@ def angle_told_by(transform):
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE])
 @pytest.mark.parametrize('driven', [(0.3, 0.0), (0.2, -0.7)])
-def test_one_wheel_has_one_angle(spec, driven):
+def test_wheel_angles_of_transform_joint_states_and_odometry_agree(spec, driven):
     tags = {'odometrySource': 'encoder', 'publishWheelTF': 'true', 'publishWheelJointState': 'true'}
     (plugin,) = spec.plugins
     children = (*plugin.element.children, *(Element(tag, text) for tag, text in tags.items()))
@@ -529,7 +529,7 @@ def test_one_wheel_has_one_angle(spec, driven):
         states = told[JointStates][-1]
         assert states.positions == pytest.approx((right, left), abs=1e-9)
         for transform, angle in zip(told[FrameTransform][-2:], (left, right), strict=True):
-            apart = math.remainder(angle_told_by(transform) - angle, math.tau)
+            apart = math.remainder(axle_angle(transform) - angle, math.tau)
             assert abs(apart) < 1e-9
         ways = [(now - then) * drive.wheel_diameter / 2.0
                 for now, then in zip((left, right), start, strict=True)]
