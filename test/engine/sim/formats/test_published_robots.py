@@ -136,8 +136,8 @@ MODELS = {
     'model path of three slashes': (MODEL + MESH.format('model:///nowhere/m.dae'),
                                     ' version="1.4"', 1),
     'joint to a missing link': (
-        f'{MODEL}<joint name="j" type="fixed"><parent>a</parent><child>x</child>'
-                         '</joint>', ' version="1.6"', 1),
+        f'{MODEL}<joint name="j" type="fixed"><parent>a</parent><child>x</child></joint>',
+        ' version="1.6"', 1),
 }
 
 

@@ -1,4 +1,4 @@
-"""Contact sensors tell what Gazebo's were recorded to tell: names, counts, forces, axes."""
+"""Readings of contact sensors agree with Gazebo's recordings: names, counts, forces, axes."""
 
 import math
 from contextlib import closing
@@ -12,7 +12,7 @@ from rosbots_description.sim.public.world import World
 
 OWN = 'bbot::base_footprint::base_footprint_fixed_joint_lump__base_link_collision'
 GROUND, WALL = 'ground_plane::link::collision', 'wall_1::link::c'
-CLOSE = 0.02  # share of a force that the solver may leave out
+CLOSE = 0.02  # permitted relative error of a force by the solver
 BOX = ('<sdf version="1.6"><model name="top"><link name="link"><inertial><mass>2</mass></inertial>'
        '<collision name="c"><geometry><box><size>.2 .2 .2</size></box></geometry></collision>'
        '</link></model></sdf>')
@@ -42,7 +42,7 @@ def weight_of(model):
     return 9.8 * sum(link.spec.inertial.mass for link in model.links.values())
 
 
-def test_standing_each_step_has_a_state_and_the_forces_are_the_weight(world):
+def test_standing_robot_has_a_state_per_step_with_its_weight(world):
     model, found = spawn(world)
     world.run(200)
     assert [time for time, _ in found] == list(range(520, 701, 20))
@@ -58,7 +58,7 @@ def test_standing_each_step_has_a_state_and_the_forces_are_the_weight(world):
             assert abs(point.depth) < 1e-3
 
 
-def test_a_message_has_the_words_and_sums_of_gazebos(world):
+def test_message_has_the_text_and_totals_of_gazebos(world):
     _, found = spawn(world)
     world.run(20)
     message = contacts_message(found[0][1])
@@ -71,13 +71,13 @@ def test_a_message_has_the_words_and_sums_of_gazebos(world):
         sum(wrench.force.z for wrench in first.wrenches))
 
 
-def test_without_a_rate_each_step_is_a_message(world):
+def test_every_step_gives_a_message_without_a_rate(world):
     _, found = spawn(world, 'bumper_norate')
     world.run(3)
     assert [(time, len(touches)) for time, touches in found] == [(501, 1), (502, 1), (503, 1)]
 
 
-def test_what_does_not_touch_is_sent_too(world):
+def test_message_without_contacts_is_sent(world):
     _, found = spawn(world, settled=0, z=0.3)
     world.run(400)
     counts = [len(touches) for _, touches in found]
@@ -88,7 +88,7 @@ def test_what_does_not_touch_is_sent_too(world):
 @pytest.mark.parametrize(('yaw', 'push'), [
     (0.0, (-1.0, 0.0)), (math.pi, (1.0, 0.0)), (math.pi / 2, (0.0, 1.0)),
 ])
-def test_a_wall_pushes_back_in_the_axes_of_the_link(world, yaw, push):
+def test_force_of_a_wall_is_in_the_axes_of_the_link(world, yaw, push):
     x = 7.9 - (0.15 if yaw == math.pi / 2 else 0.2)  # its front is at the wall
     model, found = spawn(world, x=x, yaw=yaw)
     world.apply_wrench(model.links['base_footprint'], (80.0, 0.0, 0.0))
@@ -104,7 +104,7 @@ def test_a_wall_pushes_back_in_the_axes_of_the_link(world, yaw, push):
         assert point.normal == pytest.approx((-1.0, 0.0, 0.0), abs=1e-3)
 
 
-def test_the_body_that_came_later_is_the_first_of_the_two(world):
+def test_later_body_is_the_first_of_a_pair(world):
     _, found = spawn(world)
     world.spawn(BOX, z=0.3)
     world.run(1000)
@@ -116,13 +116,13 @@ def test_the_body_that_came_later_is_the_first_of_the_two(world):
     assert on_top[0].points[0].normal == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
 
 
-def test_the_other_collision_of_a_reduced_link_is_told_apart(world):
+def test_other_collision_of_a_reduced_link_is_distinguished(world):
     _, found = spawn(world, 'bumper_front')
     world.run(40)
     assert [touches for _, touches in found] == [(), ()]
 
 
-def test_a_collision_that_is_not_there_is_named_and_nothing_is_touched(world, caplog):
+def test_unknown_collision_is_reported_and_gives_no_contacts(world, caplog):
     _, found = spawn(world, 'bumper_plainname')
     assert ("contact 'bump_sensor' of link 'base_footprint': it names base_link_collision as "
             "<collision>; the collisions of 'base_footprint' are: base_footprint_fixed_joint_lump__"

@@ -284,11 +284,11 @@ def test_stack_of_five_boxes_stands():
 
 def test_obstacle_of_the_course_stands_stably():
     shape = '<origin xyz="2 0 1"/><geometry><box size="1 1 2"/></geometry>'
-    write_error = urdf_spec(f"""<link name="my_box"><inertial><origin xyz="2 0 0"/><mass value="1"/>
+    obstacle = urdf_spec(f"""<link name="my_box"><inertial><origin xyz="2 0 0"/><mass value="1"/>
       <inertia ixx="1" iyy="100" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
       <collision>{shape}</collision><visual>{shape}</visual></link>""")
     with empty_world() as world:
-        model = world.spawn(write_error, 'my_object', Pose((1.0, 0.0, 1.0)))
+        model = world.spawn(obstacle, 'my_object', Pose((1.0, 0.0, 1.0)))
         world.run(5 * SECOND)
         assert model.pose.position == pytest.approx((1.0, 0.0, 0.0), abs=0.01)
         # It rocks: the nearest physical inertia is a hundred times that of such a box.

@@ -156,10 +156,10 @@ def test_snapshot_of_other_models_is_rejected_with_a_message():
         world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
         with pytest.raises(SimError, match='of other models'):
             world.engine.restore(snapshot)
-        strictly_after = world.engine.snapshot()
+        later = world.engine.snapshot()
         world.reset_simulation()
         with pytest.raises(SimError, match='of other models'):
-            world.engine.restore(strictly_after)
+            world.engine.restore(later)
 
 
 def test_reset_world_with_a_snapshot_moves_like_a_new_one():
