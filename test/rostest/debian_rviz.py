@@ -1,7 +1,7 @@
-"""What tests need to know of Debian's RViz 1.14, where no program of ours starts it.
+"""Start of Debian's RViz 1.14 in tests, without our programs.
 
-With software rendering it now and then overwrites its own heap while it opens its window, also
-where only Debian's programs run. So it is started again if it crashed before its window stood.
+With software rendering it occasionally corrupts its heap while it opens its window, also
+without any of our programs. It is restarted if it crashes before its window is open.
 """
 
 import re
@@ -12,28 +12,28 @@ from simulator import wait_until
 
 STARTS = 4  # at most
 CRASH = re.compile(r'rviz-\d+\] (process )?has died.*?exit code -(6|11),', re.S)
-STANDS = '/rviz/reload_shaders'  # the first service that it opens after its window
+READY_SERVICE = '/rviz/reload_shaders'  # the first service after its window
 
 
-def stands(node='/rviz'):
-    """Tell whether RViz has its window, reads TF and lives."""
+def is_ready(node='/rviz'):
+    """Return whether RViz is running with its window open and subscribed to TF."""
     _, readers, services = rospy.get_master().getSystemState()[2]
     return any(topic == '/tf' and node in nodes for topic, nodes in readers) \
-        and any(service == STANDS for service, _ in services) \
-        and rosnode_ping(node, max_count=1, skip_cache=True)  # else one that has crashed
+        and any(service == READY_SERVICE for service, _ in services) \
+        and rosnode_ping(node, max_count=1, skip_cache=True)  # not a crashed one
 
 
 def start(open_terminal, close, limit):
-    """Return the terminal of a launch file whose RViz stands.
+    """Return the terminal of a launch file, once its RViz is ready.
 
     Args:
-        open_terminal: launches it, in a terminal that it returns.
-        close: ends what runs in a terminal.
-        limit: in which one or the other happens [s, wall].
+        open_terminal: launches the file and returns the terminal.
+        close: ends the program in a terminal.
+        limit: timeout of start and end [s, wall].
     """
     for _ in range(STARTS):
         terminal = open_terminal()
-        wait_until(lambda: stands() or CRASH.search(terminal.shown()), 'RViz', limit)  # noqa: B023
+        wait_until(lambda: is_ready() or CRASH.search(terminal.shown()), 'RViz', limit)  # noqa: B023
         if not CRASH.search(terminal.shown()):
             return terminal
         close(terminal)

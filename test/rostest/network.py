@@ -1,4 +1,4 @@
-"""The names, types and MD5 sums on the wire, as gazebo_ros 2.9.2 has them."""
+"""Names, types and MD5 sums of services and topics, as in gazebo_ros 2.9.2."""
 
 import time
 
@@ -56,7 +56,7 @@ PUBLISHED = {
     '/gazebo/parameter_updates': Config,
 }
 SUBSCRIBED = {'/gazebo/set_link_state': LinkState, '/gazebo/set_model_state': ModelState}
-OF_ROSOUT = {'/rosout'}  # rosout's own /rosout_agg is there where roslaunch starts a master
+OF_ROSOUT = {'/rosout'}  # /rosout_agg exists where roslaunch starts a master
 OUR_TOPICS = {
     '/gazebo/visual_markers', '/gazebo/view/markers', '/gazebo/view/frames',
     '/gazebo/view/image_raw', '/tf_static',
@@ -78,7 +78,7 @@ def services_of(node='/gazebo'):
 
 
 def type_and_sum(service):
-    """Return a service's type and MD5 sum as the running server tells them."""
+    """Return the type and the MD5 sum of a service of the running server."""
     name = f'/gazebo/{service}'
     uri = rosgraph.Master(rospy.get_name()).lookupService(name)
     header = rosservice.get_service_headers(name, uri)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Become a command on a machine without a network whose name leads nowhere.
+"""Run a command on a machine without a network, with a hostname that cannot be resolved.
 
-To be run where network and name are its own: unshare --net --uts nowhere.py COMMAND…
+Run it in its own namespaces: unshare --net --uts nowhere.py COMMAND…
 """
 
 import fcntl

@@ -1,4 +1,4 @@
-"""Clients that do what no well-behaved one does: the bytes of TCPROS, and how a process dies."""
+"""Misbehaving clients: raw bytes of TCPROS, and connections of killed processes."""
 
 import socket
 import struct
@@ -50,19 +50,19 @@ def answer(made, service_class):
 
 
 def deaf_subscriber(topic, message_class):
-    """Return a connection that subscribes a topic and never reads, as a stopped process does."""
+    """Return a connection that subscribes to a topic and never reads, like a stopped process."""
     header = {'topic': topic, 'md5sum': message_class._md5sum, 'type': message_class._type}
     return greet(connection(BUFFER), header)
 
 
 def vanish(made):
-    """End a connection as the kernel does for a process that was killed: without a goodbye."""
+    """Reset a connection, as the kernel does for a killed process."""
     made.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
     made.close()
 
 
 def unsent_bytes(made):
-    """Return how much the server has sent on a connection that has not arrived, by the kernel."""
+    """Return the number of bytes in the kernel's send queue of the server for a connection."""
     ours, theirs = made.getsockname()[1], made.getpeername()[1]
     with open('/proc/net/tcp', encoding='ascii') as table:
         for line in table.readlines()[1:]:

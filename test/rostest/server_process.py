@@ -1,4 +1,4 @@
-"""A simulator that a test starts and ends itself, on the test's master or on one of its own."""
+"""A simulator that a test starts and ends, with the test's ROS master or another one."""
 
 import os
 import signal
@@ -13,10 +13,10 @@ from simulator import DEADLINE, SimulatorTest, wait_until
 
 
 class ServerProcess:
-    """One program, run to its end within a `with` statement.
+    """A program that runs for the length of a `with` statement.
 
     Args:
-        prefix: a command before its own, which ends by becoming that: `nice`, say.
+        prefix: a command that executes the program, such as `nice`.
     """
 
     def __init__(self, *arguments, program='gzserver', package='gazebo_ros', master=None,
@@ -40,13 +40,13 @@ class ServerProcess:
         self.process.stdout.close()
 
     def wait_ready(self):
-        """Wait until the last of the services is offered."""
+        """Wait until the last service is registered."""
         wait_until(self._is_ready, f'the services of /{self.name}', deadline=2 * DEADLINE)
         return self
 
     def _is_ready(self):
         if self.process.poll() is not None:
-            raise AssertionError(f'it has ended: {self.process.stdout.read()}')
+            raise AssertionError(f'the server has ended: {self.process.stdout.read()}')
         try:
             rosgraph.Master('/test', self.master).lookupService(f'/{self.name}/unpause_physics')
         except rosgraph.MasterError:
@@ -54,7 +54,7 @@ class ServerProcess:
         return True
 
     def call(self, service, *arguments):
-        """Call a service from a process of its own, which has this server's master."""
+        """Call a service from a new process with this server's master."""
         ended = subprocess.run(
             ['rosservice', 'call', f'/{self.name}/{service}', *arguments], env=self.environment,
             capture_output=True, text=True, timeout=DEADLINE, check=True)
@@ -64,40 +64,40 @@ class ServerProcess:
         return self.call('get_world_properties')
 
     def open_files(self):
-        """Return how many files and connections it holds open."""
+        """Return the number of open file descriptors, connections included."""
         return len(os.listdir(f'/proc/{self.process.pid}/fd'))
 
     def threads(self):
         return len(os.listdir(f'/proc/{self.process.pid}/task'))
 
     def children(self):
-        """Return the ids of its child processes, also of those that have ended unnoticed."""
+        """Return the ids of its child processes, zombies included."""
         tasks = Path(f'/proc/{self.process.pid}/task')
         while True:
             try:
                 return [pid for task in tasks.glob('*/children')
                         for pid in task.read_text().split()]
             except (FileNotFoundError, ProcessLookupError):
-                pass  # a thread has ended, and another one has its children now
+                pass  # the thread has ended; another one has its children
 
-    def trials(self):
-        """Return the ids of the processes in which models are tried now."""
+    def sandbox_runs(self):
+        """Return the ids of the processes in which models are being tested."""
         return [pid for child in self.children()
                 for pid in Path(f'/proc/{child}/task/{child}/children').read_text().split()]
 
     def end(self):
-        """End it as Ctrl-C does; return its exit code and what it printed."""
+        """End it by SIGINT; return its exit code and output."""
         self.process.send_signal(signal.SIGINT)
         return self.wait()
 
     def wait(self):
-        """Wait until it ends by itself; return its exit code and what it printed."""
+        """Wait until it ends by itself; return its exit code and output."""
         printed, _ = self.process.communicate(timeout=2 * DEADLINE)
         return self.process.returncode, printed
 
 
 class MasterProcess:
-    """A ROS master on a free port, for a `with` statement that gets its address."""
+    """A ROS master on a free port; a `with` statement gets its URI."""
 
     def __enter__(self):
         with socket.socket() as probe:
@@ -110,7 +110,7 @@ class MasterProcess:
         self._process.wait()
 
     def start(self):
-        """Start it, also again; return its address."""
+        """Start or restart it; return its URI."""
         self._process = subprocess.Popen(
             ['rosmaster', '--core', '-p', str(self._port)], stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -119,15 +119,15 @@ class MasterProcess:
         return address
 
     def kill(self):
-        """Let it die as by a crash: it says goodbye to nobody."""
+        """Kill it, like a crash."""
         self._process.kill()
         self._process.wait()
 
 
 class OwnServerTest(SimulatorTest):
-    """Begins every test with a server of its own, which the test may bring down."""
+    """Starts a server for each test, which the test may crash."""
 
-    program: Mapping[str, str] = {}  # if it is not gzserver
+    program: Mapping[str, str] = {}  # other than gzserver
 
     def setUp(self):
         self.server = ServerProcess(**self.program)
@@ -138,20 +138,20 @@ class OwnServerTest(SimulatorTest):
     def tearDown(self):
         if self.server.process.poll() is None:
             super().tearDown()
-            self.server.end()  # so that the master forgets it
+            self.server.end()  # so that it is unregistered
 
     def drive_neighbour(self):
-        """Spawn a robot and let it drive."""
+        """Spawn a robot and command it to drive."""
         self.assertTrue(self.spawn('neighbour').success)
         drive, before = self.driver(), self.x_of('neighbour')
-        # Again and again: the first may go to the subscriber of a robot that was deleted just now.
+        # Repeated: the first may reach the subscriber of a robot just deleted.
         wait_until(lambda: drive(0.3) or self.x_of('neighbour') > before + 0.05, 'a drive')
 
     def assert_neighbour_drives(self):
         before = self.x_of('neighbour')
-        wait_until(lambda: self.x_of('neighbour') > before + 0.05, 'the neighbour driving on')
+        wait_until(lambda: self.x_of('neighbour') > before + 0.05, 'motion of the neighbour')
 
     def assert_no_more_than(self, files, threads):
-        """Wait until the server has closed what it has opened since."""
-        wait_until(lambda: self.server.open_files() <= files, f'no more than {files} files open')
-        wait_until(lambda: self.server.threads() <= threads, f'no more than {threads} threads')
+        """Wait until the server has closed further files and ended further threads."""
+        wait_until(lambda: self.server.open_files() <= files, f'at most {files} open files')
+        wait_until(lambda: self.server.threads() <= threads, f'at most {threads} threads')

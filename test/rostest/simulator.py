@@ -1,4 +1,4 @@
-"""What the tests of the running simulator share: its services, and waiting for conditions."""
+"""Shared code of tests of the running simulator: services, and waiting for conditions."""
 
 import subprocess
 import time
@@ -14,7 +14,7 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist
 from std_srvs.srv import Empty
 
-DEADLINE = 10.0  # [s, wall] for what takes a fraction of it; slow machines are no failure
+DEADLINE = 10.0  # [s, wall] timeout of what takes a fraction of it
 COMMANDS = '/part2_cmr/cmd_vel'
 GROUND = 'ground_plane'
 BOX = """<robot name="box"><link name="body">
@@ -24,7 +24,7 @@ BOX = """<robot name="box"><link name="body">
 
 
 def wait_until(condition, what, deadline=DEADLINE):
-    """Wait by wall time: simulated time may stand still."""
+    """Wait for a condition with a timeout of wall time; simulated time may be paused."""
     end = time.monotonic() + deadline
     while not condition():
         if time.monotonic() > end:
@@ -42,7 +42,7 @@ def pose(x=0.0, y=0.0, z=0.5):
 
 
 def topics_of(node='/gazebo'):
-    """Return the names of the topics that the node publishes or subscribes."""
+    """Return the topics that a node publishes or subscribes to."""
     published, subscribed, _ = rospy.get_master().getSystemState()[2]
     return {name for name, nodes in published + subscribed if node in nodes}
 
@@ -56,14 +56,14 @@ SENSOR_BOX = """<robot name="box">
 
 
 def spawn_model(name, text):
-    """Run the real spawn_model on a text until it ends; return what it said."""
+    """Run spawn_model on a text until it ends; return the completed process."""
     return subprocess.run(
         ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-stdin', '-model', name], input=text,
         capture_output=True, text=True, timeout=30, check=False)
 
 
 class SimulatorTest(unittest.TestCase):
-    """Begins every test with an empty world whose time runs."""
+    """Starts each test with an empty world, unpaused."""
 
     def setUp(self):
         self.spawn_service = proxy('spawn_urdf_model', SpawnModel)
@@ -93,7 +93,7 @@ class SimulatorTest(unittest.TestCase):
         return self.spawn_service(name, xml, namespace, at or pose(), frame)
 
     def collect(self, topic, message_class):
-        """Return a list that grows by the topic's messages, once the publisher is connected."""
+        """Return a list to which the messages of a topic are appended; waits for a publisher."""
         messages = []
         subscriber = rospy.Subscriber(topic, message_class, messages.append, tcp_nodelay=True)
         self._connections.append(subscriber)
@@ -101,7 +101,7 @@ class SimulatorTest(unittest.TestCase):
         return messages
 
     def driver(self):
-        """Return a function that sends a velocity command to the robot's plugin."""
+        """Return a function that sends a velocity command to the robot."""
         publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
         self._connections.append(publisher)
         wait_until(publisher.get_num_connections, f'a subscriber of {COMMANDS}')

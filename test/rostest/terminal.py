@@ -1,4 +1,4 @@
-"""A program on a pseudo-terminal, as a person runs it: keys in, screen out."""
+"""A program on a pseudo-terminal: keys in, screen out."""
 
 import os
 import pty
@@ -8,7 +8,7 @@ import termios
 
 
 class Terminal:
-    """A pseudo-terminal with a program in it; collects what the program shows."""
+    """A pseudo-terminal with a program; collects the output."""
 
     def __init__(self, *command, **options):
         self._keyboard, self._screen = pty.openpty()
@@ -22,7 +22,7 @@ class Terminal:
         os.write(self._keyboard, key.encode())
 
     def shown(self):
-        """Return everything shown so far."""
+        """Return the output so far."""
         while select.select([self._keyboard], [], [], 0.0)[0]:
             self._shown += os.read(self._keyboard, 4096)
         return self._shown.decode()
@@ -40,7 +40,7 @@ class Terminal:
 
 
 def open_display():
-    """See to a display, one that nobody sees if need be; return the function that closes it."""
+    """Ensure that there is a display, a virtual one if needed; return a function that closes it."""
     if 'DISPLAY' in os.environ:
         return lambda: None
     read, write = os.pipe()

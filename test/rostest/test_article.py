@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A reader follows the article: nine steps, each in a terminal of its own."""
+"""The nine steps of the article, each in its own terminal."""
 
 import os
 import shutil
@@ -16,8 +16,8 @@ from gazebo_msgs.srv import GetModelState
 from simulator import wait_until
 from terminal import Terminal
 
-STEP = 20.0  # [s, wall] in which a step shows what it is to show
-MOVED = 0.05  # [m] or [rad], far more than a standing robot creeps
+STEP = 20.0  # [s, wall] timeout of the output of a step
+MOVED = 0.05  # [m] or [rad], far more than a standing robot drifts
 TELEOP = (
     ['rosrun', 'teleop_twist_keyboard', 'teleop_twist_keyboard.py', '/cmd_vel:=/part2_cmr/cmd_vel']
 )
@@ -58,7 +58,7 @@ class ArticleTest(unittest.TestCase):
         """Press Ctrl-C."""
         os.killpg(terminal.process.pid, signal.SIGINT)
         wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-                   'the end of the program', STEP)
+                   'exit of the program', STEP)
         self.assertEqual(terminal.process.returncode, code, terminal.shown())
 
     def state(self):
@@ -70,7 +70,7 @@ class ArticleTest(unittest.TestCase):
         return abs(self.state().pose.position.z + 0.12) < 0.01
 
     def press(self, teleop, key, quantity, sign):
-        """Press a key and wait until the robot has moved the right way; then stop it."""
+        """Press a key, wait until the robot has moved in the right direction, and stop it."""
         start = quantity(self.state())
         teleop.type(key)
         wait_until(lambda: sign * (quantity(self.state()) - start) > MOVED, f'motion by {key!r}')
@@ -82,26 +82,26 @@ class ArticleTest(unittest.TestCase):
         # 1: the package is found
         where = output_of(ROSBOTS, 'shell', script='roscd rosbots_description && ls')
         self.assertIn('package.xml', where)
-        # 5: spawning before there is a simulator waits for it
+        # 5: spawn_model waits for a simulator
         early = self.open(*SPAWN)
         self.see(early, WAITING)
         self.assertIsNone(early.process.poll())
-        # 3: the simulator, with its window if there is a display; the early spawn completes
+        # 3: the simulator, with its window if there is a display; the waiting spawn completes
         simulator = self.open(*['roslaunch', 'gazebo_ros', 'empty_world.launch'])
         self.see(early, SPAWNED)
         self.see(early, 'process has finished cleanly')
-        # 6: the model goes, and the plugin's topics with it
+        # 6: the model is deleted with the topics of its plugin
         self.assertIn('/part2_cmr/cmd_vel', output_of('rostopic', 'list').split())
         answer = output_of(*DELETE)
         self.assertIn('success: True', answer)
         self.assertIn('DeleteModel: successfully deleted model', answer)
         self.assertNotIn('/part2_cmr/cmd_vel', output_of('rostopic', 'list').split())
-        # 4 and 7: it comes again
+        # 4 and 7: it is spawned again
         again = self.open(*SPAWN)
         self.see(again, SPAWNED)
         self.assertIn('/part2_cmr/cmd_vel', output_of('rostopic', 'list').split())
         wait_until(self.standing, 'the robot standing on its wheels')
-        # 8: the keyboard drives it
+        # 8: keyboard teleoperation
         teleop = self.open(*TELEOP)
         self.see(teleop, 'currently:')
         self.press(teleop, 'i', lambda state: state.pose.position.x, 1)
@@ -110,12 +110,12 @@ class ArticleTest(unittest.TestCase):
         self.press(teleop, 'l', lambda state: state.pose.orientation.z, -1)
         # 9: Ctrl-C ends everything
         teleop.type('\x03')
-        wait_until(lambda: teleop.process.poll() is not None, 'the end of the teleop')
+        wait_until(lambda: teleop.process.poll() is not None, 'exit of the teleop')
         self.assertEqual(teleop.process.returncode, 0)
         self.close(simulator)
 
-    def test_the_robot_is_shown_in_rviz(self):
-        # 2: with the display of whoever runs this, or one that nobody sees
+    def test_rviz_shows_the_robot(self):
+        # 2: on the user's display or a virtual one
         command = ['roslaunch', 'rosbots_description', 'rviz.launch']
         if 'DISPLAY' not in os.environ:
             self.assertTrue(shutil.which('xvfb-run'), 'install xvfb')
@@ -128,7 +128,7 @@ class ArticleTest(unittest.TestCase):
     def _end(self, terminal):
         os.killpg(terminal.process.pid, signal.SIGINT)
         wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-                   'the end of RViz', STEP)
+                   'exit of RViz', STEP)
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bad input is answered with Gazebo's text or a sentence, and nobody else notices."""
+"""Invalid input is answered with Gazebo's text or an error message; other robots drive on."""
 
 import math
 import sys
@@ -22,10 +22,10 @@ def robot(*parts):
     return f'<robot name="bad">{"".join(parts)}</robot>'
 
 
-# What is sent, and words that the sentence must hold: place, fault or cure.
+# Input, and words that the error message must contain: location, fault or cure.
 REFUSED = {
     'unclosed tags': ('<robot name="bad"><link name="a">', ['line']),
-    'mesh that climbs out of its package': (
+    'mesh path out of its package': (
         robot(LINK.format('a', MESH.format('package://rosbots_description/%2e%2e/m.stl'))),
         ['leads out of package']),
     'crossed tags': ('<robot name="bad"><link name="a"></robot></link>', ['line']),
@@ -38,7 +38,7 @@ REFUSED = {
         ['xacro']),
     'two roots': (robot(LINK.format('a', ''), LINK.format('b', '')), ['a', 'b']),
     'duplicate names': (robot(LINK.format('a', ''), LINK.format('a', '')), ["'a'"]),
-    'joint to nowhere': (robot(
+    'joint to a missing link': (robot(
         LINK.format('a', ''),
         '<joint name="j" type="fixed"><parent link="a"/><child link="gone"/></joint>'), ['gone']),
     'mass of nan': (robot(LINK.format('a', '').replace('value="1"', 'value="nan"')), ['nan']),
@@ -51,26 +51,26 @@ CALL_ERRORS = {
     'unknown package': (
         robot(LINK.format('a', MESH.format('package://no_such_pkg/m.dae'))), 'no_such_pkg'),
 }
-AT_ONCE = 0.5  # [s, wall] for a refusal that takes some milliseconds
+AT_ONCE = 0.5  # [s, wall] timeout of a rejection that takes milliseconds
 UNKNOWN_JOINT = ('<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
                  '<leftJoint>nojoint</leftJoint></plugin></gazebo>')
 
 
 class BadInputTest(SimulatorTest):
-    """Beside every bad request a robot drives, and goes on driving."""
+    """During every invalid request a robot drives, and continues."""
 
     def setUp(self):
         super().setUp()
         self.spawn('neighbour', at=pose(y=5.0))
         self._drive = self.driver()
         self._drive(0.3)
-        wait_until(lambda: self.x_of('neighbour') > 0.05, 'the neighbour driving')
+        wait_until(lambda: self.x_of('neighbour') > 0.05, 'motion of the neighbour')
 
     def _assert_neighbour_drives(self):
         here = self.x_of('neighbour')
-        wait_until(lambda: self.x_of('neighbour') > here + 0.02, 'the neighbour driving on')
+        wait_until(lambda: self.x_of('neighbour') > here + 0.02, 'motion of the neighbour')
 
-    def _assert_refused(self, response, *words):
+    def _assert_rejected(self, response, *words):
         self.assertFalse(response.success)
         self.assertTrue(response.status_message.startswith('SpawnModel: Failure - '))
         for word in words:
@@ -78,13 +78,13 @@ class BadInputTest(SimulatorTest):
         self.assertNotIn('\n', response.status_message)
         self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
 
-    def test_descriptions_that_cannot_be_simulated(self):
+    def test_descriptions_that_cannot_be_simulated_are_rejected(self):
         for case, (xml, words) in REFUSED.items():
             with self.subTest(case):
-                self._assert_refused(self.spawn('bad', xml), *words)
+                self._assert_rejected(self.spawn('bad', xml), *words)
         self._assert_neighbour_drives()
 
-    def test_descriptions_that_are_none(self):
+    def test_other_texts_than_descriptions_are_rejected(self):
         for case, (xml, words) in CALL_ERRORS.items():
             with self.subTest(case):
                 with self.assertRaises(rospy.ServiceException) as raised:
@@ -92,16 +92,16 @@ class BadInputTest(SimulatorTest):
                 self.assertIn(words, str(raised.exception))
         self._assert_neighbour_drives()
 
-    def test_a_failing_spawn_while_paused_answers_at_once_and_holds_up_nobody(self):
+    def test_failing_spawn_while_paused_is_answered_at_once_without_blocking(self):
         self.pause()
         begin = time.monotonic()
         for xml, words in REFUSED.values():
-            self._assert_refused(self.spawn('bad', xml), *words)
+            self._assert_rejected(self.spawn('bad', xml), *words)
         self.assertLess(time.monotonic() - begin, AT_ONCE * len(REFUSED))
         self.unpause()
         self._assert_neighbour_drives()
 
-    def test_what_gazebo_simulates_in_silence_is_there_as_there(self):
+    def test_irregular_models_accepted_by_gazebo_are_spawned(self):
         massless = ''.join((
             LINK.format('base', ''), '<link name="ghost"/>',
             '<joint name="j" type="continuous"><parent link="base"/><child link="ghost"/></joint>'))
@@ -110,10 +110,10 @@ class BadInputTest(SimulatorTest):
         self.assertEqual((properties.body_names, properties.joint_names), (['base'], []))
         unturnable = BOX.replace('ixx="1" iyy="1" izz="1"', 'ixx="0" iyy="0" izz="0"')
         self.assertTrue(self.spawn('stiff', unturnable, pose(x=8.0)).success)
-        wait_until(lambda: self.model_state('stiff', '').pose.position.z < 0.502, 'a standing box')
+        wait_until(lambda: self.model_state('stiff', '').pose.position.z < 0.502, 'the box at rest')
         self._assert_neighbour_drives()
 
-    def test_a_lumped_link_is_not_found(self):
+    def test_reduced_link_is_not_found(self):
         link_state = proxy('get_link_state', GetLinkState)
         for name in ('base_link', 'neighbour::base_link', 'caster'):
             response = link_state(name, '')
@@ -122,13 +122,13 @@ class BadInputTest(SimulatorTest):
                 'name?'))
         self.assertTrue(link_state('neighbour::base_footprint', '').success)
 
-    def test_an_empty_name_and_a_pose_that_is_none(self):
-        self._assert_refused(self.spawn('', BOX), 'name')
-        self._assert_refused(self.spawn('bad', BOX, pose(x=math.nan)), 'bad', 'not finite')
-        self._assert_refused(self.spawn('bad', BOX, pose(z=math.inf)), 'bad', 'not finite')
+    def test_empty_name_and_invalid_pose(self):
+        self._assert_rejected(self.spawn('', BOX), 'name')
+        self._assert_rejected(self.spawn('bad', BOX, pose(x=math.nan)), 'bad', 'not finite')
+        self._assert_rejected(self.spawn('bad', BOX, pose(z=math.inf)), 'bad', 'not finite')
         self._assert_neighbour_drives()
 
-    def test_a_plugin_that_cannot_work_leaves_its_model_alone(self):
+    def test_model_is_spawned_without_a_failing_plugin(self):
         xml = BOX.replace('</robot>', UNKNOWN_JOINT + '</robot>')
         self.assertTrue(self.spawn('bad', xml).success)
         unknown = BOX.replace('</robot>', '<gazebo><plugin name="n" filename="libnope.so"/>'
@@ -136,7 +136,7 @@ class BadInputTest(SimulatorTest):
         self.assertTrue(self.spawn('worse', unknown, pose(x=5.0)).success)
         self._assert_neighbour_drives()
 
-    def test_topics_that_cannot_be_are_left_out(self):
+    def test_invalid_topics_are_left_out(self):
         before, clock = topics_of(), self.collect('/clock', Clock)
         self.assertTrue(self.spawn('spaced', at=pose(y=10.0), namespace='a b').success)
         self.assertEqual(topics_of(), before)
@@ -145,12 +145,12 @@ class BadInputTest(SimulatorTest):
         self.assertTrue(self.spawn('loud', xml, pose(y=15.0), namespace='/loud').success)
         self.assertEqual(topics_of(), before | {'/loud/joint_states'})
         told = len(clock)
-        wait_until(lambda: len(clock) > told + 100, 'time going on')
+        wait_until(lambda: len(clock) > told + 100, 'advance of time')
         times = [message.clock.to_nsec() for message in list(clock)]
         self.assertEqual(times, sorted(times))
         self._assert_neighbour_drives()
 
-    def test_a_command_that_is_not_finite_is_dropped_and_the_last_one_stays(self):
+    def test_command_that_is_not_finite_is_dropped_and_the_last_one_kept(self):
         odometry = self.collect('/odom', Odometry)
         wait_until(lambda: odometry and odometry[-1].twist.twist.linear.x > 0.25, 'full speed')
         for bad in (math.nan, math.inf, -math.inf):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cameras on the wire: names, types, frames, stamps, latching, and what clients set."""
+"""Topics of cameras: names, types, frames, stamps, latching, and settings by clients."""
 
 import sys
 
@@ -16,8 +16,8 @@ SETTINGS = ('parameter_descriptions', 'parameter_updates')
 
 class CameraTest(SimulatorTest):
 
-    def bring(self, robot, folder, topics, namespace='/'):
-        """Spawn a robot of the recordings; its topics below `folder` are those recorded."""
+    def spawn_recorded(self, robot, folder, topics, namespace='/'):
+        """Spawn a recorded robot and assert that its topics below `folder` are `topics`."""
         before = topics_of()
         text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
         self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
@@ -28,8 +28,9 @@ class CameraTest(SimulatorTest):
         wait_until(lambda: len(messages) >= count, f'messages on {topic}')
         return messages
 
-    def test_a_camera_sends_pictures_and_infos_of_equal_stamps(self):
-        self.bring('camera_320', '/nsx/camera1', {'image_raw', 'camera_info', *SETTINGS}, '/nsx')
+    def test_images_and_camera_infos_have_equal_stamps(self):
+        self.spawn_recorded(
+            'camera_320', '/nsx/camera1', {'image_raw', 'camera_info', *SETTINGS}, '/nsx')
         infos = self.collect('/nsx/camera1/camera_info', CameraInfo)
         images = self.read('/nsx/camera1/image_raw', Image, 12)
         image = images[-1]
@@ -39,19 +40,19 @@ class CameraTest(SimulatorTest):
         self.assertEqual(tuple(image.data[:3]), (178, 178, 178))  # the background
         stamps = {message.header.stamp for message in infos}
         self.assertIn(images[5].header.stamp, stamps)
-        # Pictures that are late for a busy machine are left out.
+        # On a busy machine, late images are left out.
         self.assertLessEqual(min(spacing(images)), 34)
         self.assertAlmostEqual(infos[-1].P[3], -13.347686, 5)
 
-    def test_who_comes_in_a_pause_gets_the_last_picture(self):
-        self.bring('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+    def test_subscriber_during_a_pause_gets_the_last_image(self):
+        self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
         self.read('/camera1/image_raw', Image, 2)
         self.pause()
         self.assertEqual(len(self.read('/camera1/image_raw', Image, 1)), 1)
         self.assertEqual(self.collect('/camera1/camera_info', CameraInfo), [])
 
-    def test_clients_set_the_rate_and_the_info(self):
-        self.bring('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+    def test_clients_set_rate_and_camera_info(self):
+        self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
         self.assertEqual(rospy.get_param('/camera1/imager_rate'), 2.0)
         client = Client('/camera1', timeout=10.0)
         client.update_configuration({'imager_rate': 5.0})
@@ -64,17 +65,17 @@ class CameraTest(SimulatorTest):
         info = self.read('/camera1/camera_info', CameraInfo, 2)[-1]
         self.assertEqual((list(info.K), info.header.frame_id), (list(wanted.K), ''))
 
-    def test_both_eyes_of_a_multicamera_share_their_stamps(self):
+    def test_both_cameras_of_a_multicamera_have_equal_stamps(self):
         topics = {f'{side}/{topic}' for side in ('left', 'right')
                   for topic in ('image_raw', 'camera_info', *SETTINGS)}
-        self.bring('multicamera', '/multisense', topics)
+        self.spawn_recorded('multicamera', '/multisense', topics)
         left = self.collect('/multisense/left/image_raw', Image)
         right = self.read('/multisense/right/image_raw', Image, 5)
         wait_until(lambda: {m.header.stamp for m in left} & {m.header.stamp for m in right},
                    'equal stamps')
 
-    def test_a_depth_camera_sends_all_its_topics(self):
-        self.bring('openni_kinect', '/camera', {
+    def test_depth_camera_publishes_all_its_topics(self):
+        self.spawn_recorded('openni_kinect', '/camera', {
             'rgb/image_raw', 'rgb/camera_info', 'depth/image_raw', 'depth/camera_info',
             'depth/points', *SETTINGS})
         cloud = self.read('/camera/depth/points', PointCloud2, 2)[-1]
@@ -86,9 +87,9 @@ class CameraTest(SimulatorTest):
         self.assertEqual((image.encoding, image.step), ('32FC1', 1280))
         self.read('/camera/depth/camera_info', CameraInfo, 2)
 
-    def test_a_robot_may_go_while_its_camera_is_read(self):
+    def test_robot_can_be_deleted_while_its_camera_is_subscribed(self):
         for _ in range(2):
-            self.bring('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+            self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
             self.read('/camera1/image_raw', Image, 2)
             self.assertTrue(self.delete('bot').success)
             self.assertNotIn('/camera1/image_raw', topics_of())

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The article's robot on the wire: topics, frames, names, covariances, signs, stamps."""
+"""Topics of the article's robot: frames, names, covariances, signs, stamps."""
 
 import itertools
 import math
@@ -17,7 +17,7 @@ PERIOD = 10_000_000  # [ns] of simulated time: 100 Hz
 POSE_VARIANCES = [1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3]
 # Measured in Gazebo: 0.4373 m/s for 0.5, 1.0711 rad/s for 1.0; promised within 3 %.
 STEADY_SPEED, STEADY_TURN, STEADY_SHARE = 0.4373, 1.0711, 0.03
-SETTLING = 1.0  # [s, simulated] until a speed is steady
+SETTLING = 1.0  # [s, simulated] until the speed is steady
 
 
 class DiffDriveTest(SimulatorTest):
@@ -32,7 +32,7 @@ class DiffDriveTest(SimulatorTest):
             rospy.delete_param('/tf_prefix')
         super().tearDown()
 
-    def test_topics_come_with_the_robot_and_go_with_it(self):
+    def test_topics_exist_as_long_as_the_robot(self):
         self.assertEqual(topics_of() - self.bare, OF_THE_ROBOT)
         self.delete('rosbots')
         self.assertEqual(topics_of(), self.bare)
@@ -53,7 +53,7 @@ class DiffDriveTest(SimulatorTest):
         truth = self.model_state('rosbots', '')
         self.assertAlmostEqual(message.pose.pose.position.z, truth.pose.position.z, delta=0.002)
 
-    def test_transforms_are_gazebos_three_one_to_a_message(self):
+    def test_transforms_are_gazebos_three_in_separate_messages(self):
         messages = self.collect('/tf', TFMessage)
         wait_until(lambda: len(messages) > 30, 'transforms')
         self.assertEqual({len(m.transforms) for m in messages}, {1})
@@ -71,7 +71,7 @@ class DiffDriveTest(SimulatorTest):
         self.assertEqual((list(message.velocity), list(message.effort)), ([], []))
         self.assertEqual(message.header.frame_id, '')
 
-    def test_forward_is_along_x_and_both_wheels_turn_forward(self):
+    def test_forward_motion_is_along_x_with_both_wheels_turning_forward(self):
         joints = self.collect('/joint_states', JointState)
         speed, _ = self._steady(0.5, 0.0)
         self.assertAlmostEqual(speed, STEADY_SPEED, delta=STEADY_SHARE * STEADY_SPEED)
@@ -79,11 +79,11 @@ class DiffDriveTest(SimulatorTest):
         self.assertGreater(right, 1.0)
         self.assertGreater(left, 1.0)
 
-    def test_a_positive_turn_is_to_the_left(self):
+    def test_positive_turn_is_to_the_left(self):
         _, turn = self._steady(0.0, 1.0)
         self.assertAlmostEqual(turn, STEADY_TURN, delta=STEADY_SHARE * STEADY_TURN)
 
-    def test_odometry_is_the_truth_of_the_world(self):
+    def test_odometry_is_the_true_pose(self):
         self._steady(0.5, 0.5)
         self.pause()
         truth = self.model_state('rosbots', '')
@@ -92,7 +92,7 @@ class DiffDriveTest(SimulatorTest):
         odometry = self._odometry[-1].pose.pose
         apart = math.hypot(odometry.position.x - truth.pose.position.x,
                            odometry.position.y - truth.pose.position.y)
-        self.assertLess(apart, 0.02)  # [m], what it drives in two periods
+        self.assertLess(apart, 0.02)  # [m], the distance of two periods
 
     def test_namespaces_and_tf_prefix(self):
         self.delete('rosbots')
@@ -106,7 +106,7 @@ class DiffDriveTest(SimulatorTest):
         self.assertTrue(all(m.transforms[0].child_frame_id.startswith('r1/') for m in transforms))
         self.assertAlmostEqual(odometry[0].pose.pose.position.x, 3.0, delta=0.05)
 
-    def test_two_robots_share_tf_and_one_may_go(self):
+    def test_two_robots_share_tf_and_one_can_be_deleted(self):
         self.assertTrue(self.spawn('second', at=pose(y=3.0), namespace='/ns1').success)
         transforms = self.collect('/tf', TFMessage)
         wait_until(lambda: len(transforms) > 6, 'transforms of both')

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Skid steer, planar and tricycle drives on the wire: topics, frames, covariances, joint states."""
+"""Topics of skid steer, planar and tricycle drives: frames, covariances, joint states."""
 
 import sys
 from pathlib import Path
@@ -22,8 +22,8 @@ STEERED = ['steer_joint', 'front_joint', 'left_joint', 'right_joint']
 
 class DriveTest(SimulatorTest):
 
-    def bring(self, name, topics):
-        """Spawn a robot, and return its odometry and a function that commands it."""
+    def spawn_recorded(self, name, topics):
+        """Spawn a robot; return its odometry and a function that sends commands."""
         before = topics_of()
         xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
         self.assertTrue(self.spawn(name, xml, pose(z=0.02)).success)
@@ -43,8 +43,8 @@ class DriveTest(SimulatorTest):
         return {(edge.header.frame_id, edge.child_frame_id)
                 for message in messages for edge in message.transforms}
 
-    def test_a_skid_steer_tells_flat_odometry_with_its_own_covariances(self):
-        odometry, command = self.bring('skid4', {'/cmd_vel', '/odom', '/tf'})
+    def test_odometry_of_a_skid_steer_is_planar_with_its_covariances(self):
+        odometry, command = self.spawn_recorded('skid4', {'/cmd_vel', '/odom', '/tf'})
         transforms = self.collect('/tf', TFMessage)
         command(0.5)
         wait_until(lambda: odometry and odometry[-1].twist.twist.linear.x > 0.45, 'it drives')
@@ -78,19 +78,19 @@ class DriveTest(SimulatorTest):
         change = rospy.ServiceProxy('/skid4/wheel_slip/set_parameters', Reconfigure)
         name = 'slip_compliance_unitless_lateral'
         change(Config(doubles=[DoubleParameter(name=name, value=10.0)]))
-        wait_until(lambda: odometry[-1].twist.twist.angular.z > 0.85, 'tyres that give way')
+        wait_until(lambda: odometry[-1].twist.twist.angular.z > 0.85, 'slip of the tyres')
         self.delete('skid4')
         self.assertEqual(topics_of(), before)
 
-    def test_a_planar_robot_moves_sideways(self):
-        odometry, command = self.bring('planar', {'/cmd_vel', '/odom', '/tf'})
+    def test_planar_robot_moves_sideways(self):
+        odometry, command = self.spawn_recorded('planar', {'/cmd_vel', '/odom', '/tf'})
         command(y=0.3)
         wait_until(lambda: odometry and odometry[-1].twist.twist.linear.y > 0.25, 'it moves')
         self.assertLess(abs(odometry[-1].twist.twist.linear.x), 0.05)
 
-    def test_a_tricycle_tells_of_all_of_its_joints(self):
+    def test_tricycle_publishes_all_of_its_joints(self):
         topics = {'/cmd_vel', '/odom', '/tf', '/joint_states'}
-        odometry, command = self.bring('tricycle', topics)
+        odometry, command = self.spawn_recorded('tricycle', topics)
         states = self.collect('/joint_states', JointState)
         transforms = self.collect('/tf', TFMessage)
         command(0.3, turn=0.2)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Clients that die, fall silent, say nonsense or come at once: the server and all others go on."""
+"""Clients that crash, stop reading, send invalid data or call all at once do not affect others."""
 
 import os
 import signal
@@ -34,9 +34,9 @@ from server_process import OwnServerTest
 from simulator import BOX, DEADLINE, pose, wait_until
 
 MANY = 20
-SPARE = 5  # files and threads for what nodes and master ask one another, and keep open for a while
-CROWD = 200
-FULL = 2048  # [bytes] that wait to be sent: the reader's buffer is full
+SPARE = 5  # files and threads of calls between nodes and master, open for a while
+SIMULTANEOUS = 200
+FULL = 2048  # [bytes] in the send queue: the subscriber's buffer is full
 CTRL_C_LIMIT = 2.0  # [s] promised
 TOPICS = {'/clock': Clock, '/gazebo/model_states': ModelStates, '/gazebo/link_states': LinkStates,
           '/odom': Odometry}
@@ -51,21 +51,21 @@ class DyingClientsTest(OwnServerTest):
     def setUp(self):
         super().setUp()
         self.drive_neighbour()
-        rospy.wait_for_service('/gazebo/set_parameters', DEADLINE)  # what is begun last
+        rospy.wait_for_service('/gazebo/set_parameters', DEADLINE)  # the last service
         self.files, self.threads = self.server.open_files(), self.server.threads()
 
-    def _assert_all_is_well(self):
+    def _assert_server_is_unaffected(self):
         self.assert_no_more_than(self.files + SPARE, self.threads + SPARE)
         self.assert_neighbour_drives()
 
     @staticmethod
     def _deaf_subscribers():
-        """Return subscribers that do not read, and to whom nothing more can be sent."""
+        """Return subscribers that do not read, with full buffers."""
         deaf = [deaf_subscriber(topic, kind) for topic, kind in TOPICS.items()]
         wait_until(lambda: all(unsent_bytes(client) > FULL for client in deaf), 'full buffers')
         return deaf
 
-    def test_clients_killed_in_the_middle_of_a_call(self):
+    def test_clients_killed_during_a_call(self):
         for i in range(MANY):
             request = spawn_request(f'box_{i}', 5.0 + 2.0 * i)
             vanish(connection())
@@ -74,12 +74,12 @@ class DyingClientsTest(OwnServerTest):
                 client = service_connection('spawn_urdf_model', SpawnModel)
                 client.sendall(request[:length])
                 vanish(client)
-        # Who has asked completely gets what was asked for, as in Gazebo.
+        # Complete requests are executed, as in Gazebo.
         wanted = {f'box_{i}' for i in range(MANY)}
         wait_until(lambda: wanted <= set(self.world().model_names), 'all boxes')
-        self._assert_all_is_well()
+        self._assert_server_is_unaffected()
 
-    def test_processes_killed_in_the_middle_of_a_spawn(self):
+    def test_processes_killed_during_a_spawn(self):
         for i in range(5):
             with subprocess.Popen(
                 ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-param', 'robot_description',
@@ -88,12 +88,12 @@ class DyingClientsTest(OwnServerTest):
             ) as client:
                 while 'Calling service' not in client.stdout.readline():
                     self.assertIsNone(client.poll())
-                time.sleep(0.01 * i)  # each one a little further on
+                time.sleep(0.01 * i)  # each one at a later phase
                 client.kill()
         self.assert_neighbour_drives()
         self.assertTrue(self.spawn('another', BOX, pose(x=-8.0)).success)
 
-    def test_connections_that_stay_half_open(self):
+    def test_connections_without_a_complete_header(self):
         request = spawn_request('never', 5.0)
         clients = [connection() for _ in range(MANY)]
         clients += [service_connection('spawn_urdf_model', SpawnModel) for _ in range(2 * MANY)]
@@ -107,10 +107,10 @@ class DyingClientsTest(OwnServerTest):
         self._connections.pop().unregister()
         for client in clients:
             client.close()
-        self._assert_all_is_well()
+        self._assert_server_is_unaffected()
         self.assertNotIn('never', self.world().model_names)
 
-    def test_requests_that_no_service_can_read(self):
+    def test_malformed_requests(self):
         for request in (
             struct.pack('<I', 0xffffffff),  # four gigabytes are to follow
             struct.pack('<II', 4, 0xffffffff),  # four bytes, of which as many are a name
@@ -121,9 +121,9 @@ class DyingClientsTest(OwnServerTest):
                     'get_model_state', GetModelState, persistent=persistent)
                 client.sendall(request)
                 with client.makefile('rb') as file:
-                    self.assertNotIn(b'\x01', file.read()[:1])  # which is to say: well done
+                    self.assertNotIn(b'\x01', file.read()[:1])  # the byte of success
                 client.close()
-        self._assert_all_is_well()
+        self._assert_server_is_unaffected()
         code, printed = self.server.end()
         self.assertEqual(code, 0)
         self.assertNotIn('Traceback', printed)
@@ -141,7 +141,7 @@ class DyingClientsTest(OwnServerTest):
             deaf = self._deaf_subscribers()
         for client in deaf:
             client.close()
-        self._assert_all_is_well()
+        self._assert_server_is_unaffected()
 
     def test_ctrl_c_ends_a_server_whose_subscribers_do_not_read(self):
         deaf = self._deaf_subscribers()
@@ -160,9 +160,9 @@ class DyingClientsTest(OwnServerTest):
             os.kill(client.pid, signal.SIGSTOP)
             self.assert_neighbour_drives()
             client.kill()
-        self._assert_all_is_well()
+        self._assert_server_is_unaffected()
 
-    def test_a_crowd_that_comes_at_once(self):
+    def test_many_clients_calling_at_once(self):
         def ask(_):
             client = service_connection('get_world_properties', GetWorldProperties)
             client.sendall(request_bytes(GetWorldPropertiesRequest()))
@@ -170,10 +170,10 @@ class DyingClientsTest(OwnServerTest):
             client.close()
             return response.success
 
-        with ThreadPoolExecutor(CROWD) as pool:
-            answers = list(pool.map(ask, range(CROWD), timeout=6 * DEADLINE))
-        self.assertEqual(answers, [True] * CROWD)
-        self._assert_all_is_well()
+        with ThreadPoolExecutor(SIMULTANEOUS) as pool:
+            answers = list(pool.map(ask, range(SIMULTANEOUS), timeout=6 * DEADLINE))
+        self.assertEqual(answers, [True] * SIMULTANEOUS)
+        self._assert_server_is_unaffected()
 
 
 if __name__ == '__main__':

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The server lives, and says what it lacks, where a machine has not what programs expect."""
+"""The server runs in restricted environments, and reports what is missing."""
 
 import contextlib
 import os
@@ -21,19 +21,19 @@ from simulator import BOX, DEADLINE, GROUND, pose, wait_until
 from rosbots_description.cli.launched import Launched
 
 NAME = '__name:=harsh'
-BLOCK = 4096  # [bytes] in which file systems hand out room
+BLOCK = 4096  # [bytes] allocation unit of file systems
 PACKAGE = Path(__file__).resolve().parents[2]
 NOBODY = ('setpriv', '--reuid=65534', '--regid=65534', '--clear-groups')
 CLOSED = ('sh', '-c', 'exec "$@" <&- >&- 2>&-', 'sh')
-# Root may unshare, unless in a container that forbids it; others need to become root of their own.
+# Root may unshare, unless a container forbids it; other users need a user namespace.
 UNSHARE = ('unshare',) if os.geteuid() == 0 else ('unshare', '--map-root-user')
-# Private views of the file system, for the command that follows.
+# Private mount namespaces, for the command that follows.
 SMALL = (*UNSHARE, '--mount', 'sh', '-c', 'for place in "$DISK" /dev/shm; do '
          'mount -t tmpfs -o size=1m small "$place" || exit; done; exec "$@"', 'sh')
 READ_ONLY = (*UNSHARE, '--mount', 'sh', '-c', 'mount --bind "$PACKAGE" "$PACKAGE" && '
              'mount -o remount,bind,ro "$PACKAGE" && exec "$@"', 'sh', *NOBODY)
 NOWHERE = (*UNSHARE, '--net', '--uts', PACKAGE / 'test' / 'rostest' / 'nowhere.py')
-# Master, server and a model, by programs that nobody has told an address.
+# Master, server and spawn_model, without any address in the environment.
 MEET = """
 rosmaster --core -p 11311 > /dev/null & master=$!
 rosrun gazebo_ros gzserver & server=$!
@@ -83,7 +83,7 @@ class EnvironmentsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.root = Path(tempfile.mkdtemp())
-        cls.root.chmod(0o755)  # also for a user without rights
+        cls.root.chmod(0o755)  # also for a user without privileges
         cls.folder = cls.root / "Mein Roboter ä %41 #&'"
         model = cls.folder / 'models' / 'tür'
         model.mkdir(parents=True)
@@ -100,16 +100,16 @@ class EnvironmentsTest(unittest.TestCase):
         shutil.rmtree(cls.root)
 
     def require(self, *command, **environment):
-        """Skip the test where the machine does not let us make such surroundings."""
+        """Skip the test where the machine does not permit such namespaces."""
         done = subprocess.run(command, env={**os.environ, **environment}, text=True,
                               capture_output=True, check=False)
         if done.returncode:
             reason = f'this machine does not permit it: {done.stderr.strip()}'
-            print(f'SKIPPED {self._testMethodName}: {reason}')  # rosunit would say it has passed
+            print(f'SKIPPED {self._testMethodName}: {reason}')  # rosunit reports it as passed
             self.skipTest(reason)
 
     def server(self, *arguments, **surroundings):
-        """Return a server that is ready; it is ended with the test."""
+        """Return a server that is ready; it ends with the test."""
         server = ServerProcess(NAME, *arguments, **surroundings)
         self.addCleanup(server.__exit__)
         return server.wait_ready()
@@ -119,12 +119,12 @@ class EnvironmentsTest(unittest.TestCase):
         return service('spawn_urdf_model', SpawnModel)(name, xml, '/', pose(), '')
 
     def assert_carries_the_robot(self):
-        """Assert that the article's robot, which has meshes, can be spawned, and time runs."""
+        """Assert that the article's robot, with meshes, can be spawned and time advances."""
         answer = self.spawn('rosbots', rospy.get_param('robot_description'))
         self.assertTrue(answer.success, answer.status_message)
-        self.assert_lives([GROUND, 'rosbots'])
+        self.assert_is_running([GROUND, 'rosbots'])
 
-    def assert_lives(self, models):
+    def assert_is_running(self, models):
         before = world()
         self.assertEqual(before.model_names, models)
         wait_until(lambda: world().sim_time > before.sim_time + 0.1, 'time')
@@ -135,7 +135,7 @@ class EnvironmentsTest(unittest.TestCase):
         self.assertEqual(code, 0, printed)
         return printed
 
-    def test_names_and_folders_of_any_letters_work_in_the_locale_c(self):
+    def test_non_ascii_names_and_folders_work_in_the_locale_c(self):
         surroundings = {
             'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONIOENCODING': 'ascii',
             'GAZEBO_MODEL_PATH': str(self.folder / 'models'), 'TMPDIR': str(self.folder)}
@@ -146,12 +146,12 @@ class EnvironmentsTest(unittest.TestCase):
                                program='spawn_model', **surroundings) as client:
                 code, printed = client.wait()
             self.assertEqual(code, 0, printed)
-        self.assert_lives([GROUND, 'tür', 'bär coded', 'bär written'])
+        self.assert_is_running([GROUND, 'tür', 'bär coded', 'bär written'])
         printed = self.assert_ends_well(server)
         where = ascii(f"{self.folder}/größe.world, line 5: 'model://fenster'").strip('"')
         self.assertIn(where, printed)
 
-    def test_without_a_home_the_log_is_only_shown(self):
+    def test_log_is_only_printed_without_home(self):
         nothing = '/dev/null/home'
         server = self.server(HOME=nothing, ROS_HOME=nothing, ROS_LOG_DIR=f'{nothing}/log')
         self.assert_carries_the_robot()
@@ -160,12 +160,12 @@ class EnvironmentsTest(unittest.TestCase):
                       printed)
         self.assertIn('contradict the collision geometry', printed)
 
-    def test_without_input_and_output_it_works_in_silence(self):
+    def test_server_works_with_closed_standard_streams(self):
         server = self.server('worlds/shapes.world', prefix=CLOSED)
-        self.assert_lives([GROUND, 'box', 'sphere', 'cylinder'])
+        self.assert_is_running([GROUND, 'box', 'sphere', 'cylinder'])
         self.assertEqual(server.end(), (0, ''))
 
-    def test_when_disk_and_memory_are_full_only_what_needs_them_is_refused(self):
+    def test_full_disk_and_memory_reject_only_models_that_need_space(self):
         disk = self.root / 'disk'
         disk.mkdir()
         surroundings = {'DISK': str(disk), 'TMPDIR': str(disk), 'ROS_LOG_DIR': str(disk)}
@@ -175,19 +175,19 @@ class EnvironmentsTest(unittest.TestCase):
         for place in (disk, '/dev/shm'):  # as the server sees them
             fill(Path(f'/proc/{server.process.pid}/root{place}/filling'))
         bear = (self.folder / 'bär coded.urdf').read_text(encoding='utf-8')
-        for _ in range(BLOCK // 256):  # until the complaints fill the log's last block, too
+        for _ in range(BLOCK // 256):  # until the errors fill the log's last block
             answer = self.spawn('bear', bear)
             self.assertFalse(answer.success)
         self.assertIn(f"räder.dae' cannot be made ready: nothing can be written in {disk} "
                       '(No space left on device) nor in /dev/shm (No space left on device); ',
                       answer.status_message)
         self.assertTrue(self.spawn('box', BOX).success)
-        self.assert_lives([GROUND, 'rosbots', 'box'])
+        self.assert_is_running([GROUND, 'rosbots', 'box'])
         printed = self.assert_ends_well(server)
         self.assertEqual(printed.count(f'log file {disk}/harsh.log cannot be written'), 1, printed)
 
-    def test_a_user_without_rights_needs_nothing_but_to_read(self):
-        # In the home of root, say, nobody can read anything.
+    def test_user_without_privileges_needs_read_access_only(self):
+        # For example, other users cannot read in the home of root.
         self.require(*READ_ONLY, 'python3', '-c', 'import rosbots_description, pybullet',
                      PACKAGE=str(PACKAGE))
         server = self.server(prefix=READ_ONLY, PACKAGE=str(PACKAGE), HOME='/nonexistent',
@@ -195,7 +195,7 @@ class EnvironmentsTest(unittest.TestCase):
         self.assert_carries_the_robot()
         self.assert_ends_well(server)
 
-    def test_without_a_network_and_a_name_programs_still_meet(self):
+    def test_programs_connect_without_network_and_resolvable_hostname(self):
         self.require(*NOWHERE, 'true')
         surroundings = {name: value for name, value in os.environ.items()
                         if name not in ('ROS_HOSTNAME', 'ROS_IP')}
@@ -208,14 +208,14 @@ class EnvironmentsTest(unittest.TestCase):
         self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)
         self.assertIn('the hostname nowhere cannot be resolved', printed)
 
-    def test_without_a_display_the_launch_file_gives_a_sentence_and_a_world(self):
+    def test_launch_file_without_a_display_starts_the_server_with_a_message(self):
         surroundings = {name: value for name, value in os.environ.items() if name != 'DISPLAY'}
         surroundings |= {'WAYLAND_DISPLAY': 'wayland-0', 'HOME': str(self.folder)}
         log, world_name = self.root / 'launch.log', f'world_name:={self.folder}/größe.world'
         with Launched(['gazebo_ros', 'empty_world.launch', world_name], log,
                       surroundings) as launched:
             rospy.wait_for_service('/gazebo/unpause_physics', 2 * DEADLINE)
-            wait_until(lambda: 'gzclient: no window' in log.read_text(), 'the sentence')
+            wait_until(lambda: 'gzclient: no window' in log.read_text(), 'the message')
             models = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)
             self.assertEqual(models().model_names, [GROUND])
             self.assertTrue(launched.running)

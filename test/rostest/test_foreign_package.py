@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A package that depends on everything a Gazebo machine has builds, and its C++ reads messages."""
+"""A package with all dependencies of a Gazebo machine builds, and its C++ reads messages."""
 
 import io
 import os
@@ -16,7 +16,7 @@ from gazebo_msgs.srv import SpawnModel
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist
 
 SOURCE = Path(__file__).resolve().parents[1] / 'data' / 'foreign_package'
-BUILD_LIMIT = 100.0  # [s, wall]; it takes about a tenth of that
+BUILD_LIMIT = 100.0  # [s, wall]; usually a tenth of that
 
 
 class ForeignPackageTest(unittest.TestCase):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""rviz.launch beside the simulator, in both orders: one tree of frames, and quiet terminals."""
+"""rviz.launch with the simulator, started in both orders: one TF tree, and quiet terminals."""
 
 import os
 import re
@@ -19,10 +19,10 @@ from simulator import wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 
-STEP = 40.0  # [s, wall] for a launch file to show what it is to show
-LINES = 40  # at most in a terminal, as a reader sees them
-DRIVEN = 0.5  # [m]: some two seconds, in which the flood was of 400 lines
-TURNED = 1.0  # [rad]: less than the wheels turn on that way
+STEP = 40.0  # [s, wall] timeout of the output of a launch file
+LINES = 40  # limit of lines in a terminal
+DRIVEN = 0.5  # [m]: about two seconds; a defect printed 400 lines in that time
+TURNED = 1.0  # [rad]: less than the rotation of the wheels over that distance
 ARTICLE = """<launch>
   <param name="robot_description" command="xacro '$(find rosbots_description)/urdf/rosbots.xacro'"/>
   <node name="joint_state_publisher" pkg="joint_state_publisher" type="joint_state_publisher"/>
@@ -35,7 +35,7 @@ TREE = {'base_footprint': {'odom'}, 'base_link': {'base_footprint'},
         'wheel_left_link': {'base_link'}, 'wheel_right_link': {'base_link'}}
 BY_THE_TAGS = {'base_link': {'odom'}, 'wheel_left_link': {'base_footprint'},
                'wheel_right_link': {'base_footprint'}}
-# How a terminal's title is set, and colours.
+# Escape sequences of titles and colours.
 CONTROL = re.compile(r'\x1b\][^\x07]*\x07|\x1b\[[0-9;]*m')
 
 
@@ -53,7 +53,7 @@ class FramesTest(unittest.TestCase):
             subscriber = rospy.Subscriber(topic, TFMessage, self._note)
             self.addCleanup(subscriber.unregister)
         self._travelled = 0.0
-        self._joints = {}  # node -> what it said last of the joints
+        self._joints = {}  # node -> its latest joint states
         subscriber = rospy.Subscriber('/joint_states', JointState, self._note_joints)
         self.addCleanup(subscriber.unregister)
 
@@ -80,7 +80,7 @@ class FramesTest(unittest.TestCase):
                        and terminal.process.poll() is not None, 'the end', STEP)
 
     def rviz(self, own=False):
-        """Open a reader's rviz.launch, or ours, and wait until RViz looks."""
+        """Launch rviz.launch, a reader's or ours, and wait until RViz is ready."""
         words = ['rosbots_description', 'rviz.launch']
         if own:
             words = [os.path.join(self._folder, 'rviz.launch')]
@@ -95,7 +95,7 @@ class FramesTest(unittest.TestCase):
         return terminal
 
     def drive(self):
-        """Drive on by `DRIVEN` and return the edges of TF seen meanwhile."""
+        """Drive by `DRIVEN`; return the TF edges received meanwhile."""
         publisher = rospy.Publisher('/part2_cmr/cmd_vel', Twist, queue_size=1)
         self.addCleanup(publisher.unregister)
         wait_until(publisher.get_num_connections, 'the plugin', STEP)
@@ -109,9 +109,9 @@ class FramesTest(unittest.TestCase):
         return {child: self._edges[child] for child in (*WHEELS, 'base_link', 'base_footprint')
                 if child in self._edges}
 
-    def look(self, terminals):
-        """Drive, and look that the robot is whole and every terminal quiet."""
-        # what was said while the last came up, and by the latched static frames, is not of it
+    def check(self, terminals):
+        """Drive; assert that the TF tree is complete and terminals are quiet."""
+        # ignore messages of the start, and latched static transforms
         moved = self.drive()
         self.assertEqual(moved, {child: TREE[child] for child in moved})
         self.assertTrue(WHEELS | {'base_footprint'} <= set(moved), moved)
@@ -121,7 +121,7 @@ class FramesTest(unittest.TestCase):
             lines = [line for line in shown.splitlines() if line.strip()]
             self.assertLessEqual(len(lines), LINES, shown)
             self.assertNotRegex(shown, 'Traceback|has died|no such package|QStandard')
-            # A state publisher that comes may tell of each wheel once before it is known.
+            # A new state publisher may publish each wheel once before it is known.
             self.assertLessEqual(shown.count('TF_'), len(WHEELS), shown)
 
     def _angles_agree(self):
@@ -133,23 +133,23 @@ class FramesTest(unittest.TestCase):
 
     def test_rviz_before_the_simulator(self):
         view = self.rviz()
-        self.look([view, self.simulator()])
+        self.check([view, self.simulator()])
 
-    def test_rviz_after_the_simulator_and_gone_again(self):
+    def test_rviz_after_the_simulator_and_closed_again(self):
         simulator = self.simulator()
         self.assertEqual(self.drive(), BY_THE_TAGS)
         view = self.rviz()
-        self.look([view, simulator])
+        self.check([view, simulator])
         self.end(view)
         wait_until(lambda: self.drive() == BY_THE_TAGS, 'the frames by the tags', STEP)
 
     def test_a_readers_own_rviz_before_the_simulator(self):
         view = self.rviz(own=True)
-        self.look([view, self.simulator()])
+        self.check([view, self.simulator()])
 
     def test_a_readers_own_rviz_after_the_simulator(self):
         simulator = self.simulator()
-        self.look([self.rviz(own=True), simulator])
+        self.check([self.rviz(own=True), simulator])
 
 
 if __name__ == '__main__':

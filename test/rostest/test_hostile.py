@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whatever is sent to it, the server answers soon, stays small, and the neighbour drives on."""
+"""The server answers any input soon, its memory stays bounded, and another robot drives on."""
 
 import contextlib
 import io
@@ -35,25 +35,25 @@ from simulator import BOX, SimulatorTest, pose, proxy, wait_until
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.hostile import cases
 
-ANSWERED = 20.0  # [s, wall] for what takes two at most on a machine that does nothing else
-GROWN = 600e6  # [bytes] of memory by all cases together; one of 100 MB takes as much for a moment
-FORWARD, TURN = 0.3, 0.3  # [m/s, rad/s] the circle of the neighbour
-FASTEST = 0.6  # [m/s] nothing makes its origin go faster, whatever is commanded
-TURNS = 0.15  # [rad/s] what it turns at least; it is commanded twice that
-HEIGHT, SINKS = -0.12, 0.02  # [m] where its origin is when it stands, and what that may be off
-AFTERWARDS = 5  # readings of odometry, each 10 ms of simulated time, in which it drives on
-AWAY = (30.0, 30.0, 0.5)  # [m] where models appear, out of the neighbour's way
+ANSWERED = 20.0  # [s, wall] timeout of what takes at most 2 s on an idle machine
+GROWN = 600e6  # [bytes] growth by all cases together; one of 100 MB needs as much for a moment
+FORWARD, TURN = 0.3, 0.3  # [m/s, rad/s] commands of the neighbour
+FASTEST = 0.6  # [m/s] bound of the neighbour's speed
+TURNS = 0.15  # [rad/s] least yaw rate; half the command
+HEIGHT, SINKS = -0.12, 0.02  # [m] height of its origin at rest, and tolerance
+AFTERWARDS = 5  # odometry messages, every 10 ms of simulated time
+AWAY = (30.0, 30.0, 0.5)  # [m] spawn position, away from the neighbour
 HUGE = (math.nan, math.inf, -math.inf, 1e308)
 ODD_NAMES = ('a/b', '/a', 'a b', 'ünï', '🤖', "a'b\"c", '<a>', '%s{}', '::', '$(a)', '~', '..')
-ODD_NAMESPACES = ('a b', '\n', 'ü', '..', 'a' * 10_000)  # in none of them its topics are /odom
+ODD_NAMESPACES = ('a b', '\n', 'ü', '..', 'a' * 10_000)  # none of them gives the topic /odom
 UNFIT_NAMES = ('', 'a\nb', 'a\0b', 'a\tb', 'a' * 100_000)
 
 
 class RawRequest(SpawnModel._request_class):
-    """A request whose texts go over the wire as the bytes that they are."""
+    """A request whose texts are bytes, sent as they are."""
 
     def serialize(self, buff):
-        """Write what SpawnModelRequest would, but for the decoding."""
+        """Serialize like SpawnModelRequest, without encoding."""
         stream = io.BytesIO()
         plain = SpawnModel._request_class(self.model_name, 'XML', *[
             getattr(self, slot) for slot in self.__slots__[2:]])
@@ -71,12 +71,12 @@ def _distance(one, other):
 
 
 def _farthest(one, other):
-    """Return how far the neighbour gets between two readings at most [m]."""
+    """Return the greatest distance of the neighbour between two odometry messages [m]."""
     return FASTEST * (other.header.stamp - one.header.stamp).to_sec() + 0.001
 
 
 class HostileTest(SimulatorTest):
-    """One neighbour drives in a circle through all tests of this file."""
+    """A neighbour drives in a circle during all tests of this file."""
 
     def setUp(self):
         super().setUp()
@@ -84,12 +84,12 @@ class HostileTest(SimulatorTest):
         self._drive = self.driver()
         self._odometry = self.collect('/odom', Odometry)
         self._spawn_sdf = proxy('spawn_sdf_model', SpawnModel)
-        wait_until(self._is_driving, 'the neighbour driving')
+        wait_until(self._is_driving, 'motion of the neighbour')
         address = rosnode.get_api_uri(rosgraph.Master('/test'), '/gazebo')
         self._pid = ServerProxy(address).getPid('/test')[2]
 
     def _is_driving(self):
-        self._drive(FORWARD, TURN)  # again, as the first one may go to a robot that was deleted
+        self._drive(FORWARD, TURN)  # repeated: the first may reach a deleted robot
         return self.model_state('neighbour', '').twist.angular.z > TURNS
 
     def _memory(self):
@@ -99,12 +99,12 @@ class HostileTest(SimulatorTest):
 
     @contextlib.contextmanager
     def _neighbour_drives_on(self):
-        """Let the neighbour go on meanwhile as it is commanded, on a path without a jump."""
+        """Assert that the neighbour meanwhile drives as commanded, without a jump."""
         self._odometry.clear()
-        wait_until(lambda: self._odometry, 'a place to begin')
+        wait_until(lambda: self._odometry, 'a first odometry message')
         yield
         count = len(self._odometry)
-        wait_until(lambda: len(self._odometry) > count + AFTERWARDS, 'odometry going on')
+        wait_until(lambda: len(self._odometry) > count + AFTERWARDS, 'further odometry')
         path = list(self._odometry)
         for one, next_one in pairwise(path):
             self.assertLess(_distance(one, next_one), _farthest(one, next_one))
@@ -113,7 +113,7 @@ class HostileTest(SimulatorTest):
             self.assertLess(abs(reading.pose.pose.position.z - HEIGHT), SINKS)
 
     def _send(self, case, folder):
-        """Return success and sentence of a case."""
+        """Return success and message of a case."""
         text = case.text(folder)
         service = self._spawn_sdf if case.kind == 'sdf' else self.spawn_service
         request = RawRequest(
@@ -126,7 +126,7 @@ class HostileTest(SimulatorTest):
         self.assertFalse(case.call_error, response)
         return response.success, response.status_message
 
-    def test_every_description(self):
+    def test_descriptions(self):
         before = self._memory()
         with tempfile.TemporaryDirectory() as folder:
             for case in cases():
@@ -147,7 +147,7 @@ class HostileTest(SimulatorTest):
                         self.assertTrue(self.delete('hostile').success)
         self.assertLess(self._memory() - before, GROWN)
 
-    def test_text_that_is_no_unicode(self):
+    def test_text_that_is_not_unicode(self):
         with self._neighbour_drives_on():
             response = self.spawn_service.call(RawRequest(
                 'hostile', b'<robot name="caf\xe9"/>', '/', pose(*AWAY), ''))
@@ -178,7 +178,7 @@ class HostileTest(SimulatorTest):
             self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
 
     def test_numbers(self):
-        """Nothing of this is answered with success and an absurd world; see each service's own."""
+        """Extreme numbers are rejected, or leave finite states."""
         self.assertTrue(self.spawn('box', BOX, pose(*AWAY)).success)
         services = {
             name: proxy(name, kind) for name, kind in {

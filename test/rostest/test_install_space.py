@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Everything works from the install space too, without a look at the source tree."""
+"""Everything works from the install space, without the source tree."""
 
 import os
 import shutil
@@ -16,7 +16,7 @@ from gazebo_msgs.srv import GetModelState
 from simulator import wait_until
 
 BUILD = Path(__file__).resolve().parents[2] / '.ws' / 'build'
-PATIENCE = 60.0  # [s, wall] for installing, and for a start on a busy machine
+PATIENCE = 60.0  # [s, wall] timeout of installation and of a start
 OURS = ('ROS_PACKAGE_PATH', 'PYTHONPATH', 'CMAKE_PREFIX_PATH', 'LD_LIBRARY_PATH')
 
 
@@ -35,7 +35,7 @@ class InstallSpaceTest(unittest.TestCase):
         shutil.rmtree(cls.root)
 
     def start(self, command):
-        """Run a command in an environment that knows the install space and nothing of ours."""
+        """Run a command in an environment with the install space and without the source tree."""
         environment = {name: value for name, value in os.environ.items() if name not in OURS}
         return subprocess.Popen(
             ['bash', '-c', f'. "{self.setup}" && exec {command}'], env=environment, text=True,
@@ -45,7 +45,7 @@ class InstallSpaceTest(unittest.TestCase):
         printed, _ = self.start(command).communicate(timeout=PATIENCE)
         return printed.strip()
 
-    def test_packages_and_modules_come_from_there(self):
+    def test_packages_and_modules_are_found_in_the_install_space(self):
         for package in ('rosbots_description', 'rosbots_simulator', 'gazebo_ros', 'gazebo_msgs',
                         'xacro'):
             self.assertTrue(self.output(f'rospack find {package}').startswith(str(self.root)))
@@ -55,7 +55,7 @@ class InstallSpaceTest(unittest.TestCase):
         for path in self.output(f'python3 -c "{code}"').split():
             self.assertTrue(path.startswith(str(self.root)), path)
 
-    def test_what_the_window_reads_is_there(self):
+    def test_files_of_the_window_are_installed(self):
         code = 'import rosbots_simulator.cli.gzclient as c; print(c.config_file())'
         config = self.output(f'python3 -c "{code}"')
         self.assertTrue(config.startswith(str(self.root)), config)
@@ -66,7 +66,7 @@ class InstallSpaceTest(unittest.TestCase):
         self.assertTrue(folder.startswith(str(self.root)), folder)
         self.assertTrue(Path(folder, 'sunlit.material').is_file(), folder)
 
-    def test_the_robot_drives_there(self):
+    def test_robot_can_be_driven(self):
         launched = self.start('roslaunch rosbots_description simulation.launch gui:=false')
         try:
             rospy.wait_for_service('/gazebo/get_model_state', PATIENCE)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Twenty robots from one launch file: topics and frames of their own, and no cross-talk."""
+"""Twenty robots from one launch file: separate topics and frames, and no cross-talk."""
 
 import random
 import sys
@@ -18,7 +18,7 @@ OWN_TOPICS = ('odom', 'joint_states', 'cmd_vel')
 EDGES = {('odom', 'base_link'), ('base_footprint', 'wheel_left_link'),
          ('base_footprint', 'wheel_right_link')}
 DRIVEN = 'robot_7'
-STILL = 0.1  # a robot that nobody commands moves less than this [m]
+STILL = 0.1  # bound of the motion of robots without commands [m]
 
 
 class ManyRobotsTest(unittest.TestCase):
@@ -37,7 +37,7 @@ class ManyRobotsTest(unittest.TestCase):
     def _x_of(self, robot):
         return self.model_state(robot, '').pose.position.x
 
-    def test_twenty_robots_live_and_go_apart(self):
+    def test_twenty_robots_are_independent(self):
         self._check_frames()
         self._check_that_one_command_moves_one_robot()
         self._check_deletions()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A ROS master that dies takes nothing along: the next one finds the simulator in its graph."""
+"""The simulator survives the end of the ROS master, and registers with the next one."""
 
 import subprocess
 import sys
@@ -53,12 +53,12 @@ class MasterRestartTest(unittest.TestCase):
         return any(service == name for name, _ in self.graph.getSystemState()[2])
 
     def _of_server(self):
-        """Return what the master knows of the server: topics out, topics in, services."""
+        """Return the server's registrations: published topics, subscribed topics, services."""
         return [{name for name, nodes in entries if '/gazebo' in nodes}
                 for entries in self.graph.getSystemState()]
 
     def _client(self, service, service_class):
-        """Return a function that calls the service on a connection that outlives the master."""
+        """Return a function that calls the service on a persistent connection."""
         client = service_connection(service, service_class, self.server.master, persistent='1')
         self.addCleanup(client.close)
 
@@ -68,27 +68,27 @@ class MasterRestartTest(unittest.TestCase):
 
         return call
 
-    def _asked(self):
-        """Return a function that asks the server for the time."""
+    def _time_query(self):
+        """Return a function that returns the simulated time [s]."""
         ask = self._client('get_world_properties', GetWorldProperties)
         return lambda: ask(GetWorldPropertiesRequest()).sim_time
 
     def _spawn_late(self):
-        """Kill the master, and spawn a robot with topics of its own."""
+        """Kill the master, and spawn a robot with its own topics."""
         spawn = self._client('spawn_urdf_model', SpawnModel)
         self.master.kill()
         response = spawn(SpawnModelRequest(
             'late', rospy.get_param('robot_description'), '/late', pose(y=5.0), ''))
         self.assertTrue(response.success, response.status_message)
 
-    def test_a_new_master_knows_the_simulator_again(self):
-        before, now = self._of_server(), self._asked()
+    def test_simulator_registers_with_a_new_master(self):
+        before, now = self._of_server(), self._time_query()
         for topic, where in (('/odom', 0), ('/part2_cmr/cmd_vel', 1)):
             self.assertIn(topic, before[where])
         step = self.graph.getParam('/gazebo/time_step')
         self.master.kill()
         gone = now()
-        wait_until(lambda: now() > gone + 0.2, 'time going on without a master')
+        wait_until(lambda: now() > gone + 0.2, 'advance of time without a master')
         self.master.start()
         wait_until(lambda: self._of_server() == before, 'the same topics and services')
         wait_until(lambda: self.graph.hasParam('/use_sim_time'), 'the parameters')
@@ -97,7 +97,7 @@ class MasterRestartTest(unittest.TestCase):
         self.assertEqual(self.graph.getParam('/gazebo/time_step'), step)
         self._assert_it_works()
 
-    def test_a_new_master_knows_a_robot_that_came_meanwhile(self):
+    def test_robot_spawned_without_a_master_is_registered_with_the_next(self):
         topics_out, topics_in, services = self._of_server()
         self._spawn_late()
         self.master.start()
@@ -105,7 +105,7 @@ class MasterRestartTest(unittest.TestCase):
                    'the topics of both robots, and all services')
         self._assert_it_works()
 
-    def test_settings_changed_while_there_is_no_master_are_on_the_next_one(self):
+    def test_settings_changed_without_a_master_are_on_the_next(self):
         change = self._client('set_parameters', Reconfigure)
         self.master.kill()
         gravity = DoubleParameter('gravity_z', -3.5)
@@ -132,11 +132,11 @@ class MasterRestartTest(unittest.TestCase):
     def _x(self):
         return self.server.call('get_model_state', 'rosbots', '')['pose']['position']['x']
 
-    def test_ctrl_c_ends_the_server_while_there_is_no_master(self):
+    def test_ctrl_c_ends_the_server_without_a_master(self):
         self.master.kill()
         self._assert_it_ends()
 
-    def test_ctrl_c_ends_the_server_while_topics_wait_for_a_master(self):
+    def test_ctrl_c_ends_the_server_with_unregistered_topics(self):
         self._spawn_late()
         self._assert_it_ends()
 

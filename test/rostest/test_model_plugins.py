@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""p3d, joint states, trajectories, force and hand of god on the wire, as recorded in Gazebo."""
+"""Topics of p3d, joint states, trajectories, force and hand of god, as recorded in Gazebo."""
 
 import itertools
 import math
@@ -26,9 +26,9 @@ HALF = rospy.Duration(0.5)
 
 
 def period(messages):
-    """Return the least ms between two stamps, of which all others must be multiples.
+    """Return the period of stamps [ms]: the least spacing, which divides all others.
 
-    A reader whom the machine keeps waiting misses messages, but none comes at another time.
+    A slow subscriber may miss messages, but no stamp is off the period.
     """
     stamps = [message.header.stamp.to_nsec() // 1_000_000 for message in list(messages)]
     between = {after - before for before, after in itertools.pairwise(stamps)}
@@ -39,8 +39,8 @@ def period(messages):
 
 class ModelPluginsTest(SimulatorTest):
 
-    def bring(self, name, topics, z=0.0):
-        """Spawn a robot, which has to bring these topics."""
+    def spawn_recorded(self, name, topics, z=0.0):
+        """Spawn a robot and assert that it has these topics."""
         before = topics_of()
         xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
         self.assertTrue(self.spawn(name, xml, pose(z=z)).success)
@@ -53,8 +53,8 @@ class ModelPluginsTest(SimulatorTest):
         wait_until(publisher.get_num_connections, f'a subscriber of {topic}')
         return publisher.publish
 
-    def test_true_poses_and_joint_states_have_gazebos_frames_and_times(self):
-        self.bring('skid4_p3d',
+    def test_true_poses_and_joint_states_have_gazebos_frames_and_stamps(self):
+        self.spawn_recorded('skid4_p3d',
                    {'/cmd_vel', '/odom', '/tf', '/joint_states', '/gt_badframe', *TOLD})
         told = {topic: self.collect(topic, Odometry) for topic in TOLD}
         nothing = self.collect('/gt_badframe', Odometry)
@@ -80,7 +80,7 @@ class ModelPluginsTest(SimulatorTest):
         self.check_poses({topic: messages[-1] for topic, messages in told.items()})
 
     def check_poses(self, told):
-        """Compare what is told at almost the same time; the robot drives a curve to the left."""
+        """Compare messages of almost equal stamps; the robot drives a left curve."""
         twist = told['/gt'].twist.twist
         yaw = 2.0 * math.atan2(told['/gt'].pose.pose.orientation.z,
                                told['/gt'].pose.pose.orientation.w)
@@ -94,12 +94,12 @@ class ModelPluginsTest(SimulatorTest):
         for found, expected in ((wheel.x, 0.18), (wheel.y, 0.22), (wheel.z, 0.1)):
             self.assertAlmostEqual(found, expected, delta=1e-3)
 
-    def test_a_trajectory_is_played_point_by_point(self):
-        self.bring('arm_ft', {'/joint_states', '/set_joint_trajectory', '/ft_elbow',
+    def test_trajectory_is_played_point_by_point(self):
+        self.spawn_recorded('arm_ft', {'/joint_states', '/set_joint_trajectory', '/ft_elbow',
                               '/ft_shoulder'})
         states = self.collect('/joint_states', JointState)
         play = self.sender('/set_joint_trajectory', JointTrajectory)
-        for frame in ('', 'nope'):  # which is an error in the log
+        for frame in ('', 'nope'):  # an error in the log
             play(JointTrajectory(Header(frame_id=frame), ['elbow'], [
                 JointTrajectoryPoint(positions=[2.0], time_from_start=HALF)]))
         positions = [(0.3 * k, -0.2 * k) for k in range(1, 4)]
@@ -113,23 +113,23 @@ class ModelPluginsTest(SimulatorTest):
             self.assertAlmostEqual(lasted.to_sec(), 0.5, delta=0.05)
         self.assertNotIn(2.0, [state.position[1] for state in states])
 
-    def test_a_wrench_acts_until_another_one_comes(self):
-        self.bring('force', {'/force'})
+    def test_wrench_acts_until_the_next_one(self):
+        self.spawn_recorded('force', {'/force'})
         push = self.sender('/force', Wrench)
         wrench = Wrench()
         wrench.force.x, wrench.force.z = 5.0, 60.0
         push(wrench)
-        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.2, 'it is pushed')
+        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.2, 'motion')
         wrench.force.x = float('nan')
-        push(wrench)  # is dropped with an error
-        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.4, 'it goes on')
+        push(wrench)  # dropped with an error
+        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.4, 'acceleration')
         twist = self.model_state('force', '').twist.linear
         self.assertAlmostEqual(twist.z / twist.x, 2.2, delta=0.01)
         push(Wrench())
         wait_until(lambda: self.model_state('force', '').twist.linear.z < 0.0, 'it falls')
 
-    def test_the_hand_of_god_follows_a_frame(self):
-        self.bring('hog', {'/tf', '/tf_static'} - topics_of(), z=0.5)
+    def test_hand_of_god_follows_a_frame(self):
+        self.spawn_recorded('hog', {'/tf', '/tf_static'} - topics_of(), z=0.5)
         transforms = self.collect('/tf', TFMessage)
         lead = self.sender('/tf', TFMessage)
         edge = TransformStamped()
@@ -139,14 +139,14 @@ class ModelPluginsTest(SimulatorTest):
         self.assertEqual(self.actual(transforms), [])
         self.assertAlmostEqual(self.model_state('hog', '').pose.position.z, 0.5)
         lead(TFMessage([edge]))
-        wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'it is there')
+        wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'the link at the frame')
         told = self.actual(transforms)
         self.assertEqual({edge.header.frame_id for edge in told}, {'world'})
         self.assertEqual(period(told), 1)
         self.assertLess(max(edge.transform.translation.x for edge in told), 1.0 + 1e-9)
 
     def actual(self, transforms):
-        """Return what was told of where the link is."""
+        """Return the published transforms of the link."""
         return [edge for message in list(transforms) for edge in message.transforms
                 if edge.child_frame_id == 'hog_actual']
 

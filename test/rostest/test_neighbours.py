@@ -43,11 +43,11 @@ class NeighboursTest(unittest.TestCase):
             service(one, 'pause_physics', Empty)()
             self.assertEqual((models(one), models(two)), ([*GROUND, 'crate'], SHAPES))
             stopped, running = time_of(one), time_of(two)
-            wait_until(lambda: time_of(two) > running + 0.1, 'time of the other server')
+            wait_until(lambda: time_of(two) > running + 0.1, 'advance of the other server')
             self.assertEqual(time_of(one), stopped)
             self.assertEqual(one.end()[0], 0)
             running = time_of(two)
-            wait_until(lambda: time_of(two) > running + 0.1, 'time when the first has ended')
+            wait_until(lambda: time_of(two) > running + 0.1, 'advance after the end of the first')
             self.assertEqual(models(two), SHAPES)
             self.assertEqual(two.end()[0], 0)
 

@@ -23,8 +23,8 @@ from sensor_msgs.msg import LaserScan
 from simulator import SimulatorTest, proxy, topics_of, wait_until
 
 METRICS = '/gazebo/performance_metrics'
-MANY_STEPS = 20000  # with the robot, far more than a moment
-WAIT = 0.25  # [s, wall] that others may wait meanwhile, on a machine that is not alone
+MANY_STEPS = 20000  # with the robot, far longer than a moment
+WAIT = 0.25  # [s, wall] permitted delay of other calls, on a busy machine
 
 
 RAY = ('<sensor name="{name}" type="ray"><update_rate>40</update_rate><ray><range><max>9</max>'
@@ -64,7 +64,7 @@ class NetworkTest(SimulatorTest):
     def test_performance_metrics(self):
         metrics = self.collect(METRICS, PerformanceMetrics)
         wait_until(lambda: len(metrics) > 10, 'two seconds of metrics')
-        # A busy machine may be slower; how fast it is, the benchmark measures.
+        # A busy machine may be slower; the benchmark measures the speed.
         self.assertTrue(0.2 < metrics[-1].real_time_factor < 1.2, metrics[-1].real_time_factor)
         self.assertEqual(metrics[-1].sensors, [])
         self.spawn('bot', SENSORS)
@@ -81,7 +81,7 @@ class NetworkTest(SimulatorTest):
         metrics.clear()
         wait_until(lambda: len(metrics) > 3 and metrics[-1].real_time_factor == 0.0, 'a stop')
 
-    def test_step_advances_paused_time_and_lets_others_in(self):
+    def test_step_advances_paused_time_and_serves_other_calls(self):
         step = proxy('step', Step)
         response = step(10)
         self.assertFalse(response.success)
@@ -107,7 +107,7 @@ class NetworkTest(SimulatorTest):
         self.assertLess(max(waits), WAIT)
         self.assertAlmostEqual(self.world().sim_time, before + 1.0 + MANY_STEPS / 1000, places=9)
 
-    def test_somebody_unpauses_while_steps_are_made(self):
+    def test_unpausing_during_steps(self):
         step, responses = proxy('step', Step), []
         self.pause()
         begin = self.world().sim_time
@@ -119,7 +119,7 @@ class NetworkTest(SimulatorTest):
         self.assertFalse(responses[0].success)
         self.assertIn('was unpaused', responses[0].status_message)
 
-    def test_the_same_steps_give_the_same_motion(self):
+    def test_equal_steps_give_equal_motion(self):
         step = proxy('step', Step)
         self.pause()
         self.spawn()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whoever spawns a model is told what it stands without; Gazebo's own answer stays as it is."""
+"""Clients are informed of omissions of a spawned model; Gazebo's response is unchanged."""
 
 import sys
 
@@ -17,7 +17,7 @@ class OmissionsTest(SimulatorTest):
         super().setUp()
         self._omissions = proxy('get_model_omissions', GetModelOmissions)
 
-    def test_spawn_model_says_it_in_one_line(self):
+    def test_spawn_model_prints_omissions_in_one_line(self):
         done = spawn_model('box', SENSOR_BOX)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn('Spawn status: SpawnModel: Successfully spawned entity\n', done.stdout)
@@ -25,13 +25,13 @@ class OmissionsTest(SimulatorTest):
         self.assertIn(f'spawned without: {", ".join(PARTS)}; see doc/gazebo_compatibility.md', line)
         self.assertEqual(self._omissions('box').omissions, PARTS)
 
-    def test_of_a_model_that_is_whole_it_says_nothing(self):
+    def test_spawn_model_prints_nothing_about_a_complete_model(self):
         done = spawn_model('rosbots', rospy.get_param('robot_description'))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn('without', done.stdout + done.stderr)
         self.assertEqual(self._omissions('rosbots').omissions, [])
 
-    def test_a_model_that_is_not_there_has_no_omissions(self):
+    def test_omissions_of_a_missing_model_are_an_error(self):
         response = self._omissions('nobody')
         self.assertFalse(response.success)
         self.assertEqual(response.status_message, 'GetModelOmissions: model does not exist')

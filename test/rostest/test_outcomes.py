@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every outcome and text of the services, as gazebo_ros has them, and what the successes change."""
+"""Every outcome and text of the services as in gazebo_ros, and the effects of successful calls."""
 
 import math
 import sys
@@ -32,11 +32,11 @@ INCLUDE = """<sdf version="1.6"><world name="w"><include><uri>model://ground_pla
 </world></sdf>"""
 LIGHT = """<sdf version="1.6"><light type="point" name="other"><diffuse>1 0.5 0 1</diffuse></light>
 </sdf>"""
-PICTURE = 20.0  # [s, wall] in which one comes
+PICTURE = 20.0  # [s, wall] timeout of an image
 SPAWNED = 'SpawnModel: Successfully spawned entity'
 NO_LINK = '{}: link not found, did you forget to scope the link by model name?'
 NAN = 'nan; it must be a finite number'
-# service, request, success, text; the models `arm` and `box` are there, and time stands.
+# service, request, success, text; with the models `arm` and `box`, paused.
 OUTCOMES = [
     ('get_model_properties', {'model_name': 'nope'}, False,
      'GetModelProperties: model does not exist'),
@@ -137,7 +137,7 @@ OUTCOMES = [
 
 
 def filled(message, fields):
-    """Return a message with the fields written as rosservice takes them."""
+    """Return a message with fields as for rosservice."""
     fill_message_args(message, [fields])
     return message
 
@@ -172,7 +172,7 @@ class OutcomesTest(SimulatorTest):
                             ('clear_joint_forces', 'joint_name')):
             self._call(name, **{field: 'nope'})
 
-    def test_what_models_consist_of(self):
+    def test_model_properties(self):
         arm = self._done('get_model_properties', model_name='arm')
         self.assertEqual(arm.body_names, ['base', 'rod', 'tip'])
         self.assertEqual(arm.joint_names, ['hinge', 'weld'])
@@ -184,7 +184,7 @@ class OutcomesTest(SimulatorTest):
         for response in (arm, ground):
             self.assertEqual((response.canonical_body_name, response.parent_model_name), ('', ''))
 
-    def test_a_model_is_moved_in_a_frame(self):
+    def test_model_state_is_set_in_a_frame(self):
         turned = Quaternion(0.0, 0.0, 2.0, 2.0)  # a quarter turn, not normalised
         self._set_model('box', Pose(Point(1.0, 2.0, 50.0), turned))
         state = ModelState('arm', pose(3.0, 0.0, 1.0), Twist(Vector3(1.0, 0.0, 0.0),
@@ -201,7 +201,7 @@ class OutcomesTest(SimulatorTest):
         self.assertEqual(self.model_state('box', '').pose.orientation.w, 1.0)
 
     def _set_model(self, name, where):
-        self._call('set_model_state')  # makes the proxy
+        self._call('set_model_state')  # creates the proxy
         response = self._services['set_model_state'][1](ModelState(name, where, Twist(), ''))
         self.assertTrue(response.success)
 
@@ -213,24 +213,24 @@ class OutcomesTest(SimulatorTest):
             publisher = rospy.Publisher(f'/gazebo/{topic}', type(message), queue_size=1)
             self._connections.append(publisher)
             wait_until(publisher.get_num_connections, f'{topic} connected')
-            publisher.publish(type(message)())  # names nothing: in the log only
+            publisher.publish(type(message)())  # without a name: an error in the log
             publisher.publish(message)
 
             def there(link=link, x=message.pose.position.x):
                 state = self._done('get_link_state', link_name=link).link_state
                 return abs(state.pose.position.x - x) < 1e-6
 
-            wait_until(there, f'{link} where {topic} put it')
+            wait_until(there, f'{link} at the pose of {topic}')
 
-    def test_the_first_picture_is_taken_from_where_the_parameters_say(self):
+    def test_first_image_has_the_viewpoint_of_the_parameters(self):
         sky = {'eye': [50.0, 50.0, 5.0], 'target': [60.0, 50.0, 60.0]}
         for name, place in sky.items():
             rospy.set_param(f'/gazebo/view/{name}', place)
             self.addCleanup(rospy.delete_param, f'/gazebo/view/{name}')
         picture = rospy.wait_for_message('/gazebo/view/image_raw', Image, PICTURE)
-        self.assertEqual(set(picture.data), {255})  # nothing is up there
+        self.assertEqual(set(picture.data), {255})  # the sky
 
-    def test_a_link_is_moved_and_seen_from_another(self):
+    def test_link_state_is_set_and_read_relative_to_another_link(self):
         self._done('set_link_state', link_state={
             'link_name': 'base', 'reference_frame': 'box::body',
             'pose': {'position': {'x': 4.0}, 'orientation': {'w': 1.0}},
@@ -241,7 +241,7 @@ class OutcomesTest(SimulatorTest):
         self.assertEqual(state.link_state.link_name, 'arm::base')
         self.assertEqual(state.link_state.reference_frame, 'body')
 
-    def test_joints_are_put_within_their_limits(self):
+    def test_joint_positions_are_set_within_their_limits(self):
         for asked, reached in ((0.5, 0.5), (3.0, 1.0), (-3.0, -1.0)):
             self._done('set_model_configuration', model_name='arm',
                        joint_names=['arm::hinge', 'nope'], joint_positions=[asked, 1.0])
@@ -256,7 +256,7 @@ class OutcomesTest(SimulatorTest):
         joint = self._done('get_joint_properties', joint_name='hinge')
         self.assertAlmostEqual(joint.position[0], 2.0)
 
-    def test_what_links_weigh(self):
+    def test_link_properties(self):
         changed = {'link_name': 'box::body', 'mass': 3.0, 'gravity_mode': False,
                    'com': {'position': {'x': 0.1}}, 'ixx': 1.0, 'iyy': 2.0, 'izz': 2.5,
                    'ixy': 0.1, 'ixz': 0.0, 'iyz': 0.0}
@@ -284,7 +284,7 @@ class OutcomesTest(SimulatorTest):
         self.assertFalse(self._call('delete_light', light_name='lamp').success)
         self.assertNotIn('lamp', self.world().model_names)
 
-    def test_the_ground_can_be_deleted_and_included_again(self):
+    def test_ground_can_be_deleted_and_included_again(self):
         self.assertTrue(self.delete(GROUND).success)
         self.unpause()
         self._set_model('box', pose(z=0.6))
@@ -297,7 +297,7 @@ class OutcomesTest(SimulatorTest):
         self.assertAlmostEqual(box.pose.position.z, 0.5, delta=0.01)
         self.assertAlmostEqual(box.twist.linear.z, 0.0, delta=0.01)
 
-    def test_an_sdf_model_stands_at_initial_after_own_pose(self):
+    def test_pose_of_an_sdf_model_is_initial_pose_times_own_pose(self):
         where = {'position': {'y': 2.0}, 'orientation': {'z': 1.0, 'w': 1.0}}  # a quarter turn
         self._done('spawn_sdf_model', model_name='slab', model_xml=SDF, initial_pose=where)
         position = self.model_state('slab', '').pose.position

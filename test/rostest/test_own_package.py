@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A reader of the tutorial with their own rosbots_description types what the README says."""
+"""The commands of the README work for readers with their own package rosbots_description."""
 
 import os
 import re
@@ -22,11 +22,11 @@ from terminal import Terminal
 sys.path.insert(0, str(readme.ROOT / 'test'))
 from support.article_package import THEIR_LINK, write_article_package
 
-STEP = 30.0  # [s, wall] in which a step shows what it is to show
-BUILD = 400.0  # [s, wall] for a workspace, which takes 30 s of a machine that does nothing else
-MOST_LINES = 39  # that a terminal may show from its start to Ctrl-C, but for blank ones
-# Debian's robot_state_publisher says it every 10 s where it follows the wall clock: one line,
-# however long the walk takes on a busy machine.
+STEP = 30.0  # [s, wall] timeout of the output of a step
+BUILD = 400.0  # [s, wall] timeout of a build that takes 30 s on an idle machine
+MOST_LINES = 39  # limit of non-blank lines in a terminal
+# Debian's robot_state_publisher repeats it every 10 s of wall time: counted as one line,
+# however long the test takes on a busy machine.
 AGAIN = re.compile(r'Received JointState is .* seconds old')
 RED = '\x1b[31m'
 MOVED = 0.05  # [m]
@@ -34,10 +34,10 @@ SPAWNED = 'Spawn status: SpawnModel: Successfully spawned entity'
 ONCE, EACH_TERMINAL, ANY_ROBOT = readme.code_blocks('In your own catkin workspace')
 STEPS = readme.steps()
 LINK, ENTER, MAKE = ONCE.splitlines(keepends=True)
-MAKE_ONE = f'{MAKE.strip()} -DCATKIN_WHITELIST_PACKAGES=xacro\n'  # and see to all names before
+MAKE_ONE = f'{MAKE.strip()} -DCATKIN_WHITELIST_PACKAGES=xacro\n'  # after cmake of all packages
 FIND = 'rospack find rosbots_description; roslaunch --files rosbots_description spawn.launch'
 LEFT_OUT = 'rosbots_description is yours, in {}; ours is left out'
-# A clone whose programs and packages are there already, so that it need not fetch them.
+# A clone with installed dependencies, which it does not download again.
 SET_UP = f"""
 ROOT=$PWD
 source tools/setup.bash
@@ -51,7 +51,7 @@ for part in packages python workspace; do mark_done $part "$(${{part}}_fingerpri
 
 
 class Newcomer:
-    """Somebody with a home of their own, in which the clone is ~/rosbots, and a workspace."""
+    """A user with a new home folder, a clone in ~/rosbots, and a workspace."""
 
     def __init__(self):
         self.home = Path(tempfile.mkdtemp(prefix='newcomer_'))
@@ -61,12 +61,12 @@ class Newcomer:
         self.environment = {
             'HOME': str(self.home), 'PATH': '/usr/local/bin:/usr/bin:/bin', 'LANG': 'C.UTF-8',
             'ROS_MASTER_URI': os.environ['ROS_MASTER_URI'], 'ROS_HOSTNAME': 'localhost',
-            # where ./rosbots has its workspace if the clone's path is an odd one
+            # the workspace of ./rosbots if the path of the clone is not plain
             'XDG_CACHE_HOME': os.environ.get('XDG_CACHE_HOME', os.path.expanduser('~/.cache')),
         }
 
     def type(self, script, limit=STEP, check=True):
-        """Return what a shell shows that reads these lines and ends at the first that fails."""
+        """Return the output of a shell that runs these lines up to the first failure."""
         ended = subprocess.run(
             ['bash', '-ec', script], env=self.environment, cwd=self.home, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, timeout=limit,
@@ -76,7 +76,7 @@ class Newcomer:
         return ended.stdout
 
     def type_sourced(self, command):
-        """Return what a command shows in a terminal that begins as the README says."""
+        """Return the output of a command in a terminal set up as in the README."""
         return self.type(EACH_TERMINAL + command)
 
     def leave(self):
@@ -84,7 +84,7 @@ class Newcomer:
 
 
 class Walk:
-    """The terminals of a newcomer, each with one program in it; `shown` is what is in them."""
+    """The terminals of a user, each with one program; `shown` is their output."""
 
     def __init__(self, newcomer):
         self._newcomer = newcomer
@@ -92,7 +92,7 @@ class Walk:
         self.shown = {}
 
     def open(self, command):
-        """Begin a terminal as the README says, and type a command."""
+        """Open a terminal as in the README, and type a command."""
         self._terminals[command] = Terminal('bash', '-c', f'{EACH_TERMINAL}exec {command}',
                                             env=self._newcomer.environment)
         return command
@@ -104,7 +104,7 @@ class Walk:
         return self._terminals[command].process.poll() is None
 
     def wait(self, condition, what):
-        """Wait, and look at all screens meanwhile, for a full one stops who writes to it."""
+        """Wait for a condition, and read all terminals meanwhile: a full one blocks its program."""
         def looked():
             self.shown |= {command: terminal.shown()
                            for command, terminal in self._terminals.items()}
@@ -119,7 +119,7 @@ class Walk:
         for command, terminal in reversed(list(self._terminals.items())):
             if self.runs(command):
                 os.killpg(terminal.process.pid, number)
-            self.wait(lambda command=command: not self.runs(command), f'the end of {command}')
+            self.wait(lambda command=command: not self.runs(command), f'exit of {command}')
 
     def close(self, command):
         self._terminals.pop(command).close()
@@ -137,7 +137,7 @@ def free_port():
 
 
 def count_lines(shown):
-    """Return how many lines are on a screen; blank ones and repetitions of `AGAIN` do not count."""
+    """Return the number of lines, without blank ones and repetitions of `AGAIN`."""
     lines = [line for line in shown.splitlines() if line.strip()]
     again = sum(bool(AGAIN.search(line)) for line in lines)
     return len(lines) - max(0, again - 1)
@@ -145,7 +145,7 @@ def count_lines(shown):
 
 @contextmanager
 def screen():
-    """Start an X server that nobody sees; its name goes to the block."""
+    """Start a virtual X server; yield its display name."""
     reader, writer = os.pipe()
     server = subprocess.Popen(['Xvfb', '-displayfd', str(writer), '-screen', '0', '1024x768x24'],
                               pass_fds=[writer], stderr=subprocess.DEVNULL)
@@ -182,45 +182,45 @@ class OwnPackageTest(unittest.TestCase):
     def _walk(self, walk):
         type_sourced = self.reader.type_sourced
         (spawn,), (delete,), (topics,) = STEPS[4], STEPS[6], STEPS[7]
-        # 1: their package
+        # 1: the user's package
         self.assertEqual(type_sourced(f'{STEPS[1][0]}; pwd').strip(), str(self.package))
-        # 2: their robot in RViz, from `cat`
+        # 2: the user's robot in RViz, from `cat`
         port = free_port()
         self.reader.environment['ROS_MASTER_URI'] = f'http://localhost:{port}'
         walk.see(walk.open(f'{STEPS[2][0]} -p {port}'), 'started core service')
         view = self._open_rviz(walk)
         self.assertIn('/rviz', type_sourced('rostopic info /tf'))
         self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
-        # 5: their robot, from xacro.py, waits for a simulator
+        # 5: the spawn of the user's robot, from xacro.py, waits for a simulator
         early = walk.open(spawn)
         walk.see(early, 'Waiting for service /gazebo/spawn_urdf_model')
-        # 3: which comes with worlds and window
+        # 3: the simulator, with world and window
         walk.open(STEPS[3][0])
         walk.see(early, SPAWNED)
         self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
         walk.wait(lambda: '/gazebo_gui' in type_sourced('rosnode list'), 'the window')
-        # 6: it goes
+        # 6: the robot is deleted
         self.assertIn('success: True', type_sourced(delete))
         self.assertNotIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
-        # 4 and 7: it comes again
+        # 4 and 7: it is spawned again
         walk.see(walk.open(f'{spawn} x:=1'), SPAWNED)
         self.assertIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
         # 8: it is driven
         start, teleop = self._x(), walk.open(STEPS[8][0])
         walk.see(teleop, 'currently:')
         walk.keys(teleop, 'i')
-        walk.wait(lambda: self._x() > start + MOVED, 'the robot driving')
+        walk.wait(lambda: self._x() > start + MOVED, 'motion of the robot')
         walk.keys(teleop, '\x03')
-        # any other robot: the world is there already
+        # any other robot: the simulator is running
         (self.reader.home / 'my_robot.urdf').write_text(BOX, encoding='utf-8')
         self.assertIn(STEPS[3][0], ANY_ROBOT)
         self.assertIn(SPAWNED, type_sourced(ANY_ROBOT.splitlines()[1]))
         self.assertTrue(walk.runs(view), walk.shown[view])
 
     def _open_rviz(self, walk, starts=debian_rviz.STARTS):
-        """Show their robot in RViz, before any program of ours runs."""
+        """Show the user's robot in RViz, before any program of ours runs."""
         view = walk.open(STEPS[2][1])
-        walk.wait(lambda: self._rviz_stands() or not walk.runs(view), 'RViz')
+        walk.wait(lambda: self._rviz_is_ready() or not walk.runs(view), 'RViz')
         if walk.runs(view):
             return view
         walk.wait(lambda: debian_rviz.CRASH.search(walk.shown[view]),
@@ -229,9 +229,10 @@ class OwnPackageTest(unittest.TestCase):
         walk.close(view)
         return self._open_rviz(walk, starts - 1)
 
-    def _rviz_stands(self):
-        """Tell whether RViz answers to the first service that it opens after its window."""
-        answer = self.reader.type_sourced(f'rosservice type {debian_rviz.STANDS} 2>&1 || true')
+    def _rviz_is_ready(self):
+        """Return whether RViz offers the first service after its window."""
+        answer = self.reader.type_sourced(
+            f'rosservice type {debian_rviz.READY_SERVICE} 2>&1 || true')
         return answer.startswith('std_srvs/')
 
     def _x(self):
@@ -239,7 +240,7 @@ class OwnPackageTest(unittest.TestCase):
             "rosservice call /gazebo/get_model_state '{model_name: rosbots}'")
         return float(re.search(r'x: (\S+)', state)[1])
 
-    def test_every_form_of_a_launch_file_expands_their_robot(self):
+    def test_every_form_of_a_launch_file_expands_the_users_robot(self):
         for name, form in (('rviz', 'cat '), ('spawn', 'xacro.py '),
                            ('spawn_in_order', 'xacro --inorder ')):
             self.assertIn(form, (self.package / 'launch' / f'{name}.launch').read_text())
@@ -247,14 +248,14 @@ class OwnPackageTest(unittest.TestCase):
                 f'roslaunch --dump-params rosbots_description {name}.launch')
             self.assertIn(THEIR_LINK, shown, name)
 
-    def test_ours_is_left_out_where_they_have_a_package_of_that_name(self):
+    def test_our_package_is_left_out_if_the_user_has_one_of_that_name(self):
         self.assertIn(LEFT_OUT.format(self.package), self.said)
         self.assertFalse(self.package.is_symlink())
         before = sorted(self.reader.source.iterdir())
         self.assertIn('nothing new', self.reader.type(LINK, BUILD))
         self.assertEqual(sorted(self.reader.source.iterdir()), before)
 
-    def test_their_package_wins_beside_ours_in_one_folder(self):
+    def test_users_package_takes_precedence_beside_ours_in_one_folder(self):
         newcomer = Newcomer()
         self.addCleanup(newcomer.leave)
         package = newcomer.source / 'rosbots_description'
@@ -272,14 +273,14 @@ class OwnPackageTest(unittest.TestCase):
         newcomer.type(make, BUILD)
         shown = newcomer.type_sourced(FIND)
         self.assertEqual(shown.split(), [str(package), f'{package}/launch/spawn.launch'])
-        # and the clone still has its own
+        # the clone still finds ours
         shown = newcomer.type(f"cd {clone}; ./rosbots exec bash -c '{FIND}'")
         self.assertIn(f'{clone}/.ws/src/rosbots_description/launch/spawn.launch', shown)
         shutil.rmtree(package)
         newcomer.type(f'/usr/bin/python3 {clone}/tools/link.py {clone}/.ws/src ~/catkin_ws')
         self.assertFalse((clone / 'CATKIN_IGNORE').exists())
 
-    def test_their_package_wins_below_a_workspace_with_ours(self):
+    def test_users_package_takes_precedence_below_a_workspace_with_ours(self):
         over = self.reader.home / 'over_theirs'
         (over / 'src').mkdir(parents=True)
         link = LINK.replace('catkin_ws', 'over_theirs')
@@ -296,11 +297,11 @@ class OwnPackageTest(unittest.TestCase):
         self.assertEqual(shown.split()[-3:], [
             str(self.package), f'{self.package}/launch/spawn.launch', str(over / 'src' / 'xacro')])
 
-    def test_their_package_wins_when_ours_is_put_over_their_workspace(self):
+    def test_users_package_takes_precedence_when_ours_overlays_its_workspace(self):
         files = '~/rosbots/rosbots exec roslaunch --files rosbots_description spawn.launch'
         self.assertIn(str(self.package), self.reader.type_sourced(files))
 
-    def test_their_package_wins_in_a_workspace_over_ours(self):
+    def test_users_package_takes_precedence_in_a_workspace_over_ours(self):
         over = self.reader.home / 'over'
         write_article_package(over / 'src' / 'rosbots_description')
         self.reader.type('~/rosbots/rosbots exec catkin_make -C ~/over', BUILD)
@@ -311,7 +312,7 @@ class OwnPackageTest(unittest.TestCase):
         self.assertIn(str(over / 'src' / 'rosbots_description'), shown)
         self.assertIn('The reader has a Python module', shown)
 
-    def test_the_finished_robot_is_found_and_stands(self):
+    def test_robot_is_found_and_stands(self):
         newcomer = Newcomer()
         self.addCleanup(newcomer.leave)
         newcomer.type(ONCE, BUILD)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Step, pace, gravity and solver: by service and by dynamic_reconfigure."""
+"""Step size, update rate, gravity and solver: by service and by dynamic_reconfigure."""
 
 import math
 import sys
@@ -61,7 +61,7 @@ class PhysicsSettingsTest(SimulatorTest):
         response = self.set(time_step, rate, Vector3(*gravity), ode or self._before.ode_config)
         return response.success, response.status_message
 
-    def test_what_counts_in_an_empty_world(self):
+    def test_defaults_in_an_empty_world(self):
         told = self._before
         self.assertEqual(told.status_message, 'GetPhysicsProperties: got properties')
         self.assertEqual((told.time_step, told.max_update_rate, told.pause), (0.001, 1000.0, False))
@@ -78,7 +78,7 @@ class PhysicsSettingsTest(SimulatorTest):
         self.assertEqual((told.time_step, told.max_update_rate), (0.002, 500.0))
         self.assertEqual((told.gravity, told.ode_config), (Vector3(1.0, 2.0, 3.0), ode))
 
-    def test_nonsense_is_refused_and_changes_nothing(self):
+    def test_invalid_settings_are_rejected_and_change_nothing(self):
         endless = ODEPhysics(sor_pgs_iters=4_000_000_000)
         for settings, words in (
             ({'time_step': 0.0}, 'step_size is 0'),
@@ -96,7 +96,7 @@ class PhysicsSettingsTest(SimulatorTest):
                 self.assertTrue(text.startswith(f'SetPhysicsProperties: Failure - {words}'), text)
         self.assertEqual(self.get(), self._before)
 
-    def test_gravity_and_step_count_from_the_next_step_on(self):
+    def test_gravity_and_step_size_apply_from_the_next_step(self):
         self.pause()
         self.spawn('box', BOX, pose(z=50.0))
         step = proxy('step', Step)
@@ -110,8 +110,8 @@ class PhysicsSettingsTest(SimulatorTest):
         self.assertAlmostEqual(step(100).sim_time, begin + 1.5, places=9)
         self.assertTrue(self.get().pause)
 
-    def test_the_rate_sets_the_pace(self):
-        # A busy machine may be slower, but never faster than the rate says.
+    def test_update_rate_limits_the_real_time_factor(self):
+        # A busy machine may be slower, but never faster than the rate.
         for rate, least, most in ((500.0, 0.1, 0.6), (0.0, 1.5, math.inf), (1000.0, 0.2, 1.1)):
             self._set(rate=rate)
             simulated, wall = self.world().sim_time, time.monotonic()
@@ -121,9 +121,9 @@ class PhysicsSettingsTest(SimulatorTest):
         self._set(rate=0.01)
         self._set(rate=1000.0)
         simulated = self.world().sim_time
-        wait_until(lambda: self.world().sim_time > simulated + 0.1, 'going on at once', 2.0)
+        wait_until(lambda: self.world().sim_time > simulated + 0.1, 'advance of time at once', 2.0)
 
-    def test_how_the_settings_are_described(self):
+    def test_description_of_the_settings(self):
         heard = self.collect('/gazebo/parameter_descriptions', ConfigDescription)
         wait_until(heard.__len__, 'the latched description')
         description = heard[0]
@@ -137,7 +137,7 @@ class PhysicsSettingsTest(SimulatorTest):
                              DESCRIBED[name])
             self.assertEqual(parameter.level, 1)
 
-    def test_dynamic_reconfigure_shows_and_changes_what_counts(self):
+    def test_dynamic_reconfigure_shows_and_changes_the_settings(self):
         updates = self.collect('/gazebo/parameter_updates', Config)
         wait_until(updates.__len__, 'the latched settings')
         self.assertEqual(set(numbers(updates[0])), PARAMETERS)
@@ -148,12 +148,12 @@ class PhysicsSettingsTest(SimulatorTest):
             told = self.get()
             self.assertEqual((told.gravity.z, told.ode_config.sor_pgs_iters), (-3.5, 40))
             self._assert_shown(updates, {'gravity_z': -3.5, 'sor_pgs_iters': 40})
-            kept = client.update_configuration({'time_step': -5.0})  # becomes 0, which is refused
+            kept = client.update_configuration({'time_step': -5.0})  # clamped to 0, then rejected
             self.assertEqual(kept['time_step'], 0.001)
             self.assertEqual(self.get().time_step, 0.001)
         finally:
             client.close()
-        # What a service changes is shown too, so that the next change does not undo it.
+        # Changes by services are shown too, so that the next change does not undo them.
         self._set(gravity=(0.0, 0.0, -1.5))
         self._assert_shown(updates, {'gravity_z': -1.5, 'sor_pgs_iters': 50})
 

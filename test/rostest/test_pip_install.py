@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""`pip install` into an empty venv gives a library that needs no ROS.
+"""`pip install` into an empty venv gives a library without ROS.
 
-It takes half a minute, most of it downloads; without a way to a package index it is skipped.
+It takes half a minute, mostly downloads; it is skipped without a package index.
 """
 
 import re
@@ -49,13 +49,13 @@ class PipInstallTest(unittest.TestCase):
 
     @classmethod
     def run_there(cls, *arguments):
-        """Run the venv's Python, which sees nothing of ROS and of this source tree."""
+        """Run the Python of the venv, without ROS and this source tree on its path."""
         return subprocess.run(
             [str(cls.venv / 'bin' / 'python'), '-I', *arguments], cwd=cls.folder, text=True,
             env={'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)}, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
 
-    def test_all_it_imports_is_declared(self):
+    def test_all_imports_are_declared(self):
         checked = self.run_there('-m', 'pip', '--disable-pip-version-check', 'check')
         self.assertEqual(checked.returncode, 0, checked.stdout)
         modules = [f'rosbots_description.{path.relative_to(ROOT / "src" / "rosbots_description")}'
@@ -67,7 +67,7 @@ class PipInstallTest(unittest.TestCase):
             'assert "rospy" not in sys.modules', *modules)
         self.assertEqual((imported.returncode, imported.stdout), (0, ''))
 
-    def test_its_types_worlds_and_robot_are_there(self):
+    def test_types_worlds_and_robot_are_installed(self):
         (package,) = self.venv.glob('lib/python3*/site-packages/rosbots_description')
         for part in ('py.typed', 'worlds/room.world', 'config/gzclient.rviz'):
             self.assertTrue((package / part).is_file(), part)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The programs as processes: how they begin, wait, end, and what they print."""
+"""The programs as processes: start, waiting, exit, and output."""
 
 import os
 import re
@@ -21,7 +21,7 @@ from std_srvs.srv import Empty
 CTRL_C_LIMIT = 2.0  # [s] promised
 NO_MASTER = 'No ROS master - start roscore to continue...'
 ROS_LINE = re.compile(r'(\x1b\[\d+m)?\[(INFO|WARN)\] \[')
-UNUSED_MASTER = 'http://localhost:1'  # nobody listens on port 1
+UNUSED_MASTER = 'http://localhost:1'  # nothing listens on port 1
 
 
 class ProcessTest(unittest.TestCase):
@@ -35,7 +35,7 @@ class ProcessTest(unittest.TestCase):
                 process.kill()
             process.wait()
             process.stdout.close()
-        wait_until(lambda: not self._registered(), 'the master forgetting the simulator')
+        wait_until(lambda: not self._registered(), 'the simulator being unregistered')
 
     def _start(self, program, *arguments, **environment):
         process = subprocess.Popen(
@@ -51,7 +51,7 @@ class ProcessTest(unittest.TestCase):
         return process
 
     def _end(self, process, number=signal.SIGINT, code=0):
-        """Send the signal and return what the process has printed."""
+        """Send the signal; return the output of the process."""
         process.send_signal(number)
         begin = time.monotonic()
         printed, _ = process.communicate(timeout=DEADLINE)
@@ -61,14 +61,14 @@ class ProcessTest(unittest.TestCase):
 
     @staticmethod
     def _registered():
-        """Tell whether a service of the simulator is registered; a killed one is forgotten here."""
+        """Return whether a simulator is registered; unregister that of a killed one."""
         try:
             proxy_uri = rosgraph.Master('/test').lookupService('/gazebo/pause_physics')
         except rosgraph.MasterError:
             return False
         return bool(proxy_uri)
 
-    def test_the_first_tick_is_one_step_and_comes_only_when_time_runs(self):
+    def test_first_clock_is_one_step_and_sent_only_when_unpaused(self):
         server = self._server('-u')
         ticks = []
         subscriber = rospy.Subscriber('/clock', Clock, lambda m: ticks.append(m.clock.to_nsec()))
@@ -82,7 +82,7 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(ticks[:3], [1_000_000, 2_000_000, 3_000_000])
         self._end(server)
 
-    def test_ends_by_ctrl_c_and_by_sigterm_also_while_paused_and_prints_only_ros_lines(self):
+    def test_ends_by_ctrl_c_and_sigterm_even_while_paused_with_ros_log_lines_only(self):
         for arguments, number in (((), signal.SIGINT), (('-u',), signal.SIGINT),
                                   ((), signal.SIGTERM)):
             server = self._server(*arguments)
@@ -100,7 +100,7 @@ class ProcessTest(unittest.TestCase):
         self.assertIn(NO_MASTER, server.stdout.readline())
         self._end(server)
 
-    def test_ends_after_the_steps_asked_for(self):
+    def test_ends_after_the_requested_steps(self):
         server = self._start('gzserver', '--iters', '50')
         server.communicate(timeout=DEADLINE)
         self.assertEqual(server.returncode, 0)
@@ -112,7 +112,7 @@ class ProcessTest(unittest.TestCase):
             self.assertEqual('[DEBUG] [' in printed, shown, printed)
             self.assertIn('Finished loading', printed)
 
-    def test_a_second_server_does_not_begin_while_one_lives(self):
+    def test_second_server_does_not_start_while_one_runs(self):
         first = self._server()
         second = self._start('gzserver')
         printed, _ = second.communicate(timeout=DEADLINE)
@@ -122,7 +122,7 @@ class ProcessTest(unittest.TestCase):
         self.assertIn('--replace', line)
         self._end(first)
 
-    def test_a_second_server_takes_over_when_told_to_and_both_say_so(self):
+    def test_second_server_takes_over_on_request_and_both_report_it(self):
         first = self._server()
         proxy('spawn_urdf_model', SpawnModel)('box', BOX, '/', pose(), '')
         second = self._start('gzserver', '--replace')
@@ -130,16 +130,16 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(first.returncode, 0)
         self.assertRegex(
             printed, rf'this simulator ends: process {second.pid} on .* taken over the name')
-        wait_until(self._has_only_the_ground, 'the second server answering')
+        wait_until(self._has_only_the_ground, 'a response of the second server')
         self.assertIn(f'replaces the node /gazebo, process {first.pid} on ',
                       self._end(second))
 
-    def test_a_server_begins_after_one_that_was_killed(self):
+    def test_server_starts_after_one_was_killed(self):
         first = self._server()
         first.kill()
         first.wait()
         second = self._start('gzserver')
-        wait_until(self._has_only_the_ground, 'the second server answering')
+        wait_until(self._has_only_the_ground, 'a response of the second server')
         self._end(second)
 
     @staticmethod
@@ -150,7 +150,7 @@ class ProcessTest(unittest.TestCase):
             return False
         return world.model_names == ['ground_plane']
 
-    def test_without_its_network_there_is_the_clock_only(self):
+    def test_only_the_clock_is_published_without_the_ros_network(self):
         rospy.set_param('/gazebo/enable_ros_network', False)
         try:
             server = self._start('gzserver')
@@ -164,7 +164,7 @@ class ProcessTest(unittest.TestCase):
         finally:
             rospy.delete_param('/gazebo/enable_ros_network')
 
-    def test_a_throttled_clock_ticks_at_its_frequency(self):
+    def test_throttled_clock_has_its_frequency(self):
         rospy.set_param('/gazebo/pub_clock_frequency', 100)
         try:
             server = self._server('-u')
@@ -177,13 +177,13 @@ class ProcessTest(unittest.TestCase):
             self.assertEqual(ticks[:3], [10_000_000, 20_000_000, 30_000_000])
             ticks.clear()
             proxy('reset_simulation', Empty)()
-            wait_until(lambda: 10_000_000 in ticks, 'ticks after time jumped back')
+            wait_until(lambda: 10_000_000 in ticks, '/clock after time jumped back')
             subscriber.unregister()
             self._end(server)
         finally:
             rospy.delete_param('/gazebo/pub_clock_frequency')
 
-    def test_a_window_without_a_display_is_one_line_and_no_failure(self):
+    def test_window_without_a_display_prints_one_line_and_does_not_fail(self):
         for display in ('', ':97'):
             window = self._start('gzclient', '--verbose', DISPLAY=display)
             printed, _ = window.communicate(timeout=DEADLINE)
@@ -191,7 +191,7 @@ class ProcessTest(unittest.TestCase):
             (line,) = printed.splitlines()
             self.assertIn('no display', line)
 
-    def test_the_simulator_begins_while_spawn_model_waits(self):
+    def test_simulator_starts_while_spawn_model_waits(self):
         spawn = self._start('spawn_model', '-urdf', '-param', 'robot_description',
                             '-model', 'rosbots', '-z', '0.5')
         while 'Waiting for service /gazebo/spawn_urdf_model' not in spawn.stdout.readline():

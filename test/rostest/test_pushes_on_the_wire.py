@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Wrenches and efforts give the accelerations of rigid-body mechanics."""
+"""Wrenches and efforts applied by services give the accelerations of rigid-body mechanics."""
 
 import math
 import sys
@@ -66,14 +66,14 @@ class PushesTest(SimulatorTest):
     def _twist(self, name='box'):
         return self.model_state(name, '').twist
 
-    def test_one_newton_for_one_second_on_one_kilogram(self):
+    def test_one_newton_for_one_second_gives_one_kilogram_1_m_per_s(self):
         self._floating()
         self._push(force=(1.0, 0.0, 0.0))
         self.step(2 * SECOND)
         self.assertAlmostEqual(self._twist().linear.x, 1.0, delta=SPEED_TOLERANCE)
         self.assertAlmostEqual(self._twist().angular.z, 0.0, delta=1e-6)
 
-    def test_a_torque_about_each_axis(self):
+    def test_torque_about_each_axis(self):
         for i, axis in enumerate(MOMENTS):
             self._floating(axis, y=5.0 * i)
             self._push(torque=[0.2 * (j == i) for j in range(3)], name=f'{axis}::body')
@@ -82,16 +82,16 @@ class PushesTest(SimulatorTest):
             rate = getattr(self._twist(axis).angular, axis)
             self.assertAlmostEqual(rate, 0.2 / moment, delta=RATE_TOLERANCE * 0.2 / moment)
 
-    def test_a_wrench_in_the_bodys_own_frame_follows_its_axes(self):
+    def test_wrench_in_the_bodys_frame_is_in_its_axes(self):
         self._floating(orientation=QUARTER)
         self._push(force=(1.0, 0.0, 0.0), frame='box::body')
         self.step(1 * SECOND)
         self.assertAlmostEqual(self._twist().linear.y, 1.0, delta=SPEED_TOLERANCE)
         self.assertAlmostEqual(self._twist().linear.x, 0.0, delta=SPEED_TOLERANCE)
 
-    def test_a_force_beside_the_body_turns_it(self):
+    def test_force_with_a_lever_arm_turns_the_body(self):
         self._floating()
-        self._push(force=(1.0, 0.0, 0.0), point=(0.0, -0.1, 0.0))  # an arm in world axes
+        self._push(force=(1.0, 0.0, 0.0), point=(0.0, -0.1, 0.0))  # lever arm in world axes
         self._floating('far', y=10.0)
         self._push(force=(1.0, 0.0, 0.0), frame='box', name='far::body')  # 10 m to its right
         self.step(int(0.1 * SECOND))
@@ -99,7 +99,7 @@ class PushesTest(SimulatorTest):
         self.assertAlmostEqual(self._twist('far').angular.z, 1.0 / MOMENTS['z'], delta=0.005)
         self.assertAlmostEqual(self._twist('far').linear.x, 0.1, delta=SPEED_TOLERANCE)
 
-    def test_when_a_push_begins_and_how_it_ends(self):
+    def test_start_duration_and_clearing_of_wrenches(self):
         start = Time.from_sec(self.world().sim_time + 0.5)
         for i, (name, begin, seconds) in enumerate((
             ('late', start, 1.0), ('brief', NOW, 0.2), ('none', NOW, 0.0), ('endless', NOW, -1.0),
@@ -108,7 +108,7 @@ class PushesTest(SimulatorTest):
             self._floating(name, y=5.0 * i)
             self._push(force=(1.0, 0.0, 0.0), name=f'{name}::body', start=begin, seconds=seconds)
         self.step(SECOND // 2)
-        self.clear_wrenches('cleared')  # not its scoped name: nothing happens
+        self.clear_wrenches('cleared')  # not the scoped name: no effect
         self.step(SECOND // 4)
         self.clear_wrenches('cleared::body')
         self.assertTrue(self.delete('deleted').success)
@@ -123,7 +123,7 @@ class PushesTest(SimulatorTest):
         self.assertTrue(change('hinge', ODEJointProperties(fmax=[5.0], vel=[0.5])).success)
         self.step(SECOND)
         self.assertAlmostEqual(self.joint('hinge').rate[0], 0.5, delta=0.005)
-        coasting = ODEJointProperties(fmax=[0.0], damping=[0.5])  # e times slower each second
+        coasting = ODEJointProperties(fmax=[0.0], damping=[0.5])  # factor 1/e each second
         self.assertTrue(change('hinge', coasting).success)
         self.step(SECOND)
         self.assertAlmostEqual(self.joint('hinge').rate[0], 0.5 / math.e, delta=0.005)
@@ -132,7 +132,7 @@ class PushesTest(SimulatorTest):
         self.step(3 * SECOND)
         self.assertLess(self.joint('hinge').position[0], stopped.hiStop[0] + 0.01)
 
-    def test_an_effort_turns_a_door(self):
+    def test_effort_turns_a_door(self):
         self.spawn('door', DOOR)
         self.assertEqual(
             proxy('get_model_properties', GetModelProperties)('door').joint_names, ['hinge'])
@@ -142,7 +142,7 @@ class PushesTest(SimulatorTest):
         self.assertAlmostEqual(rate, 0.1 / 0.5, delta=RATE_TOLERANCE * 0.2)
         self.assertTrue(self.effort('hinge', -0.1, NOW, Duration(-1)).success)
         self.step(SECOND)
-        self.clear_forces('door::hinge')  # not its plain name: nothing happens
+        self.clear_forces('door::hinge')  # not the plain name: no effect
         self.step(SECOND)
         self.clear_forces('hinge')
         self.step(SECOND)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sensors on the wire: names, types, frames, stamps; resets, and robots that go while one reads."""
+"""Topics of sensors: names, types, frames, stamps; resets, and deletion while subscribed."""
 
 import math
 import sys
@@ -18,15 +18,15 @@ ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'sensors' / '
 
 
 def spacing(messages):
-    """Return the times between the stamps of messages [ms], without repetition."""
+    """Return the distinct spacings of message stamps [ms]."""
     stamps = [message.header.stamp.to_nsec() // 1_000_000 for message in messages]
     return set(np.diff(stamps).tolist())
 
 
 class SensorTest(SimulatorTest):
 
-    def bring(self, robot, topics, namespace='/'):
-        """Spawn a robot of the recordings, and see which topics come with it."""
+    def spawn_recorded(self, robot, topics, namespace='/'):
+        """Spawn a recorded robot and assert that it has these topics."""
         before = topics_of()
         text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
         self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
@@ -37,8 +37,8 @@ class SensorTest(SimulatorTest):
         wait_until(lambda: len(messages) >= count, f'messages on {topic}')
         return messages
 
-    def test_a_laser_scans_with_its_frame_at_its_rate(self):
-        self.bring('laser_nonoise', {'/scan'})
+    def test_laser_has_its_frame_and_rate(self):
+        self.spawn_recorded('laser_nonoise', {'/scan'})
         scans = self.read('/scan', LaserScan, 10)
         scan = scans[-1]
         self.assertEqual(scan.header.frame_id, 'laser_link')
@@ -48,55 +48,55 @@ class SensorTest(SimulatorTest):
         self.assertAlmostEqual(scan.angle_increment, 2 * 1.5708 / 719, 6)
         self.assertEqual(spacing(scans), {25})
 
-    def test_a_laser_goes_on_at_once_after_time_is_reset(self):
-        self.bring('laser_nonoise', {'/scan'})
+    def test_laser_continues_at_once_after_a_reset_of_time(self):
+        self.spawn_recorded('laser_nonoise', {'/scan'})
         scans = self.read('/scan', LaserScan, 40)
         self.reset_simulation()
         before = len(scans)
-        wait_until(lambda: len(scans) >= before + 3, 'scans go on')
+        wait_until(lambda: len(scans) >= before + 3, 'further scans')
         self.assertLess(scans[-1].header.stamp.to_sec(), 1.0)
 
-    def test_a_robot_may_go_while_its_sensors_are_read(self):
-        self.bring('laser_nonoise', {'/scan'})
+    def test_robot_can_be_deleted_while_its_sensors_are_subscribed(self):
+        self.spawn_recorded('laser_nonoise', {'/scan'})
         self.read('/scan', LaserScan, 2)
         self.assertTrue(self.delete('bot').success)
         self.assertNotIn('/scan', topics_of())
-        self.bring('laser_nonoise', {'/scan'})
+        self.spawn_recorded('laser_nonoise', {'/scan'})
         self.read('/scan', LaserScan, 2)
 
-    def test_a_range_finder_and_points(self):
-        self.bring('range', {'/sonar'})
+    def test_range_finder_and_point_cloud(self):
+        self.spawn_recorded('range', {'/sonar'})
         messages = self.read('/sonar', Range, 3)
         self.assertEqual(spacing(messages), {100})
         self.assertEqual(messages[0].header.frame_id, 'laser_link')
         self.assertAlmostEqual(messages[0].range, 2.508, 3)  # the ground
         self.delete('bot')
-        self.bring('laser_block', {'/cloud'})
+        self.spawn_recorded('laser_block', {'/cloud'})
         cloud = self.read('/cloud', PointCloud, 2)[-1]
         self.assertEqual((len(cloud.points), len(cloud.channels[0].values)), (360, 360))
         self.assertEqual(cloud.channels[0].name, '')
 
-    def test_an_imu_sensor_at_rest(self):
-        self.bring('imu_sensor', {'/nsx/imu/data'}, namespace='/nsx')
+    def test_imu_sensor_at_rest(self):
+        self.spawn_recorded('imu_sensor', {'/nsx/imu/data'}, namespace='/nsx')
         messages = self.read('/nsx/imu/data', Imu, 100)
         self.assertEqual(spacing(messages), {10})
         self.assertEqual(messages[-1].header.frame_id, 'imu_link')
         self.assertAlmostEqual(messages[-1].linear_acceleration.z, 9.8, 2)
         self.assertEqual(set(messages[-1].orientation_covariance), {0.0})
 
-    def test_the_imu_of_a_model_with_its_service(self):
-        self.bring('imu_model', {'/imu'})
+    def test_imu_plugin_of_a_model_with_its_service(self):
+        self.spawn_recorded('imu_model', {'/imu'})
         message = self.read('/imu', Imu, 5)[-1]
         self.assertEqual(message.header.frame_id, 'base_footprint')
         self.assertAlmostEqual(message.linear_acceleration.z, 0.0, 2)
         rospy.wait_for_service('/imu_service', 5.0)
         rospy.ServiceProxy('/imu_service', Empty)()
         self.delete('bot')
-        self.bring('imu_model', {'/imu'})
+        self.spawn_recorded('imu_model', {'/imu'})
         rospy.ServiceProxy('/imu_service', Empty)()
 
-    def test_a_bumper_tells_its_weight(self):
-        self.bring('bumper', {'/bumper'})
+    def test_bumper_measures_the_weight(self):
+        self.spawn_recorded('bumper', {'/bumper'})
         messages = self.read('/bumper', ContactsState, 20)
         message = messages[-1]
         self.assertEqual(message.header.frame_id, 'base_link')
@@ -104,7 +104,7 @@ class SensorTest(SimulatorTest):
         self.assertEqual(len(message.states), 20)
         self.assertAlmostEqual(message.states[-1].total_wrench.force.z / 49.0, 1.0, 1)
 
-    def test_a_joint_tells_what_hangs_on_it(self):
+    def test_joint_wrench_is_that_of_the_suspended_mass(self):
         self.spawn('arm', (ROBOTS.parents[1] / 'robots' / 'arm_ft.urdf').read_text())
         messages = self.read('/ft_elbow', WrenchStamped, 5)
         self.assertEqual(messages[-1].header.frame_id, 'fore')

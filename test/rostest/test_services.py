@@ -26,7 +26,7 @@ class ServicesTest(SimulatorTest):
         self.assertTrue(response.rendering_enabled)
         self.assertGreater(response.sim_time, 0.0)
 
-    def test_spawn_and_what_is_there_already(self):
+    def test_spawn_and_duplicate_name(self):
         self._assert_outcome(self.spawn(), True, SPAWNED)
         self._assert_outcome(
             self.spawn(), False, 'SpawnModel: Failure - entity already exists.')
@@ -57,7 +57,7 @@ class ServicesTest(SimulatorTest):
             self.delete('rosbots'), True, 'DeleteModel: successfully deleted model')
         self.assertNotIn('/odom', topics_of())
 
-    def test_delete_what_is_not_there(self):
+    def test_delete_a_missing_model(self):
         for name in ('not_there', ''):
             self._assert_outcome(self.delete(name), False, 'DeleteModel: model does not exist')
 
@@ -69,14 +69,14 @@ class ServicesTest(SimulatorTest):
         self.assertEqual(response.pose.position.y, 2.0)
         self.assertAlmostEqual(response.header.stamp.to_sec(), self.world().sim_time, places=9)
         self.assertEqual(response.header.frame_id, '')
-        # Each model's look-ups are counted by themselves, and only those that find it.
+        # Successful look-ups are counted for each model.
         self.model_state(GROUND, '')
         self.model_state('nope', '')
         relative = self.model_state('box', 'ground_plane::link')
         self.assertEqual(relative.header.seq, response.header.seq + 1)
         self.assertEqual(relative.header.frame_id, 'ground_plane::link')
 
-    def test_model_state_of_what_is_not_there(self):
+    def test_state_of_a_missing_model(self):
         response = self.model_state('nope', '')
         self._assert_outcome(response, False, 'GetModelState: model does not exist')
         self.assertEqual(response.pose, Pose())
@@ -87,7 +87,7 @@ class ServicesTest(SimulatorTest):
         self.assertEqual(response.pose, Pose())
         self.assertEqual(response.header.frame_id, 'nope')
 
-    def test_a_falling_body_falls_with_gazebos_gravity(self):
+    def test_body_falls_with_gazebos_gravity(self):
         self.spawn('box', BOX, pose(z=100.0))
         self.pause()
         first = self.model_state('box', '')
@@ -98,15 +98,15 @@ class ServicesTest(SimulatorTest):
         gained = second.twist.linear.z - first.twist.linear.z
         self.assertAlmostEqual(gained / fallen, -9.8, places=3)
 
-    def test_pause_and_unpause_answer_twice(self):
+    def test_repeated_pause_and_unpause_succeed(self):
         for _ in range(2):
             self.pause()
         stopped = self.world().sim_time
-        self.spawn('box', BOX, pose())  # takes far longer than a step
+        self.spawn('box', BOX, pose())  # far longer than a step
         self.assertEqual(self.world().sim_time, stopped)
         for _ in range(2):
             self.unpause()
-        wait_until(lambda: self.world().sim_time > stopped, 'time going on')
+        wait_until(lambda: self.world().sim_time > stopped, 'advance of time')
 
 
 if __name__ == '__main__':

@@ -12,18 +12,18 @@ from simulator import DEADLINE, proxy
 
 MODELS = ['ground_plane', 'box', 'sphere', 'cylinder']
 PLACES = {'box': (2.5, 0.0, 0.5), 'sphere': (0.0, 1.5, 0.5), 'cylinder': (0.0, -1.5, 0.5)}
-STILL = 0.01  # [m]; they stand on the ground, into which contacts let them sink a little
+STILL = 0.01  # [m]; contacts with the ground allow some penetration
 
 
 class ShapesWorldTest(unittest.TestCase):
 
-    def test_the_models_are_there_in_the_order_of_the_file(self):
+    def test_models_are_in_the_order_of_the_file(self):
         world = proxy('get_world_properties', GetWorldProperties)()
         self.assertEqual(world.model_names, MODELS)
         self.assertEqual(rospy.wait_for_message('/gazebo/model_states', ModelStates, DEADLINE).name,
                          MODELS)
 
-    def test_the_links_stand_where_the_file_puts_them(self):
+    def test_links_are_at_the_poses_of_the_file(self):
         states = rospy.wait_for_message('/gazebo/link_states', LinkStates, DEADLINE)
         self.assertEqual(states.name, [f'{model}::link' for model in MODELS])
         for name, pose in zip(states.name, states.pose, strict=True):
@@ -37,7 +37,7 @@ class ShapesWorldTest(unittest.TestCase):
         self.assertEqual([describe(model).is_static for model in MODELS],
                          [True, False, False, False])
 
-    def test_the_sun_can_be_asked_for(self):
+    def test_properties_of_the_sun(self):
         sun = proxy('get_light_properties', GetLightProperties)('sun')
         self.assertTrue(sun.success)
         self.assertAlmostEqual(sun.diffuse.r, 0.8, places=6)

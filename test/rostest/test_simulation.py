@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The combined launch file gives one clean tree of frames, and it moves with the robot."""
+"""The combined launch file gives one TF tree, which moves with the robot."""
 
 import sys
 import unittest
@@ -24,12 +24,12 @@ SENSORS = {  # topic: type, frame
 }
 FIXED_FRAMES = {'base_link', 'base_second_link', 'mcu_link', 'batery_link', 'caster_back_link',
                 *(frame for _, frame in SENSORS.values())}
-START = 30.0  # [s, wall] for simulator, spawn and robot_state_publisher
+START = 30.0  # [s, wall] timeout of simulator, spawn and robot_state_publisher
 
 
 class FramesTest(unittest.TestCase):
 
-    def test_every_frame_has_one_parent_and_all_hang_on_odom(self):
+    def test_every_frame_has_one_parent_and_odom_is_the_root(self):
         parents, latest = {}, {}
 
         def listen(message):
@@ -48,7 +48,7 @@ class FramesTest(unittest.TestCase):
         command.linear.x = 0.5
         publisher.publish(command)
         wait_until(lambda: latest['base_footprint'].transform.translation.x > before + 0.2,
-                   'the tree moving', DEADLINE)
+                   'motion of the tree', DEADLINE)
         for subscriber in subscribers:
             subscriber.unregister()
         self.assertEqual({child for child, names in parents.items() if len(names) > 1}, set())

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""rviz.launch with sliders: what they are set to is what the joints are published at."""
+"""rviz.launch with sliders: joint states have the values of the sliders."""
 
 import math
 import os
@@ -13,14 +13,14 @@ from sensor_msgs.msg import JointState
 from simulator import wait_until
 from terminal import Terminal
 
-START = 30.0  # [s, wall] for launch file, display and window
-SLIDER = 2.0 * math.pi / 10000  # [rad] from one value of a slider to the next
+START = 30.0  # [s, wall] timeout of launch file, display and window
+SLIDER = 2.0 * math.pi / 10000  # [rad] resolution of a slider
 AT_FIRST = {'wheel_left_joint': 1.0, 'wheel_right_joint': 0.0}  # [rad]
 
 
 class SlidersTest(unittest.TestCase):
 
-    def test_the_window_opens_and_publishes_what_its_sliders_show(self):
+    def test_window_publishes_the_values_of_its_sliders(self):
         rospy.set_param('/zeros/wheel_left_joint', AT_FIRST['wheel_left_joint'])
         messages = []
         rospy.Subscriber('/joint_states', JointState, messages.append)

@@ -14,7 +14,7 @@ from simulator import SimulatorTest, topics_of, wait_until
 CYCLES = 200
 WARM_UP = 10  # cycles after which caches are filled
 GROWTH = 20.0  # [MB] promised
-THREADS = 2  # that may be in the middle of a connection
+THREADS = 2  # that may be handling a connection
 
 class SpawnDeleteTest(SimulatorTest):
 
@@ -43,7 +43,7 @@ class SpawnDeleteTest(SimulatorTest):
         drive = self.driver()
 
         def moves():
-            drive(0.5)  # again: the first may go to the subscriber of the model before
+            drive(0.5)  # repeated: the first may reach the previous model
             return odometry and odometry[-1].twist.twist.linear.x > 0.05
 
         wait_until(moves, 'driving')

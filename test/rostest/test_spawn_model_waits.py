@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Run the real spawn_model while no simulator is there, then let one appear."""
+"""spawn_model waits for a simulator, and ends on Ctrl-C."""
 
 import os
 import select
@@ -13,12 +13,12 @@ import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
 
-DEADLINE = 15.0  # [s] for what should take a second; slow machines are no failure
+DEADLINE = 15.0  # [s] timeout of what takes about a second
 CTRL_C_LIMIT = 2.0  # [s] promised to the user
 
 
 class SpawnModelTest(unittest.TestCase):
-    """The test node itself plays the simulator's two services."""
+    """The test node offers the simulator's two services."""
 
     def setUp(self):
         self._process = None
@@ -61,7 +61,7 @@ class SpawnModelTest(unittest.TestCase):
         self._assert_shows('')
         self.assertNotIn('Traceback', self._output)
 
-    def test_it_waits_for_the_simulator_and_completes_when_that_comes_up(self):
+    def test_waits_for_the_simulator_and_then_spawns(self):
         self._start('-param', 'robot', '-z', '0.5', '-x', '-1e-1')
         self._assert_shows('Loading model XML from ros parameter robot')
         self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
@@ -76,13 +76,13 @@ class SpawnModelTest(unittest.TestCase):
         self.assertEqual((position.x, position.z), (-0.1, 0.5))
         self.assertEqual(request.model_xml, "<robot name='box'><link name='body'/></robot>")
 
-    def test_ctrl_c_ends_the_waiting(self):
+    def test_ctrl_c_ends_the_wait(self):
         self._start('-param', 'robot')
         self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
         self._process.send_signal(signal.SIGINT)
         self._assert_ends(130, CTRL_C_LIMIT)
 
-    def test_ctrl_c_ends_a_call_that_hangs(self):
+    def test_ctrl_c_ends_a_hanging_call(self):
         def hang(_):
             end = time.monotonic() + DEADLINE
             while self._process.poll() is None and time.monotonic() < end:
@@ -94,7 +94,7 @@ class SpawnModelTest(unittest.TestCase):
         self._process.send_signal(signal.SIGINT)
         self._assert_ends(130, CTRL_C_LIMIT)
 
-    def test_a_refusal_is_shown_and_gives_1(self):
+    def test_rejection_is_shown_and_exits_with_1(self):
         self._serve('/gazebo/spawn_urdf_model', SpawnModel, lambda request: SpawnModelResponse(
             False, 'SpawnModel: Failure - entity already exists.'))
         self._start('-param', 'robot')
@@ -102,12 +102,12 @@ class SpawnModelTest(unittest.TestCase):
         self._assert_shows('Spawn service failed. Exiting.')
         self._assert_ends(1, DEADLINE)
 
-    def test_a_missing_parameter_is_named_and_gives_1(self):
+    def test_missing_parameter_is_named_and_exits_with_1(self):
         self._start('-param', 'no_such_param')
         self._assert_shows('Error: param does not exist or is empty: /no_such_param')
         self._assert_ends(1, DEADLINE)
 
-    def test_bound_model_is_deleted_at_the_end(self):
+    def test_bound_model_is_deleted_at_exit(self):
         self._serve('/gazebo/spawn_urdf_model', SpawnModel,
                     lambda request: SpawnModelResponse(True, 'spawned'))
         self._serve('/gazebo/delete_model', DeleteModel,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drive the real teleop_twist_keyboard.py on a pseudo-terminal and listen to what it publishes."""
+"""teleop_twist_keyboard.py on a pseudo-terminal: commands that it publishes."""
 
 import signal
 import sys
@@ -12,12 +12,12 @@ import rostest
 from geometry_msgs.msg import Twist
 from terminal import Terminal
 
-DEADLINE = 10.0  # [s] for what should take well under a second; slow machines are no failure
+DEADLINE = 10.0  # [s] timeout of what takes less than a second
 CTRL_C_LIMIT = 2.0  # [s] promised to the user
 
 
 def wait_for(condition):
-    """Return the first true value of the condition, or its last value at the deadline."""
+    """Return the first true value of a condition, or its last value at the deadline."""
     end = time.monotonic() + DEADLINE
     while time.monotonic() < end:
         value = condition()
@@ -28,7 +28,7 @@ def wait_for(condition):
 
 
 class TeleopTest(unittest.TestCase):
-    """Each test starts the program anew."""
+    """Starts the program for each test."""
 
     def setUp(self):
         self._lock = threading.Lock()
@@ -41,7 +41,7 @@ class TeleopTest(unittest.TestCase):
             self._terminal.close()
         if self._subscriber:
             self._subscriber.unregister()
-        # Parameters given on the command line outlive the node.
+        # Private parameters remain after the end of the node.
         if rospy.has_param('/teleop_twist_keyboard'):
             rospy.delete_param('/teleop_twist_keyboard')
 
@@ -71,7 +71,7 @@ class TeleopTest(unittest.TestCase):
         self.assertEqual(self._terminal.mode(), self._terminal.saved_mode)
         self.assertNotIn('Traceback', self._terminal.shown())
 
-    def test_keys_drive_the_articles_topic(self):
+    def test_keys_publish_on_the_articles_topic(self):
         self._listen('/part2_cmr/cmd_vel')
         self._start('/part2_cmr/cmd_vel')
         self.assertTrue(wait_for(lambda: 'currently:\tspeed 0.5\tturn 1.0' in
@@ -83,14 +83,14 @@ class TeleopTest(unittest.TestCase):
         self._press('l', 0.0, -1.0)
         self._press(',', -0.5, 0.0)
         self._press('q', -0.55, 0.0)
-        # Silence stops the robot.
+        # The robot stops when no key is pressed.
         self.assertTrue(wait_for(lambda: self._heard()[-1] == (0.0, 0.0)), self._heard())
         self._press('u', 0.55, 1.1)
         self._terminal.type('\x03')
         self._assert_ends_well()
         self.assertTrue(wait_for(lambda: self._heard()[-1] == (0.0, 0.0)), self._heard())
 
-    def test_without_a_listener_it_says_so_and_waits(self):
+    def test_waits_with_a_message_without_a_subscriber(self):
         self._start('/nobody/cmd_vel')
         line = 'Waiting for subscriber to connect to /nobody/cmd_vel'
         self.assertTrue(wait_for(lambda: line in self._terminal.shown()), self._terminal.shown())
@@ -98,13 +98,13 @@ class TeleopTest(unittest.TestCase):
         self.assertTrue(wait_for(lambda: 'Ctrl-C' in self._terminal.shown()))
         self._press('i', 0.5, 0.0)
 
-    def test_ctrl_c_ends_the_waiting(self):
+    def test_ctrl_c_ends_the_wait(self):
         self._start('/nobody/cmd_vel')
         self.assertTrue(wait_for(lambda: 'Waiting for subscriber' in self._terminal.shown()))
         self._terminal.process.send_signal(signal.SIGINT)
         self._assert_ends_well()
 
-    def test_being_shut_down_from_outside_stops_the_robot(self):
+    def test_shutdown_of_the_node_stops_the_robot(self):
         self._listen('/part2_cmr/cmd_vel')
         self._start('/part2_cmr/cmd_vel', '_key_timeout:=0')
         self.assertTrue(wait_for(lambda: 'currently:' in self._terminal.shown()))
@@ -113,7 +113,7 @@ class TeleopTest(unittest.TestCase):
         self._assert_ends_well()
         self.assertTrue(wait_for(lambda: self._heard()[-1] == (0.0, 0.0)), self._heard())
 
-    def test_with_a_rate_the_last_command_is_repeated(self):
+    def test_last_command_is_repeated_at_the_rate(self):
         self._listen('/part2_cmr/cmd_vel')
         self._start('/part2_cmr/cmd_vel', '_repeat_rate:=20', '_key_timeout:=0')
         self.assertTrue(wait_for(lambda: 'currently:' in self._terminal.shown()))

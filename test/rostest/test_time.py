@@ -15,12 +15,12 @@ from simulator import GROUND, SimulatorTest, wait_until
 STEP = 1_000_000  # [ns]
 SPAWN_HEIGHT, REST_HEIGHT = 0.5, -0.12  # [m]
 REST_TOLERANCE = 0.002  # [m] promised
-RATE_TOLERANCE = 0.02  # share; the promise is 0.01 over long times, a test machine is not alone
+RATE_TOLERANCE = 0.02  # relative; 0.01 is promised over long times, test machines are busy
 
 
 class TimeTest(SimulatorTest):
 
-    def test_the_clock_ticks_every_step_at_the_pace_of_the_wall(self):
+    def test_clock_has_every_step_at_real_time(self):
         clock = self.collect('/clock', Clock)
         wait_until(clock.__len__, 'a first message')
         begin, first = time.monotonic(), clock[-1].clock
@@ -31,7 +31,7 @@ class TimeTest(SimulatorTest):
         steps = {b - a for a, b in itertools.pairwise(ticks)}
         self.assertEqual(min(steps), STEP)
 
-    def test_states_come_with_every_step_and_name_everything(self):
+    def test_states_have_every_step_and_all_names(self):
         self.spawn()
         models = self.collect('/gazebo/model_states', ModelStates)
         links = self.collect('/gazebo/link_states', LinkStates)
@@ -43,33 +43,33 @@ class TimeTest(SimulatorTest):
         self.assertEqual(len(models[-1].pose), 2)
         self.assertEqual(len(links[-1].twist), 4)
 
-    def test_nothing_is_published_while_paused_and_all_goes_on_afterwards(self):
+    def test_nothing_is_published_while_paused(self):
         self.spawn()
         heard = [self.collect('/clock', Clock), self.collect('/odom', Odometry),
                  self.collect('/gazebo/model_states', ModelStates)]
-        wait_until(lambda: all(heard), 'messages while time runs')
+        wait_until(lambda: all(heard), 'messages while unpaused')
         self.pause()
         self.pause()
         stood = self.world().sim_time
-        wait_until(lambda: abs(heard[0][-1].clock.to_sec() - stood) < 1e-9, 'the last tick')
+        wait_until(lambda: abs(heard[0][-1].clock.to_sec() - stood) < 1e-9, 'the last /clock')
         counts = [len(messages) for messages in heard]
-        for _ in range(20):  # services are answered, and nothing else moves
+        for _ in range(20):  # services are answered, and time does not advance
             self.assertEqual(self.world().sim_time, stood)
         self.assertEqual([len(messages) for messages in heard], counts)
         self.unpause()
         wait_until(lambda: all(len(m) > n for m, n in zip(heard, counts, strict=True)), 'more')
         self.assertEqual(heard[0][counts[0]].clock.to_nsec(), round(stood * 1e9) + STEP)
 
-    def test_reset_world_brings_the_model_back_and_time_goes_on(self):
+    def test_reset_world_resets_poses_and_keeps_time(self):
         drive = self._at_rest_then_drive()
         before = self.world().sim_time
         self.reset_world()
         self.assertGreater(self.world().sim_time, before)
         self._assert_back_at_spawn_and_at_rest()
         drive(0.5)
-        wait_until(lambda: self.x_of() > 0.2, 'the plugin taking commands again')
+        wait_until(lambda: self.x_of() > 0.2, 'motion by a new command')
 
-    def test_reset_simulation_brings_time_back_too(self):
+    def test_reset_simulation_resets_poses_and_time(self):
         drive = self._at_rest_then_drive()
         clock, odometry = self.collect('/clock', Clock), self.collect('/odom', Odometry)
         wait_until(lambda: self.world().sim_time > 1.0, 'one second')
@@ -82,19 +82,19 @@ class TimeTest(SimulatorTest):
         wait_until(odometry.__len__, 'odometry after the reset')
         self.assertEqual(self.world().model_names, [GROUND, 'rosbots'])
         drive(0.5)
-        wait_until(lambda: self.x_of() > 0.2, 'the plugin taking commands again')
+        wait_until(lambda: self.x_of() > 0.2, 'motion by a new command')
 
     def _at_rest_then_drive(self):
         self.spawn()
         drive = self.driver()
         drive(0.5)
-        wait_until(lambda: self.x_of() > 0.3, 'the robot driving')
+        wait_until(lambda: self.x_of() > 0.3, 'motion of the robot')
         return drive
 
     def _assert_back_at_spawn_and_at_rest(self):
         self.assertLess(self.x_of(), 0.1)
         wait_until(lambda: abs(self._height() - REST_HEIGHT) < REST_TOLERANCE, 'standing')
-        self.assertLess(self.x_of(), 0.1, 'it still drives: the command was not forgotten')
+        self.assertLess(self.x_of(), 0.1, 'the robot still drives: the command was not cleared')
 
     def _height(self):
         return self.model_state('rosbots', '').pose.position.z

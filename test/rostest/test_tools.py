@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""ROS's own tools, as the README lists them, are found by rosrun and work with the simulator."""
+"""The ROS tools listed in the README are found by rosrun and work with the simulator."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ from simulator import DEADLINE, SimulatorTest, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
-# What the README itself says is not there, or only with further packages.
+# Documented in the README as missing, or as part of further packages.
 NOT_THERE = {'rqt_graph'}
 OPTIONAL = {'image_view': ('ros-image-view', 'libimage-view-dev')}
 
@@ -29,7 +29,7 @@ def succeeds(*command):
 
 class ToolsTest(SimulatorTest):
 
-    def test_rosrun_finds_every_program_that_the_readme_names(self):
+    def test_rosrun_finds_every_program_of_the_readme(self):
         named = set(re.findall(r'rosrun (\w+) ([\w.]+)', README))
         self.assertLessEqual({('tf', 'tf_echo'), ('dynamic_reconfigure', 'dynparam')}, named)
         for package, program in sorted(named):
@@ -39,7 +39,7 @@ class ToolsTest(SimulatorTest):
                 found = succeeds('rosrun', '--prefix', 'true', package, program)
                 self.assertEqual(found, package not in NOT_THERE)
 
-    def test_tf_echo_tells_where_the_robot_is(self):
+    def test_tf_echo_prints_the_pose_of_the_robot(self):
         self.spawn()
         echo = subprocess.Popen(['rosrun', 'tf', 'tf_echo', 'odom', 'base_link'],
                                 stdout=subprocess.PIPE, text=True)

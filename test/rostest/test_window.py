@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The window: quiet, with frames of its own, and it says when the simulator goes and comes."""
+"""The window: quiet, with its own TF topics, and a notice when the simulator ends or returns."""
 
 import os
 import re
@@ -23,15 +23,15 @@ from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
-STEP = 40.0  # [s, wall] for a program to come up on a slow machine
+STEP = 40.0  # [s, wall] timeout of the start of a program
 GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: the simulator is running again'
-# Of itself RViz does so in one start of 28.
+# RViz does so in one of 28 starts.
 CRASHED = 'gzclient: RViz crashed as it opened'
 
 
 PICTURES = Path(__file__).resolve().parents[2] / 'tools' / 'make_pictures.py'
-# Colours in the room, and ways that faces look which the camera sees. Of the first three the robot
-# is a mesh, and all can move.
+# Colours in the room, and normals of faces that the camera sees. Of the first three, the robot
+# is a mesh, and all are movable.
 SEEN = [
     ('the plate of the robot', (0.16, 0.47, 0.86), [(0, 0, 1)]),
     ('the crate', (0.25, 0.55, 0.6), [(0, 0, 1), (1, 0, 0)]),
@@ -39,13 +39,13 @@ SEEN = [
     ('the bookcase', (0.6, 0.42, 0.26), [(0, 0, 1), (1, 0, 0), (0, -1, 0)]),
     ('the wall', (0.85, 0.75, 0.55), [(0, 0, 1), (1, 0, 0)]),
 ]
-TO_SUN = np.array([0.5, -0.1, 0.9]) / np.linalg.norm([0.5, -0.1, 0.9])  # where Gazebo's sun stands
-CLOSE = 8  # of 255: the picture has few colours
+TO_SUN = np.array([0.5, -0.1, 0.9]) / np.linalg.norm([0.5, -0.1, 0.9])  # direction of Gazebo's sun
+CLOSE = 8  # of 255: the image has few colours
 ENOUGH = 200  # pixels; the smallest of those faces has 350
 
 
 def said_by(window):
-    """Return the lines on the screen, from the start of the RViz that stands."""
+    """Return the lines on the screen since the last start of RViz."""
     lines = window.shown().splitlines()
     starts = [i + 1 for i, line in enumerate(lines) if line.startswith(CRASHED)]
     return lines[max(starts, default=0):]
@@ -68,7 +68,7 @@ class WindowTest(unittest.TestCase):
         return terminal
 
     def window(self):
-        """Open the window and wait until it takes markers and frames of the simulator."""
+        """Open the window and wait until it subscribes to the simulator's markers and frames."""
         terminal = self.open('gzclient', f'__name:={self._testMethodName}')
         self.wait_for_rviz(f'/{self._testMethodName}')
         return terminal
@@ -85,7 +85,7 @@ class WindowTest(unittest.TestCase):
 
     @staticmethod
     def process_of(node):
-        """Return the number of a node's process."""
+        """Return the process id of a node."""
         uri = rospy.get_master().lookupNode(node)[2]
         return ServerProxy(uri).getPid('/test')[2]
 
@@ -98,7 +98,7 @@ class WindowTest(unittest.TestCase):
         self.addCleanup(subscriber.unregister)
         return messages
 
-    def test_it_reads_no_tf_and_says_nothing(self):
+    def test_window_reads_no_tf_and_prints_nothing(self):
         self.server()
         window = self.window()
         self.assertEqual(self.read_by(f'/{self._testMethodName}') & {'/tf', '/tf_static'}, set())
@@ -106,7 +106,7 @@ class WindowTest(unittest.TestCase):
         wait_until(lambda: window.process.poll() is not None, 'the end', STEP)
         self.assertEqual((window.process.returncode, said_by(window)), (0, []))
 
-    def test_it_opens_again_after_rviz_has_crashed_at_its_start(self):
+    def test_window_restarts_rviz_after_a_crash_at_its_start(self):
         self.server()
         node = f'/{self._testMethodName}'
         window = self.open('gzclient', f'__name:={node[1:]}')
@@ -117,7 +117,7 @@ class WindowTest(unittest.TestCase):
         self.wait_for_rviz(node)
         self.assertNotEqual(self.process_of(node), first)
 
-    def test_a_second_window_opens_beside_the_first(self):
+    def test_second_window_opens_beside_the_first(self):
         self.server()
         first, node = self.window(), f'/{self._testMethodName}'
         second = self.open('gzclient', f'__name:={self._testMethodName}')
@@ -139,9 +139,9 @@ class WindowTest(unittest.TestCase):
         wait_until(lambda: set(places()) == {GROUND, 'box'}, 'all models', STEP)
         state = ModelState(model_name='box', pose=pose(x=7.0))
         self.assertTrue(proxy('set_model_state', SetModelState)(state).success)
-        wait_until(lambda: abs(places()['box'] - 7.0) < 0.01, 'the box where it was set', STEP)
+        wait_until(lambda: abs(places()['box'] - 7.0) < 0.01, 'the box at its new pose', STEP)
 
-    def test_the_picture_of_the_readme_is_made_and_the_sun_lights_all_in_it(self):
+    def test_picture_of_the_readme_is_lit_by_the_sun(self):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([PICTURES, folder, 'gzclient.png'], check=True, timeout=2.0 * STEP)
             (made,) = Path(folder).iterdir()
@@ -152,7 +152,7 @@ class WindowTest(unittest.TestCase):
                 there = (np.abs(pixels - lit) <= CLOSE).all(axis=2).sum()
                 self.assertGreater(there, ENOUGH, (thing, normal, lit))
 
-    def test_it_says_when_the_simulator_has_gone_and_when_there_is_one_again(self):
+    def test_notice_when_the_simulator_ends_and_returns(self):
         server, window = self.server(), self.window()
         markers = self.collect('/gazebo/view/markers', MarkerArray)
         wait_until(lambda: markers, 'the scene', STEP)
@@ -170,7 +170,7 @@ class WindowTest(unittest.TestCase):
         wait_until(lambda: window.process.poll() is not None, 'the end', STEP)
         self.assertEqual(window.process.returncode, 0, window.shown())
         self.assertNotIn('Traceback', window.shown())
-        # RViz itself may say that time has jumped back
+        # RViz itself may report that time has jumped back
         said = [line for line in said_by(window) if line.startswith('gzclient:')]
         self.assertEqual(len(said), 2, window.shown())
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Topics, services and parameters are exactly Gazebo's, as upstream's strict network test wants."""
+"""Topics, services and parameters are exactly Gazebo's, as in upstream's network test."""
 
 import sys
 
@@ -21,7 +21,7 @@ OF_GAZEBO = set(PUBLISHED) | set(SUBSCRIBED) | OF_ROSOUT
 
 
 def nodes():
-    """Return the names of all nodes that publish, subscribe or serve something."""
+    """Return the names of all nodes that publish, subscribe or offer services."""
     return {node for entries in rospy.get_master().getSystemState()[2]
             for _, nodes in entries for node in nodes}
 
@@ -45,7 +45,7 @@ class WithoutExtensionsTest(SimulatorTest):
         self.assertEqual(topics_of(), OF_GAZEBO | OF_ROBOT)
         self.assertEqual(services_of(), set(SERVICES))
 
-    def test_spawn_model_is_content_with_a_simulator_that_cannot_tell_what_it_left_out(self):
+    def test_spawn_model_accepts_a_simulator_without_the_omissions_service(self):
         done = spawn_model('box', SENSOR_BOX)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn('Successfully spawned entity', done.stdout)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""World files of users: good ones, partly good ones, and ones that are not there."""
+"""World files of users: valid, partly valid, and missing ones."""
 
 import sys
 import tempfile
@@ -46,7 +46,7 @@ class WorldFilesTest(unittest.TestCase):
         self.world = Path(folder.name, 'moon.world')
         self.world.write_text(WORLD, encoding='utf-8')
 
-    def test_a_robot_is_spawned_in_the_users_world(self):
+    def test_robot_is_spawned_in_the_users_world(self):
         with ServerProcess(str(self.world), NAME) as server:
             server.wait_ready()
             physics = other('get_physics_properties', GetPhysicsProperties)()
@@ -58,17 +58,17 @@ class WorldFilesTest(unittest.TestCase):
             self.assertEqual(other('get_world_properties', GetWorldProperties)().model_names,
                              ['ground_plane', 'wall', 'rosbots'])
             state = other('get_model_state', GetModelState)
-            wait_until(lambda: state('rosbots', '').pose.position.z < 0.4, 'the robot falling')
+            wait_until(lambda: state('rosbots', '').pose.position.z < 0.4, 'fall of the robot')
             code, printed = server.end()
         self.assertEqual(code, 0)
         for fault in (f"{self.world}, line 7: 'model://nowhere'", f'{self.world}, line 11: link',
                       "world plugin 'weather' (libweather.so, line 12) is not run"):
             self.assertIn(fault, printed)
 
-    def test_a_world_that_is_not_there_ends_with_a_sentence_and_harms_nobody(self):
+    def test_missing_world_is_an_error_and_does_not_affect_other_servers(self):
         before = proxy('get_world_properties', GetWorldProperties)()
         for name in ('worlds/mud.world', '/no/such.world'):
-            # under the name of the server that runs, which would have to make way
+            # under the name of the running server
             with ServerProcess(name) as server:
                 code, printed = server.wait()
             self.assertEqual(code, 1)
@@ -79,7 +79,7 @@ class WorldFilesTest(unittest.TestCase):
         self.assertEqual(after.model_names, before.model_names)
         self.assertGreater(after.sim_time, before.sim_time)
 
-    def test_a_broken_world_ends_with_a_sentence(self):
+    def test_invalid_world_is_an_error(self):
         self.world.write_text(WORLD[:-20], encoding='utf-8')
         with ServerProcess(str(self.world), NAME) as server:
             code, printed = server.wait()
