@@ -48,8 +48,9 @@ class CameraTest(SimulatorTest):
         self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
         self.read('/camera1/image_raw', Image, 2)
         self.pause()
+        infos = self.collect('/camera1/camera_info', CameraInfo)
         self.assertEqual(len(self.read('/camera1/image_raw', Image, 1)), 1)
-        self.assertEqual(self.collect('/camera1/camera_info', CameraInfo), [])
+        self.assertEqual(infos, [])
 
     def test_clients_set_rate_and_camera_info(self):
         self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})

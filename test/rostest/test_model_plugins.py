@@ -139,7 +139,7 @@ class ModelPluginsTest(SimulatorTest):
         self.assertEqual(self.actual(transforms), [])
         self.assertAlmostEqual(self.model_state('hog', '').pose.position.z, 0.5)
         lead(TFMessage([edge]))
-        wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'the link at the frame')
+        wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'the frame reached')
         told = self.actual(transforms)
         self.assertEqual({edge.header.frame_id for edge in told}, {'world'})
         self.assertEqual(period(told), 1)

@@ -135,10 +135,10 @@ def test_links_without_mass_are_omissions():
     assert spec.left_out == ("link 'b'",)
 
 
-def test_log_about_a_hundred_thousand_missing_meshes_is_short(caplog):
+def test_log_about_thousands_of_missing_meshes_is_short(caplog):
     mesh = shape('visual', '<mesh filename="/nowhere/m{}.dae"/>')
     urdf(''.join(mesh.format(i) for i in range(2000)) + mesh.format(0) * 2000)
-    assert len(caplog.records) <= 50
+    assert 0 < len(caplog.records) <= 50
     assert all(len(message) < 2500 for message in caplog.messages)
 
 
