@@ -1,4 +1,4 @@
-"""A physics engine whose motors obey at once, whose joints turn, and whose bodies stay put."""
+"""A fake physics engine: motors reach their targets at once, joints turn, bodies do not move."""
 
 import copy
 import math
