@@ -11,6 +11,7 @@ from support.scenes import castered
 from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
+from rosbots_description.sim.physics.bullet.client import pybullet
 
 # Two links on a joint with a spring, with an inertia that makes them tumble.
 ARM = (
@@ -175,13 +176,25 @@ def test_reset_world_with_a_snapshot_moves_like_a_new_one():
     assert found[0] == found[1]
 
 
-def test_unreferenced_snapshots_are_freed():
+def test_unreferenced_snapshots_are_freed(monkeypatch):
+    save, remove, saved = pybullet.saveState, pybullet.removeState, set()
+
+    def recorded_save(**options):
+        saved.add(state := save(**options))
+        return state
+
+    def recorded_remove(state, **options):
+        remove(state, **options)
+        saved.remove(state)
+
+    monkeypatch.setattr(pybullet, 'saveState', recorded_save)
+    monkeypatch.setattr(pybullet, 'removeState', recorded_remove)
     with empty_world() as world:
         for _ in range(20):
             snapshot = world.engine.snapshot()
-        assert len(world.engine._snapshots._states) == 1
+        assert len(saved) == 1
         del snapshot
-        assert not world.engine._snapshots._states
+        assert not saved
 
 
 def test_restore_costs_as_much_as_some_steps():
