@@ -10,12 +10,12 @@ from mesh_shapes import Surface, corner_normals
 _add = ElementTree.SubElement
 
 NAMESPACE = 'http://www.collada.org/2005/11/COLLADASchema'
-DATE = '2026-01-01T00:00:00Z'  # Collada demands one; a fixed one keeps the files reproducible
+DATE = '2026-01-01T00:00:00Z'  # required by Collada; fixed for reproducible files
 
 
 @dataclass(frozen=True)
 class Colour:
-    """How a part reflects light: red, green, blue and gloss, each in 0..1."""
+    """Reflection of a part: red, green, blue and gloss, each in 0..1."""
 
     name: str
     rgb: tuple[float, float, float]
@@ -23,10 +23,10 @@ class Colour:
 
 
 def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = 'Z_UP') -> str:
-    """Return the text of a Collada file with one mesh `name` in metres, a colour's parts joined.
+    """Return the text of a Collada file with one mesh `name` in metres, joined by colour.
 
-    `up_axis` is a statement for the reader's modelling tool only: RViz, Gazebo and PyBullet do not
-    turn the mesh by it.
+    `up_axis` is metadata for modelling tools: RViz, Gazebo and PyBullet do not
+    rotate the mesh by it.
     """
     surfaces: dict[Colour, list[Surface]] = {}
     for colour, surface in parts:
@@ -91,7 +91,7 @@ def _add_mesh(geometry: ElementTree.Element, name: str, surfaces: dict[Colour, S
 
 
 def _add_source(mesh: ElementTree.Element, identity: str, vectors: np.ndarray) -> np.ndarray:
-    """Add each different vector once; return for every input vector where it stands."""
+    """Add each distinct vector once; return the index of every input vector."""
     rows, index = np.unique(np.round(vectors, 6) + 0.0, axis=0, return_inverse=True)
     source = _add(mesh, 'source', id=identity)
     array = _add(source, 'float_array', id=f'{identity}-array', count=str(rows.size))
@@ -104,7 +104,7 @@ def _add_source(mesh: ElementTree.Element, identity: str, vectors: np.ndarray) -
 
 
 def _add_scene(root: ElementTree.Element, name: str, colours: Iterable[Colour]) -> None:
-    """Add the one scene with the one node that shows the mesh."""
+    """Add the scene with a node for the mesh."""
     scenes = _add(root, 'library_visual_scenes')
     node = _add(_add(scenes, 'visual_scene', id='scene', name='scene'), 'node',
                           id=name, name=name)

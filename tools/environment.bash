@@ -1,7 +1,6 @@
 # Enter the environment of the workspace; sourced by ./rosbots, needs ROOT and WORKSPACE.
 
-# The workspaces that the caller has sourced come before ours, so that a package of theirs is found
-# where both have one of that name.
+# The workspaces that the caller has sourced precede ours: their packages hide ours of the same name.
 enter_environment() {
   local name room
   room=$(find_room) || exit 1
@@ -20,8 +19,7 @@ enter_environment() {
     export "$name=$(put_before "${callers[$name]}" "${!name:-}")"
   done
   export PYTHONUTF8=1  # so that names and files are read as UTF-8 whatever the locale says
-  # roslaunch looks for a program by distutils; setuptools would put all of itself in its place,
-  # which makes roslaunch start 0.1 s later.
+  # roslaunch imports distutils; replaced by setuptools, it would start 0.1 s later.
   export SETUPTOOLS_USE_DISTUTILS=${SETUPTOOLS_USE_DISTUTILS:-stdlib}
   export ROSBOTS_ROOT=$ROOT
   find_ros_home
@@ -71,10 +69,10 @@ put_before() {
   echo "$path"
 }
 
-# Forget what the caller has sourced: for what shows or tests the robot of this project.
+# Drop the workspaces of the caller: for commands that show or test the robot of this project.
 leave_workspaces() { unset CMAKE_PREFIX_PATH PKG_CONFIG_PATH PYTHONPATH ROS_PACKAGE_PATH; }
 
-# ROS writes its logs there, and roslaunch starts nothing where it cannot.
+# ROS writes its logs there; roslaunch fails if it cannot.
 find_ros_home() {
   local temporary=${TMPDIR:-/tmp}/rosbots-$UID
   if takes_logs "${ROS_HOME:-${HOME:-/nonexistent}/.ros}"; then return; fi
@@ -92,7 +90,7 @@ find_ros_home() {
 
 takes_logs() { mkdir -p "$1/log" 2> /dev/null && [[ -w $1/log ]]; }
 
-# Nodes tell each other this machine's name; where that leads nowhere they would never meet.
+# Nodes announce the hostname to each other; if it cannot be resolved, they could not connect.
 find_address() {
   if [[ -z ${ROS_HOSTNAME:-}${ROS_IP:-} ]] && ! timeout 2 getent hosts "$(uname -n)" > /dev/null; then
     export ROS_HOSTNAME=localhost

@@ -42,15 +42,15 @@ def main() -> int:
     for name in missing:
         link = source / name
         if link.exists():
-            return _complain(f'{link} is in the way, and no package of that name')
-        link.unlink(missing_ok=True)  # it led to where ours was before
+            return _complain(f'{link} is in the way and is not a package of that name')
+        link.unlink(missing_ok=True)  # a link to the previous folder of our package
         link.symlink_to(ours[name])
     print(f'linked into {source}: {", ".join(missing) or "nothing new"}')
     return 0
 
 
 def _find_theirs(source: Path, ours: Mapping[str, Path]) -> dict[str, Path]:
-    """Return the user's packages that have names of ours: all in `source`, the robot also below."""
+    """Return the user's packages with our names: in `source`; the robot also in underlays."""
     below = [place for place in os.environ.get('ROS_PACKAGE_PATH', '').split(os.pathsep) if place]
     theirs = {name: folder for place in reversed(below) for name, folder in _packages(Path(place))
               if name == ROBOT and not _is_same(folder, ours[ROBOT])}
@@ -66,7 +66,7 @@ def _packages(place: Path) -> list[tuple[str, Path]]:
         try:
             name = ElementTree.parse(folder / 'package.xml').findtext('name', '').strip()
         except (OSError, ElementTree.ParseError):
-            continue  # catkin says what is wrong with it
+            continue  # catkin reports the error
         found.append((name, folder))
     return found
 
@@ -76,7 +76,7 @@ def _is_same(one: Path, other: Path) -> bool:
 
 
 def _hide(hidden: bool) -> None:
-    """Hide this clone, which catkin would take for the robot's package, or show it again."""
+    """Hide this clone from catkin as a package, or show it again."""
     if hidden:
         HIDE.touch()
     else:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Make the robot's meshes: `tools/make_meshes.py [folder]` (default: the package's meshes folder).
 
-Each mesh lives in coordinates of its own, chosen so that the origins and scales in
+Each mesh has its own coordinates, chosen so that the origins and scales in
 urdf/rosbots.xacro put it in place; the dimensions below are in those coordinates. One unit of
 rasp.dae is 25 mm of a real board.
 """
@@ -54,7 +54,7 @@ def base() -> list:
                   at_height(outer_top, height), at_height(inner, height),
                   at_height(inner, 0.0), at_height(outer_top, 0.0)])
 
-    # Holes in two lines along each long side; the four bosses carry the stands between the decks.
+    # Holes in two lines along each long side; the four bosses carry the posts between the decks.
     hole_x = (0.24, 0.36, 0.48, 0.62, 0.74, 0.86)
     hole_y = (0.10, 0.20, 0.80, 0.90)
     sides = (-0.03, 0.03)  # of the cell that a hole is cut from
@@ -69,7 +69,7 @@ def base() -> list:
 
 
 def wheel() -> list:
-    """Return a wheel about z, alike from both sides: radius 0.029 m, z 0.0017 to 0.0337 m."""
+    """Return a wheel about z, symmetric: radius 0.029 m, z 0.0017 to 0.0337 m."""
     radius, low, high, half = 0.0290, 0.0017, 0.0337, 0.0160
     # (radius [m], distance from the middle as a part of half the width), outside to inside
     tyre = [(0.0270, 0.72), (0.0262, 0.90), (0.0240, 1.0), (0.0212, 0.96), (0.0196, 0.85)]
@@ -84,7 +84,7 @@ def wheel() -> list:
     parts = [(RUBBER, lathe(turned_profile(tyre, -1.0) + turned_profile(tyre, 1.0), 30)),
              (GRAPHITE, lathe(turned_profile(well, -1.0)[1:] + turned_profile(well, 1.0), 30)),
              *[(YELLOW, lathe(turned_profile(lip, sign), 30)) for sign in (-1.0, 1.0)]]
-    treads = 20  # divisible by four: the wheel's box is then as wide as its circle
+    treads = 20  # divisible by four, so that the bounding box is as wide as the circle
     for i in range(treads):
         turn = i * 2.0 * math.pi / treads
         parts += [(RUBBER, turned(_tread(radius, half, math.pi / treads, sign), turn))
@@ -101,7 +101,7 @@ def wheel() -> list:
 
 
 def _tread(radius: float, half: float, width: float, sign: float) -> np.ndarray:
-    """Return one block of a tractor's tyre, from the middle slanting back to the side `sign`.
+    """Return one tread block of a tractor tyre, slanting back from the middle to the side `sign`.
 
     `width` is the angle it covers; its front inner corner lies on the first axis at `radius`.
     """
@@ -123,7 +123,7 @@ def rasp() -> list:
     origin, per_mm, top = (6.8, 4.4, 0.0), 0.04, 1.6
     parts = [(GREEN, prism(rectangle((0.0, 0.0), (83.0, 57.5), 4.0, 3), 0.0, top))]
     pad = lathe([(2.2, top - 0.2), (3.4, top - 0.2), (3.4, top + 0.25), (2.2, top + 0.25)], 16)
-    parts += [(GOLD, moved(pad, (x, y, 0.0)))  # where the stands of the URDF pass
+    parts += [(GOLD, moved(pad, (x, y, 0.0)))  # where the posts of the URDF pass
               for x in (11.7, 76.4) for y in (9.75, 40.75)]
 
     parts.append((BLACK, block((9.0, 50.0, top), (60.0, 55.2, top + 2.5))))
@@ -187,7 +187,7 @@ def camera() -> list:
     outline = rectangle((0.0, 0.0), (width, height), 0.009, 4)
     centre = (width / 2.0, height / 2.0)
 
-    seat = body - 0.001  # what stands on the front begins inside it
+    seat = body - 0.001  # parts on the front begin inside it
 
     def barrel(profile: Profile) -> Surface:
         return moved(along_first_axis(lathe(profile, 24)), (0.0, *centre))
@@ -211,7 +211,7 @@ def camera() -> list:
     ]
 
 
-# The article's camera says that its y axis points up; no tool of ROS turns a mesh for that.
+# The article's camera mesh declares y up; no tool of ROS rotates a mesh for that.
 MESHES = {'base': (base, 'Z_UP'), 'battery': (battery, 'Z_UP'), 'camera': (camera, 'Y_UP'),
           'rasp': (rasp, 'Z_UP'), 'wheel': (wheel, 'Z_UP')}
 

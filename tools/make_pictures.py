@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Make the README's pictures anew: `./rosbots exec tools/make_pictures.py [folder [picture …]]`.
+"""Regenerate the README's pictures: `./rosbots exec tools/make_pictures.py [folder [picture …]]`.
 
-The windows are opened on a display that nobody sees (Xvfb), which keeps its pixels in a file; the
+The windows are opened on a virtual display (Xvfb), which stores its pixels in a file; the
 demo draws its own two. The default is all of them, into doc/images; `speed.png` is drawn by
 `./rosbots bench`.
 """
@@ -25,17 +25,17 @@ from rosbots_description.cli import demo
 from rosbots_description.cli.launched import Launched
 
 ROOT = Path(__file__).resolve().parents[1]
-SCREEN = (1400, 960)  # [pixels] more than any window has
+SCREEN = (1400, 960)  # [pixels], larger than any window
 WIDTH = 900  # of the pictures [pixels]
-COLOURS = 256  # of a picture; so few make small files
-REFINED = 2  # times that the colours are chosen anew
-START = 60.0  # [s, wall] for a window to show all of it
-LOOK = 0.5  # [s, wall] between two looks at the screen
-STILL = 0.5  # mean difference of two looks when nothing comes; a clock ticks on [0-255]
-LOOKS = 5  # alike when nothing more comes; a first picture takes a while
-LEAST = 1000  # wide is a window [pixels]; what RViz shows while it starts is less
-FEWEST = 300  # colours with a robot in sight
-# Launch files to open one after the other, each with the text after which the next may come.
+COLOURS = 256  # of a picture, few for small files
+REFINED = 2  # iterations of the choice of colours
+START = 60.0  # [s, wall] timeout of the start of a window
+POLL_PERIOD = 0.5  # [s, wall] between two screenshots
+STILL = 0.5  # mean difference of two screenshots of a steady window with a clock [0-255]
+LOOKS = 5  # equal screenshots of a steady window; the first image takes a while
+LEAST = 1000  # width of a window [pixels]; RViz's splash screen is narrower
+FEWEST = 300  # colours of a window that shows the robot
+# Launch files to start in order, each with the output to wait for before the next.
 WINDOWS: dict[str, list[tuple[list[str], str | None]]] = {
     'rviz.png': [(['rosbots_description', 'rviz.launch'], None)],
     'gzclient.png': [
@@ -55,7 +55,7 @@ class PictureError(RuntimeError):
 
 @contextmanager
 def display(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Open a display; give its name and the file with its pixels."""
+    """Open a display; yield its name and the file of its pixels."""
     read, write = os.pipe()
     server = subprocess.Popen(
         ['Xvfb', '-displayfd', str(write), '-nocursor', '-fbdir', folder,
@@ -75,13 +75,13 @@ def screen(file: Path) -> np.ndarray:
     content = file.read_bytes()
     header = struct.unpack_from('>25I', content)
     size, width, height, line, colours = header[0], header[4], header[5], header[12], header[19]
-    begin = size + 12 * colours  # behind the table of colours
+    begin = size + 12 * colours  # after the colour table
     rows = np.frombuffer(content, np.uint8, line * height, begin).reshape(height, line)
     return rows[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1]
 
 
 def window(pixels: np.ndarray) -> np.ndarray:
-    """Return what is not the black ground of the screen."""
+    """Return the part of the screen that is not black."""
     rows, columns = (np.flatnonzero(pixels.any(axis=axes)) for axes in ((1, 2), (0, 2)))
     if not len(rows):
         return pixels[:0, :0]
@@ -89,7 +89,7 @@ def window(pixels: np.ndarray) -> np.ndarray:
 
 
 def steady(file: Path) -> np.ndarray:
-    """Return the window once all of it is there and nothing moves any more."""
+    """Return the window when it is complete and steady."""
     deadline, before, alike = time.monotonic() + START, None, 1
     while time.monotonic() < deadline:
         now = window(screen(file))
@@ -100,15 +100,15 @@ def steady(file: Path) -> np.ndarray:
                 and len(np.unique(now.reshape(-1, 3), axis=0)) >= FEWEST):
             return now
         before = now
-        time.sleep(LOOK)
-    raise PictureError(f'no window stood still within {START:g} s')
+        time.sleep(POLL_PERIOD)
+    raise PictureError(f'no steady window within {START:g} s')
 
 
 def picture_of(steps: Sequence[tuple[list[str], str | None]], folder: Path) -> np.ndarray:
-    """Open windows by launch files and return what they show."""
+    """Open windows by launch files; return the pixels."""
     opened = []
     with display(folder) as (name, pixels):
-        environment = surroundings(folder, DISPLAY=name)
+        environment = ros_environment(folder, DISPLAY=name)
         try:
             for number, (arguments, text) in enumerate(steps):
                 log = folder / f'{number}.log'
@@ -127,11 +127,11 @@ def wait_for(text: str, log: Path) -> None:
     while text not in log.read_text(errors='replace'):
         if time.monotonic() > deadline:
             raise PictureError(f"'{text}' was not printed within {START:g} s (see {log})")
-        time.sleep(LOOK)
+        time.sleep(POLL_PERIOD)
 
 
-def surroundings(folder: Path, **more: str) -> Mapping[str, str]:
-    """Return an environment with a ROS master of its own."""
+def ros_environment(folder: Path, **more: str) -> Mapping[str, str]:
+    """Return environment variables with a separate ROS master."""
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
         port = probe.getsockname()[1]
@@ -140,17 +140,17 @@ def surroundings(folder: Path, **more: str) -> Mapping[str, str]:
 
 
 def save(image: Image.Image, path: Path) -> None:
-    """Write a picture that is small as a file."""
+    """Write a picture as a small file."""
     width = min(WIDTH, image.width)
     image = image.convert('RGB').resize(
         (width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
-    # Refined, since the method alone shows wide faces up to 17 of 255 beside their colour.
+    # Refined: without, large faces are up to 17 of 255 off their colour.
     image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=REFINED).save(path, optimize=True)
     print(f'{path}: {path.stat().st_size / 1000:.0f} kB', flush=True)
 
 
 def make_demo(images: Path, names: Iterable[str]) -> None:
-    """Run the demo and write those of its pictures."""
+    """Run the demo and write these pictures of it."""
     with tempfile.TemporaryDirectory() as folder:
         if demo.main(['--output', folder]):
             raise PictureError('the demo failed')

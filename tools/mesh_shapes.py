@@ -14,7 +14,7 @@ import numpy as np
 
 Surface = np.ndarray
 
-CREASE = math.radians(38.0)  # faces that meet at a sharper angle keep an edge between them
+CREASE = math.radians(38.0)  # faces at a greater angle keep a sharp edge
 
 
 def circle(radius: float, points: int, centre: Sequence[float] = (0.0, 0.0)) -> np.ndarray:
@@ -54,7 +54,7 @@ def at_height(outline: np.ndarray, height: float) -> np.ndarray:
 
 
 def bridge(lower: np.ndarray, upper: np.ndarray) -> Surface:
-    """Return the band between two loops of equally many points, `upper` where the thumb points."""
+    """Return the band between two loops of equally many points; `upper` by the right-hand rule."""
     next_lower, next_upper = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
     return np.concatenate([np.stack([lower, next_lower, next_upper], axis=1),
                            np.stack([lower, next_upper, upper], axis=1)])
@@ -92,7 +92,7 @@ def block(low: Sequence[float], high: Sequence[float], bevel: float = 0.0) -> Su
 
 
 def lathe(profile: Sequence[tuple[float, float]], segments: int) -> Surface:
-    """Return the ring made by turning a closed (radius, height) profile about the third axis."""
+    """Return the solid of revolution of a closed (radius, height) profile about the third axis."""
     return ring([at_height(circle(radius, segments), height) for radius, height in profile])
 
 
@@ -131,7 +131,7 @@ def _cell_with_hole(corners: np.ndarray, radius: float, bottom: float, top: floa
 
 
 def along_first_axis(surface: Surface) -> Surface:
-    """Turn a surface: its third axis becomes the first, its first the second, its second third."""
+    """Rotate a surface: axis 3 becomes axis 1, axis 1 becomes 2, and 2 becomes 3."""
     return surface[:, :, [2, 0, 1]]
 
 
@@ -141,7 +141,7 @@ def moved(surface: Surface, offset: Sequence[float]) -> Surface:
 
 
 def turned(surface: Surface, angle: float) -> Surface:
-    """Return a surface turned about the third axis by `angle`, counter-clockwise."""
+    """Return a surface rotated about the third axis by `angle`, counter-clockwise."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return surface @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
@@ -150,7 +150,7 @@ def corner_normals(surface: Surface) -> np.ndarray:
     """Return a unit normal for each corner, shaped as the surface: smooth, but sharp at creases.
 
     A corner's normal is the mean of the faces that share its point, weighted by area, leaving out
-    those which lie at more than `CREASE` to its own face.
+    those at an angle above `CREASE` to its own face.
     """
     area = np.cross(surface[:, 1] - surface[:, 0], surface[:, 2] - surface[:, 0])
     unit = area / np.linalg.norm(area, axis=1, keepdims=True)

@@ -95,7 +95,7 @@ def test_error_names_what_is_in_the_way_of_a_link(tmp_path):
     (tmp_path / 'src' / 'xacro').mkdir(parents=True)
     result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')
     assert (result.returncode, result.stderr) == (
-        2, f'rosbots: {tmp_path}/src/xacro is in the way, and no package of that name\n')
+        2, f'rosbots: {tmp_path}/src/xacro is in the way and is not a package of that name\n')
 
 
 def test_workspace_over_one_with_the_users_robot_gets_no_second_one(theirs, tmp_path):
