@@ -1,4 +1,4 @@
-"""The examples of doc/python_api.md run as they stand there, and print what the page says."""
+"""The examples of doc/python_api.md run and print what the page shows."""
 
 import re
 import subprocess
@@ -11,18 +11,18 @@ EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
 EXAMPLES = EXAMPLE.findall(PAGE.read_text(encoding='utf-8'))
 
 
-def test_every_example_says_what_it_prints():
+def test_every_example_has_its_output():
     assert len(EXAMPLES) == PAGE.read_text(encoding='utf-8').count('```python') > 0
 
 
 @pytest.mark.parametrize(('code', 'printed'), EXAMPLES, ids=range(len(EXAMPLES)))
-def test_an_example_prints_what_the_page_says(code, printed, capsys):
+def test_output_of_an_example_is_that_of_the_page(code, printed, capsys):
     exec(compile(code, str(PAGE), 'exec'), {})
     assert capsys.readouterr().out == printed
 
 
 @pytest.mark.parametrize('code', [code for code, _ in EXAMPLES], ids=range(len(EXAMPLES)))
-def test_an_example_is_lint_clean(code):
+def test_example_is_lint_clean(code):
     checked = subprocess.run(
         ['ruff', 'check', '--ignore', 'D100,T201', '--stdin-filename', 'example.py', '-'],
         input=code, cwd=ROOT, capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""A saved state: from it the world goes on bit for bit, as often as one likes."""
+"""A saved state: bit-identical continuation after every restore."""
 
 import hashlib
 import math
@@ -17,11 +17,11 @@ WATCHER = """<sdf version="1.6"><model name="puck"><link name="l">
 <collision name="c"><geometry><box><size>1 1 0.2</size></box></geometry></collision></link>
 <plugin name="move" filename="libgazebo_ros_planar_move.so"><odometryRate>30</odometryRate></plugin>
 </model></sdf>"""
-FAST_RESET = 20e-3  # [s, wall] for the robot in the room, on a machine that does other things, too
+FAST_RESET = 20e-3  # [s, wall] for the robot in the room, on a busy machine
 
 
 def digest(world, steps=1500, chunk=70):
-    """Return a fingerprint of what happens: every bit of states and readings."""
+    """Return a hash of all states and readings."""
     found = hashlib.sha256()
     for _ in range(0, steps, chunk):
         world.run(chunk)
@@ -34,7 +34,7 @@ def digest(world, steps=1500, chunk=70):
 
 
 def driving_robot(world):
-    """Spawn the robot with all that it can do: it drives, and its outputs are read."""
+    """Spawn the robot with all outputs read, and drive it."""
     robot = world.spawn(XACRO, z=0.5)
     drive = robot.plugin('diff_drive')
     for output in drive.outputs.values():
@@ -46,7 +46,7 @@ def driving_robot(world):
 
 
 @pytest.mark.parametrize('name', ['empty', 'room', 'maze', 'shapes'])
-def test_the_same_bits_follow_each_restore(name):
+def test_continuation_after_each_restore_is_bit_identical(name):
     with World.from_file(name) as world:
         robot = driving_robot(world)
         state = world.save_state()
@@ -63,7 +63,7 @@ def test_the_same_bits_follow_each_restore(name):
             assert digest(world) == first
 
 
-def test_encoders_go_on_from_where_they_were():
+def test_encoder_odometry_is_restored():
     text = expand_xacro(str(XACRO), {}, PackageSearch()).replace(
         '<legacyMode>', '<odometrySource>encoder</odometrySource><legacyMode>')
     with World.empty() as world:
@@ -80,7 +80,7 @@ def test_encoders_go_on_from_where_they_were():
             world.restore(state)
 
 
-def test_time_forces_commands_and_readings_are_those_of_then():
+def test_time_forces_commands_and_readings_are_restored():
     with World.empty() as world:
         robot, crate = driving_robot(world), world.spawn(CRATE, x=3.0, z=0.5)
         drive = robot.plugin('diff_drive')
@@ -102,7 +102,7 @@ def test_time_forces_commands_and_readings_are_those_of_then():
         assert crate.pose == moved
 
 
-def test_who_reads_stays_who_it_is_now():
+def test_readers_are_not_restored():
     with World.empty() as world:
         drive = world.spawn(WATCHER, z=0.1).plugin('planar_move')
         drive.command(0.3, 0.1)
@@ -121,7 +121,7 @@ def test_who_reads_stays_who_it_is_now():
         assert new[-1].twist.linear[0] == pytest.approx(0.3, rel=0.05)
 
 
-def test_several_states_are_restored_in_any_order():
+def test_several_states_can_be_restored_in_any_order():
     with World.empty() as world:
         robot, states, poses = driving_robot(world), [], []
         for _ in range(3):
@@ -134,7 +134,7 @@ def test_several_states_are_restored_in_any_order():
             world.run(50)
 
 
-def test_a_state_of_another_world_or_of_other_models_is_refused():
+def test_state_of_another_world_or_other_models_is_rejected():
     with World.empty() as world, World.empty() as other:
         state = world.save_state()
         with pytest.raises(SimError, match='another world'):
@@ -146,7 +146,7 @@ def test_a_state_of_another_world_or_of_other_models_is_refused():
         world.restore(state)
 
 
-def test_a_state_that_outlives_its_world_does_no_harm_to_the_next():
+def test_state_of_a_closed_world_does_not_affect_another():
     with World.empty() as world:
         old = world.save_state()
     with World.empty() as world:
@@ -159,7 +159,7 @@ def test_a_state_that_outlives_its_world_does_no_harm_to_the_next():
         assert robot.pose == pose
 
 
-def test_a_state_from_before_a_reset_is_refused():
+def test_state_from_before_a_reset_is_rejected():
     with World.empty() as world:
         state = world.save_state()
         world.reset_simulation()
@@ -167,7 +167,7 @@ def test_a_state_from_before_a_reset_is_refused():
             world.restore(state)
 
 
-def test_a_robot_that_diverged_is_where_it_was():
+def test_diverged_robot_is_restored():
     with World.empty() as world:
         robot = driving_robot(world)
         state, first = world.save_state(), None
@@ -178,7 +178,7 @@ def test_a_robot_that_diverged_is_where_it_was():
         assert digest(world, 300) == first
 
 
-def test_a_restore_takes_milliseconds():
+def test_restore_takes_milliseconds():
     with World.from_file('room') as world:
         driving_robot(world)
         state, best = world.save_state(), math.inf

@@ -1,4 +1,4 @@
-"""The world that scripts use: what it takes, what it gives, and what it says to bad input."""
+"""The public World: arguments, results, and errors."""
 
 import importlib
 import math
@@ -36,7 +36,7 @@ def world():
         yield opened
 
 
-def test_a_robot_moves_as_in_the_world_that_ros_serves(world):
+def test_robot_moves_as_in_the_world_of_the_server(world):
     robot = world.spawn(XACRO, z=0.5)
     robot.plugin('diff_drive').command(0.5, 0.2)
     world.run(seconds=1.5)
@@ -48,23 +48,23 @@ def test_a_robot_moves_as_in_the_world_that_ros_serves(world):
 
 
 @pytest.mark.parametrize('text', [CRATE, CRATE_SDF, f'\ufeff\n {CRATE}'])
-def test_a_text_is_spawned_under_its_own_name_or_another(world, text):
+def test_text_is_spawned_under_its_name_or_a_given_one(world, text):
     assert world.spawn(text, x=-3.0) is world.model('crate')
     assert world.spawn(text, 'other', x=3.0).name == 'other'
 
 
-def test_a_file_and_an_address_are_spawned(world, tmp_path):
+def test_file_and_uri_are_spawned(world, tmp_path):
     folder = tmp_path / 'crate'
     folder.mkdir()
     (folder / 'model.sdf').write_text(CRATE_SDF, encoding='utf-8')
     world.spawn(folder / 'model.sdf')
     with World(model_path=[tmp_path]) as other:
         there = other.spawn('model://crate', 'there', x=2.0)
-        assert there.pose.position == (2.0, 0.0, 0.0)  # as in Gazebo, that of the <include> counts
+        assert there.pose.position == (2.0, 0.0, 0.0)  # as in Gazebo, that of the <include>
         assert other.spawn('model://crate').name == 'crate'
 
 
-def test_a_model_appears_where_it_is_told_to(world):
+def test_model_is_spawned_at_the_given_pose(world):
     first = world.spawn(CRATE, 'first', x=1.0, y=2.0, z=3.0, yaw=0.5)
     assert first.pose.position == (1.0, 2.0, 3.0)
     assert yaw_of(first.pose.orientation) == pytest.approx(0.5)
@@ -72,14 +72,14 @@ def test_a_model_appears_where_it_is_told_to(world):
     assert world.spawn(CRATE, 'second', pose).pose.orientation == pytest.approx(pose.orientation)
 
 
-def test_a_model_that_is_compiled_is_spawned_as_often_as_one_likes(world):
+def test_compiled_model_can_be_spawned_repeatedly(world):
     compiled = world.compile(robot_spec())
     for i, name in enumerate(('', 'second')):
         world.spawn(compiled, name, x=2.0 * i, z=0.5)
     assert list(world.models) == ['ground_plane', robot_spec().name, 'second']
 
 
-def test_xacro_arguments_reach_the_file(world, tmp_path):
+def test_xacro_arguments_are_passed(world, tmp_path):
     file = tmp_path / 'crate.xacro'
     file.write_text(
         '<robot name="crate" xmlns:xacro="http://www.ros.org/wiki/xacro">'
@@ -102,7 +102,7 @@ def test_xacro_arguments_reach_the_file(world, tmp_path):
     (lambda _: World.from_file('nowhere.world'), "no world file 'nowhere.world'"),
     (lambda _: World.from_file(XACRO), 'an SDF begins with <sdf'),
 ])
-def test_what_cannot_be_spawned_is_said_in_one_sentence(world, spawn, said):
+def test_error_of_a_spawn_is_one_sentence(world, spawn, said):
     with pytest.raises(SimError) as raised:
         spawn(world)
     assert said in str(raised.value)
@@ -123,7 +123,7 @@ def test_what_cannot_be_spawned_is_said_in_one_sentence(world, spawn, said):
     lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), seconds=-1.0),
     lambda world: world.spawn(XACRO).plugin('diff_drive').command(math.nan, 0.0),
 ])
-def test_a_number_that_makes_no_sense_is_a_value_error(world, call):
+def test_invalid_number_is_a_value_error(world, call):
     with pytest.raises(ValueError, match=r'\w+ (takes|goes|is|got)'):
         call(world)
 
@@ -136,13 +136,13 @@ def test_time_advances_by_steps_and_by_seconds():
         assert (world.run(seconds=0.0), world.time) == (0, 0.12)
 
 
-def test_a_world_file_brings_models_lights_and_time():
+def test_world_file_gives_models_lights_and_time():
     with World.from_file('room') as world:
         assert 'bookcase' in world.models
         assert list(world.lights) == ['sun']
 
 
-def test_links_joints_and_plugins_are_found_by_name_or_the_names_are_listed(world):
+def test_links_joints_and_plugins_are_found_by_name_or_the_error_lists_them(world):
     robot = world.spawn(XACRO, 'robot', z=0.5)
     assert robot.link('robot::wheel_left_link') is robot.link('wheel_left_link')
     assert robot.joint('robot::wheel_left_joint') is robot.joint('wheel_left_joint')
@@ -169,7 +169,7 @@ def test_joint_states_are_those_of_the_joints(world):
     assert world.model('ground_plane').joint_states == ((), (), (), ())
 
 
-def test_an_output_keeps_its_newest_reading_once_it_is_told_to(world):
+def test_latched_output_has_its_latest_reading(world):
     odometry = world.spawn(XACRO, z=0.5).plugin('diff_drive').odometry
     with pytest.raises(NotFoundError, match='call its latch'):
         _ = odometry.newest
@@ -184,7 +184,7 @@ def test_an_output_keeps_its_newest_reading_once_it_is_told_to(world):
     assert len(seen) == 9  # 100 Hz, from the first step after 10 ms
 
 
-def test_a_wrench_gives_the_momentum_that_mechanics_says():
+def test_wrench_gives_the_momentum_of_mechanics():
     with World(WEIGHTLESS) as world:
         link = world.spawn(CRATE).link('box')
         world.apply_wrench(link, (4.0, 0.0, 0.0), (0.0, 0.0, 0.01), seconds=0.5)
@@ -198,7 +198,7 @@ def test_a_wrench_gives_the_momentum_that_mechanics_says():
         assert link.twist.linear[0] == pytest.approx(0.5)
 
 
-def test_an_effort_turns_a_joint_until_it_is_cleared():
+def test_effort_turns_a_joint_until_it_is_cleared():
     with World(WEIGHTLESS) as world:
         hinge = world.spawn(PENDULUM).joint('hinge')
         world.apply_effort(hinge, 0.2)
@@ -209,7 +209,7 @@ def test_an_effort_turns_a_joint_until_it_is_cleared():
         assert hinge.velocity == pytest.approx(0.2)
 
 
-def test_a_closed_world_says_so():
+def test_use_of_a_closed_world_is_an_error():
     with World.empty() as world:
         world.step()
     world.close()
@@ -218,7 +218,7 @@ def test_a_closed_world_says_so():
             call()
 
 
-def test_a_world_that_cannot_be_filled_leaves_nothing_open(tmp_path, monkeypatch):
+def test_failed_load_of_a_world_closes_everything(tmp_path, monkeypatch):
     closed = []
 
     def close(world):
@@ -233,7 +233,7 @@ def test_a_world_that_cannot_be_filled_leaves_nothing_open(tmp_path, monkeypatch
     assert len(closed) == 1
 
 
-def test_every_public_name_is_the_one_that_type_checkers_see_and_is_documented():
+def test_every_public_name_is_typed_and_documented():
     for name in sim.__all__:
         rooms = [importlib.import_module(f'rosbots_description.sim.{room}')
                  for room in ('core', 'description', 'runtime', 'public')]
@@ -244,7 +244,7 @@ def test_every_public_name_is_the_one_that_type_checkers_see_and_is_documented()
         _ = sim.Wrold
 
 
-def test_an_error_or_a_pose_loads_no_engine():
+def test_import_of_an_error_or_a_pose_loads_no_engine():
     code = 'import sys; from rosbots_description.sim import ModelError, Pose; ' \
         "print([name for name in ('pybullet', 'numpy', 'lxml') if name in sys.modules])"
     ended = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True,

@@ -1,4 +1,4 @@
-"""The simulator's own camera sees what is in the world."""
+"""Images of the simulator's overview camera show the world."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def world():
         yield world
 
 
-def test_a_red_box_is_seen_where_it_stands_and_not_after_it_is_gone(world):
+def test_red_box_is_visible_at_its_pose_until_deleted(world):
     view = View(world)
     world.spawn(urdf_spec(RED_BOX), 'box', Pose((0.0, 0.0, 0.5)))
     seen = red_share(view.picture((4.0, 0.0, 1.0), (0.0, 0.0, 0.5), SMALL))
@@ -34,7 +34,7 @@ def test_a_red_box_is_seen_where_it_stands_and_not_after_it_is_gone(world):
     assert (away, gone) == (0.0, 0.0)
 
 
-def test_the_picture_follows_what_moves(world):
+def test_image_follows_motion(world):
     view = View(world)
     box = world.spawn(urdf_spec(RED_BOX), 'box', Pose((0.0, 0.0, 0.5)))
     look = (4.0, 0.0, 1.0), (0.0, 0.0, 0.5), SMALL
@@ -42,7 +42,7 @@ def test_the_picture_follows_what_moves(world):
     box.set_pose(Pose((0.0, 1.0, 0.5)))
     aside = view.picture(*look).astype(int)
     view.close()
-    # Seen from +x, what stands at +y is on the right.
+    # Seen from +x, +y is on the right.
     columns = np.arange(SMALL[0])
     where = [
         np.average(columns, weights=(p[:, :, 0] > 2 * p[:, :, 1].clip(1)).sum(axis=0) + 1e-9)
@@ -51,7 +51,7 @@ def test_the_picture_follows_what_moves(world):
     assert where[1] > where[0] + 10
 
 
-def test_taking_pictures_does_not_change_the_motion(world):
+def test_rendering_does_not_change_the_motion(world):
     def fall(with_pictures):
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         view = View(world)
@@ -67,7 +67,7 @@ def test_taking_pictures_does_not_change_the_motion(world):
     assert fall(True) == fall(False)
 
 
-def test_the_robot_shows_its_own_colours(world):
+def test_robot_has_its_own_colours(world):
     world.spawn(robot_spec(), 'rosbots', Pose((0.0, 0.0, -0.12)))
     view = View(world)
     picture = view.picture().astype(int)

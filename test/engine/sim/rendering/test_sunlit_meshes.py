@@ -1,4 +1,4 @@
-"""Mesh files for the window: the form that Ogre reads, the colours, and normals that face out."""
+"""Mesh files for the window: Ogre's format, colours, and outward normals."""
 
 import os
 import re
@@ -48,7 +48,7 @@ def obj(tmp_path):
 
 
 def chunks(data):
-    """Yield number and content of the chunks that `data` consists of, to the byte."""
+    """Yield id and content of each chunk of `data`."""
     while data:
         number, length = struct.unpack_from('<HI', data)
         assert 6 <= length <= len(data)
@@ -57,7 +57,7 @@ def chunks(data):
 
 
 def submeshes(path):
-    """Yield material, triangles' corners (n, 3, 3), normals (n, 3, 3) and colours (n, 3, 4)."""
+    """Yield material, corners (n, 3, 3), normals (n, 3, 3) and colours (n, 3, 4) of triangles."""
     data = Path(path).read_bytes()
     head = struct.pack('<H', 0x1000) + b'[MeshSerializer_v1.100]\n'
     assert data.startswith(head)
@@ -85,7 +85,7 @@ def submeshes(path):
 
 @pytest.mark.parametrize(('geometry', 'area'), [
     (Box((1.0, 2.0, 3.0)), 6.0), (Cylinder(0.5, 2.0), 1.5 * np.pi), (Sphere(3.0), np.pi)])
-def test_a_shape_of_unit_size_has_faces_and_normals_outward(meshes, geometry, area):
+def test_unit_shape_has_outward_faces_and_normals(meshes, geometry, area):
     ((material, corners, normals, colours),) = submeshes(
         meshes.file(Visual('v', geometry, material=RED)))
     assert material == 'rosbots/sunlit'
@@ -95,26 +95,26 @@ def test_a_shape_of_unit_size_has_faces_and_normals_outward(meshes, geometry, ar
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert np.linalg.norm(across, axis=1).sum() / 2.0 == pytest.approx(area, rel=0.01)
     assert np.linalg.norm(normals, axis=2) == pytest.approx(1.0, abs=1e-6)
-    real = np.linalg.norm(across, axis=1) > 1e-9  # at the poles of a ball there are seams
+    real = np.linalg.norm(across, axis=1) > 1e-9  # degenerate at the poles of a sphere
     middles = corners.mean(axis=1)
     assert (np.einsum('ij,ij->i', across, middles)[real] > 0.0).all()
     assert (np.einsum('ij,ikj->ik', across, normals)[real] > 0.0).all()
 
 
-def test_the_materials_are_those_that_rviz_is_given():
+def test_materials_are_those_exported_to_rviz():
     file = ROOT / 'companions' / 'rosbots_simulator' / 'ogre_media' / 'sunlit.material'
     defined = re.findall(r'^material (\S+)', file.read_text(), re.M)
     assert defined == [OPAQUE.decode(), TRANSPARENT.decode()]
 
 
-def test_what_is_transparent_says_so(meshes):
+def test_transparent_mesh_has_the_transparent_material(meshes):
     ((material, _, _, colours),) = submeshes(
         meshes.file(Visual('v', Sphere(1.0), material=GLASS)))
     assert material == 'rosbots/sunlit_transparent'
     assert colours[0, 0].tolist() == [0, 0, 255, 102]
 
 
-def test_a_mesh_keeps_its_colours_and_gets_normals_where_it_has_none(meshes, obj):
+def test_mesh_keeps_its_colours_and_gets_missing_normals(meshes, obj):
     red, blue = submeshes(meshes.file(Visual('v', Mesh(obj(
         'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n')))))
     assert [part[3][0, 0].tolist() for part in (red, blue)] == [[255, 0, 0, 255], [0, 0, 255, 255]]
@@ -123,20 +123,20 @@ def test_a_mesh_keeps_its_colours_and_gets_normals_where_it_has_none(meshes, obj
     assert blue[2][0].tolist() == [[0, -1, 0]] * 3
 
 
-def test_a_texture_is_left_to_rviz_unless_a_material_hides_it(meshes, obj):
+def test_textured_mesh_is_left_to_rviz_unless_a_material_replaces_it(meshes, obj):
     path = obj('newmtl red\nKd 1 0 0\nnewmtl blue\nmap_Kd wood.png\nKd 0 0 1\n')
     assert meshes.file(Visual('v', Mesh(path))) is None
     assert meshes.file(Visual('v', Mesh(path), material=RED)) is not None
 
 
-def test_planes_and_what_cannot_be_read_have_no_file(meshes, tmp_path, caplog):
+def test_planes_and_unreadable_meshes_have_no_file(meshes, tmp_path, caplog):
     assert meshes.file(Visual('v', Plane())) is None
     assert caplog.text == ''
     assert meshes.file(Visual('v', Mesh(str(tmp_path / 'gone.stl')))) is None
     assert "visual 'v' is lit from the eye" in caplog.text
 
 
-def test_a_file_is_shared_and_goes_some_time_after_the_last_who_held_it(meshes):
+def test_file_is_shared_and_removed_some_time_after_its_last_use(meshes):
     first = meshes.file(Visual('a', Box((1.0, 1.0, 1.0)), material=RED))
     path = str(first)
     assert meshes.file(Visual('b', Box((5.0, 1.0, 1.0)), material=RED)) == path

@@ -1,4 +1,4 @@
-"""A model that diverges leaves nothing behind that harms the others."""
+"""A diverged model does not affect the others."""
 
 import pytest
 from support import box_urdf, empty_world, urdf_spec
@@ -14,7 +14,7 @@ STANDING = Pose((5.0, 0.0, 0.5))
     lambda model: model.set_pose(Pose((1e308, 0.0, 0.5))),
     lambda model: model.set_twist(Twist((1e308, 0.0, 0.0), (0.0, 0.0, 0.0))),
 ])
-def test_a_lost_model_that_is_deleted_before_anyone_notices_harms_nobody(lose):
+def test_diverged_model_deleted_before_its_detection_affects_no_other(lose):
     with empty_world() as world:
         neighbour = world.spawn(BOX, 'neighbour', STANDING)
         diverged = world.spawn(BOX, 'diverged', Pose((0.0, 0.0, 0.5)))
@@ -26,7 +26,7 @@ def test_a_lost_model_that_is_deleted_before_anyone_notices_harms_nobody(lose):
 
 
 @pytest.mark.parametrize('x', [1e9, -1e308, float('inf'), float('nan')])
-def test_a_model_does_not_appear_beyond_the_world(x):
+def test_spawn_at_an_extreme_position_is_rejected(x):
     with empty_world() as world:
         with pytest.raises(ModelError, match='m away; less than 1e'):
             world.spawn(BOX, 'far', Pose((x, 0.0, 0.5)))

@@ -1,4 +1,4 @@
-"""A model of which any link diverges is noticed soon, also after steps of another size."""
+"""Divergence of any link is detected soon, also after a change of the step size."""
 
 import math
 from dataclasses import replace
@@ -26,7 +26,7 @@ def diverged(caplog):
 
 @pytest.mark.parametrize('joint', ['slew', 'swing'])
 @pytest.mark.parametrize('position', [math.nan, math.inf, 1e10])
-def test_a_link_that_is_lost_is_noticed_though_the_first_one_is_not(caplog, joint, position):
+def test_divergence_of_any_link_is_detected(caplog, joint, position):
     with empty_world() as world:
         crane = world.spawn(urdf_spec(CRANE), 'crane', Pose((0.0, 0.0, 5.0)))
         world.run(10)
@@ -37,7 +37,7 @@ def test_a_link_that_is_lost_is_noticed_though_the_first_one_is_not(caplog, join
 
 
 @pytest.mark.parametrize('step_size', [10.0, 0.5])
-def test_models_are_looked_at_at_once_after_steps_of_another_size(caplog, step_size):
+def test_models_are_checked_at_once_after_a_change_of_the_step_size(caplog, step_size):
     with empty_world() as world:
         usual = world.physics
         world.run(PERIOD // 2)
@@ -53,7 +53,7 @@ def test_models_are_looked_at_at_once_after_steps_of_another_size(caplog, step_s
 
 
 @pytest.mark.parametrize(('first', 'then'), [(0.001, 0.004), (0.004, 0.0005)])
-def test_soft_contacts_are_the_same_whenever_the_step_size_was_set(first, then):
+def test_soft_contacts_do_not_depend_on_when_the_step_size_was_set(first, then):
     surface = '<gazebo reference="box"><kp>20000</kp><kd>10</kd></gazebo>'
     spec = urdf_spec(box_urdf('0.2 0.2 0.2', 1.0, surface))
 

@@ -1,4 +1,4 @@
-"""Forces and torques give the accelerations of rigid-body mechanics, for as long as asked."""
+"""Forces and torques give the accelerations of rigid-body mechanics, for their duration."""
 
 import math
 from dataclasses import replace
@@ -46,7 +46,7 @@ def test_a_force_acts_at_the_centre_of_mass():
         assert model.twist.angular == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
-def test_a_force_at_a_place_of_its_own_turns_by_its_arm():
+def test_force_at_a_point_has_a_lever_arm():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
         x, y, z = HIGH.position
@@ -68,7 +68,7 @@ def test_a_torque_about_a_principal_axis_gives_the_analytic_rate(axis):
 
 
 def test_torque_and_force_are_in_world_axes_whatever_the_bodys_attitude():
-    pose = Pose(HIGH.position, from_rpy(0.0, math.pi / 2, 0.0))  # its x points down
+    pose = Pose(HIGH.position, from_rpy(0.0, math.pi / 2, 0.0))  # its x axis points down
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', pose)
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.1))
@@ -81,7 +81,7 @@ def test_torque_and_force_are_in_world_axes_whatever_the_bodys_attitude():
     ('start', 'duration', 'speed'),
     [(0.0, 0.0, 0.0), (0.5, 0.2, 0.2), (0.9, 5.0, 0.1), (0.0, -1.0, 1.0), (5.0, 1.0, 0.0)],
 )
-def test_a_push_lasts_from_its_start_for_its_duration(start, duration, speed):
+def test_force_acts_from_its_start_for_its_duration(start, duration, speed):
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), start, duration)
@@ -89,7 +89,7 @@ def test_a_push_lasts_from_its_start_for_its_duration(start, duration, speed):
         assert model.twist.linear[0] == pytest.approx(speed, abs=0.0021)
 
 
-def test_a_push_keeps_its_time_when_the_step_size_changes():
+def test_force_keeps_its_duration_when_the_step_size_changes():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), start=1.0)
@@ -102,8 +102,8 @@ def test_a_push_keeps_its_time_when_the_step_size_changes():
 
 
 @pytest.mark.parametrize('together', [3, 8, 40])
-def test_steps_made_together_are_the_same_to_the_bit_as_single_ones(together):
-    """A push given between two runs acts in the next step only, however many follow it."""
+def test_combined_steps_are_bit_identical_to_single_ones(together):
+    """A force applied between two runs acts in the next step only."""
     seen = []
     for run in (1, together):
         with empty_world() as world:
@@ -118,7 +118,7 @@ def test_steps_made_together_are_the_same_to_the_bit_as_single_ones(together):
     assert seen[0] == seen[1]
 
 
-def test_steps_of_a_damped_joint_are_the_same_however_many_are_made_at_once():
+def test_combined_steps_of_a_damped_joint_are_identical_to_single_ones():
     bar = link('bar', '<box size="1 0.1 0.1"/>', 1.0, (0.01, 0.1, 0.1))
     spec = urdf_spec(
         f'<link name="world"/>{bar}<joint name="j" type="continuous"><parent link="world"/>'
@@ -136,7 +136,7 @@ def test_steps_of_a_damped_joint_are_the_same_however_many_are_made_at_once():
     assert seen == [seen[0]] * 3
 
 
-def test_a_cancelled_push_ends():
+def test_cleared_force_ends():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), duration=-1.0)
@@ -146,7 +146,7 @@ def test_a_cancelled_push_ends():
         assert model.twist.linear[0] == pytest.approx(0.1, abs=0.0015)
 
 
-def test_a_deleted_model_takes_its_pushes_along():
+def test_forces_end_with_the_deletion_of_their_model():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
         push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), duration=-1.0)
@@ -168,7 +168,7 @@ def pendulum():
     )
 
 
-def test_an_effort_turns_a_joint_by_its_inertia():
+def test_effort_accelerates_a_joint_by_its_inertia():
     with empty_world() as world:
         model = world.spawn(pendulum(), 'pendulum', HIGH)
         joint = model.joint('hinge')
@@ -177,7 +177,7 @@ def test_an_effort_turns_a_joint_by_its_inertia():
         assert joint.velocity == pytest.approx(0.1 / MOMENTS[2], rel=0.01)
 
 
-def test_a_model_goes_on_moving_when_its_description_changes():
+def test_model_keeps_its_motion_when_its_description_changes():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(2500)
@@ -192,7 +192,7 @@ def test_a_model_goes_on_moving_when_its_description_changes():
         assert model.twist.linear[0] == pytest.approx(before[1].linear[0], abs=0.01)
 
 
-def test_a_root_link_takes_along_what_hangs_on_it():
+def test_moving_a_root_link_moves_its_descendants():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         wheel = model.links['wheel_left_link']
@@ -204,7 +204,7 @@ def test_a_root_link_takes_along_what_hangs_on_it():
         assert model.twist.linear == pytest.approx((0.1, 0.0, 0.0))
 
 
-def test_another_link_takes_the_whole_model_along():
+def test_moving_another_link_moves_the_whole_model():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         wheel = model.links['wheel_left_link']

@@ -1,4 +1,4 @@
-"""What the parsers let through, the engine survives: no crash, no chatter, no harm to others."""
+"""Property tests: accepted models do not crash the engine, print, or affect other models."""
 
 import math
 
@@ -20,7 +20,7 @@ from rosbots_description.sim.resources.xml_parser import root_tag
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
 STEPS = 20
-ASIDE = Pose((1e4, 1e4, 0.5))  # [m] further away than anything that moves gets
+ASIDE = Pose((1e4, 1e4, 0.5))  # [m] beyond the reach of moving models
 RIGHT = Pose((0.0, 0.0, 100.0))
 
 
@@ -32,10 +32,10 @@ def read(text):
 
 @pytest.fixture(scope='module')
 def world():
-    """Open the world that every example begins with: ground and, far away, a box at rest."""
+    """Open the initial world of every example: ground and a distant box at rest."""
     with empty_world() as world:
         world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'bystander', ASIDE)
-        live(world, robot_urdf(), 100)  # the children inherit its meshes, read and converted
+        live(world, robot_urdf(), 100)  # children inherit the converted meshes
         yield world
 
 
@@ -55,7 +55,7 @@ def live(world, text, steps):
 
 
 def survive(world, text):
-    """Do the same with what may be refused; return where the bystander is then."""
+    """Simulate a model that may be rejected; return the state of the bystander."""
     try:
         return live(world, text, 2 * PERIOD)[1]
     except (SimError, UnknownPackage) as error:
@@ -71,14 +71,14 @@ def check_bystander(state):
 
 
 @given(st.one_of(urdfs(), sdfs()))
-def test_a_model_that_is_right_is_simulated(world, description):
+def test_valid_model_is_simulated(world, description):
     finite, bystander = isolated(lambda: live(world, description.text, STEPS))
     assert finite
     check_bystander(bystander)
 
 
 @given(st.data())
-def test_a_damaged_model_harms_nobody(world, data):
+def test_damaged_model_affects_no_other(world, data):
     description = data.draw(st.one_of(urdfs(), sdfs()))
     text = data.draw(damaged(description.text))
     check_bystander(isolated(lambda: survive(world, text)))
@@ -86,6 +86,6 @@ def test_a_damaged_model_harms_nobody(world, data):
 
 @given(st.data())
 @settings(max_examples=settings.default.max_examples // 2)
-def test_the_damaged_robot_harms_nobody(world, data):
+def test_damaged_robot_affects_no_other(world, data):
     text = data.draw(damaged(robot_urdf()))
     check_bystander(isolated(lambda: survive(world, text)))

@@ -1,4 +1,4 @@
-"""Any order of spawns, deletions, moves, pauses, steps and resets: the world keeps its promises."""
+"""Property tests: invariants hold for any sequence of spawns, deletions, moves and resets."""
 
 import math
 
@@ -27,25 +27,25 @@ STEP_NS = 1_000_000
 POSITIONS = st.floats(-20.0, 20.0)  # [m]
 HEIGHTS = st.floats(1.0, 5.0)  # [m]
 SPEEDS = st.floats(-5.0, 5.0)  # [m/s]
-# None is that of a link: as in Gazebo a link's plain name hides later models of that name.
+# None is the name of a link: as in Gazebo, it would hide later models of that name.
 NAMES = ('a', 'b', 'c', 'd', 'ground_plane', 'nobody')
 DESCRIPTIONS = {'box': BOX, 'nested': NESTED, 'robot': robot_urdf()}
 
 
 @pytest.fixture(scope='module', autouse=True)
 def _world():
-    """Keep one open world for all examples; each has a copy of it in a child."""
+    """Return the open world of all examples; each uses a copy in a child process."""
     with empty_world() as world:
-        for name, text in DESCRIPTIONS.items():  # the children inherit meshes, read and converted
+        for name, text in DESCRIPTIONS.items():  # children inherit the converted meshes
             spawn = SpawnModelRequest(model_name=name, model_xml=text)
             assert Bench(world).call('spawn_sdf_model', spawn).success
             world.delete(name)
-        LifeOfAWorld.world = world
+        WorldInvariants.world = world
         yield
 
 
 class Simulator(Bench):
-    """What the child does for the machine."""
+    """Operations of the child process."""
 
     def state(self):
         """Return names, time [ns], whether paused, and whether every model's state is finite."""
@@ -53,14 +53,14 @@ class Simulator(Bench):
         finite = all(map(math.isfinite, numbers_in(states)))
         return self.names(), self.world.clock.now_ns, self.world.paused, finite
 
-    def let_time_pass(self, steps):
-        """Run as the loop does: not while paused."""
+    def run_unless_paused(self, steps):
+        """Run steps unless paused, like the loop."""
         if not self.world.paused:
             self.world.run(steps)
 
 
-class LifeOfAWorld(RuleBasedStateMachine):
-    """Compares the simulator with the little that must be true of it."""
+class WorldInvariants(RuleBasedStateMachine):
+    """Compares the simulator with a simple model of its state."""
 
     world = None
 
@@ -68,17 +68,17 @@ class LifeOfAWorld(RuleBasedStateMachine):
         super().__init__()
         self.child = Child(lambda: Simulator(self.world))
         _, self.now_ns, self.paused, _ = self.child.call('state')
-        self.homes = {'ground_plane': (0.0, 0.0, 0.0)}  # models in order: where they were spawned
+        self.homes = {'ground_plane': (0.0, 0.0, 0.0)}  # spawn position by model, in order
 
     def teardown(self):
         self.child.__exit__()
 
-    def ask(self, service, request=None):
+    def call(self, service, request=None):
         """Call a service."""
         return self.child.call('call', service, request or EmptyRequest())
 
     def position(self, name):
-        position = self.ask('get_model_state', GetModelStateRequest(model_name=name)).pose.position
+        position = self.call('get_model_state', GetModelStateRequest(model_name=name)).pose.position
         return position.x, position.y, position.z
 
     @rule(name=st.sampled_from(NAMES), kind=st.sampled_from(sorted(DESCRIPTIONS)),
@@ -87,14 +87,14 @@ class LifeOfAWorld(RuleBasedStateMachine):
         request = SpawnModelRequest(model_name=name, model_xml=DESCRIPTIONS[kind])
         position = request.initial_pose.position
         position.x, position.y, position.z = x, y, z
-        success = self.ask('spawn_sdf_model', request).success
+        success = self.call('spawn_sdf_model', request).success
         assert success == (name not in self.homes)
         if success:
             self.homes[name] = (x, y, z)
 
     @rule(name=st.sampled_from(NAMES))
     def delete(self, name):
-        assert self.ask('delete_model', DeleteModelRequest(name)).success == (name in self.homes)
+        assert self.call('delete_model', DeleteModelRequest(name)).success == (name in self.homes)
         self.homes.pop(name, None)
 
     @rule(name=st.sampled_from(NAMES), x=POSITIONS, y=POSITIONS, z=HEIGHTS, speed=SPEEDS)
@@ -102,7 +102,7 @@ class LifeOfAWorld(RuleBasedStateMachine):
         state = ModelState(model_name=name)
         state.pose.position.x, state.pose.position.y, state.pose.position.z = x, y, z
         state.twist.linear.x = speed
-        response = self.ask('set_model_state', SetModelStateRequest(state))
+        response = self.call('set_model_state', SetModelStateRequest(state))
         if name in self.homes:
             assert response.success
             assert self.position(name) == pytest.approx((x, y, z))
@@ -111,60 +111,60 @@ class LifeOfAWorld(RuleBasedStateMachine):
     def lift_a_link(self, name, z):
         state = LinkState(link_name=name)
         state.pose.position.z = z
-        self.ask('set_link_state', SetLinkStateRequest(state))
+        self.call('set_link_state', SetLinkStateRequest(state))
 
     @rule(name=st.sampled_from(NAMES), angle=st.floats(-3.0, 3.0))
     def turn_a_wheel(self, name, angle):
         joint = f'{name}::wheel_left_joint'
         request = SetModelConfigurationRequest(name, '', [joint], [angle])
-        assert self.ask('set_model_configuration', request).success == (name in self.homes)
-        state = self.ask('get_joint_properties', GetJointPropertiesRequest(joint))
+        assert self.call('set_model_configuration', request).success == (name in self.homes)
+        state = self.call('get_joint_properties', GetJointPropertiesRequest(joint))
         if state.success:
             assert state.position[0] == pytest.approx(angle)
 
     @rule()
     def pause(self):
-        self.ask('pause_physics')
+        self.call('pause_physics')
         self.paused = True
 
     @rule()
     def unpause(self):
-        self.ask('unpause_physics')
+        self.call('unpause_physics')
         self.paused = False
 
     @rule(steps=st.integers(0, 60))
     def step(self, steps):
-        assert self.ask('step', StepRequest(steps)).success == self.paused
+        assert self.call('step', StepRequest(steps)).success == self.paused
         self.now_ns += steps * STEP_NS if self.paused else 0
 
     @rule(steps=st.integers(1, 150))
     def time_passes(self, steps):
-        self.child.call('let_time_pass', steps)
+        self.child.call('run_unless_paused', steps)
         self.now_ns += 0 if self.paused else steps * STEP_NS
 
     @rule()
     def reset_world(self):
-        self.ask('reset_world')
-        self.all_are_home()
+        self.call('reset_world')
+        self.models_are_at_their_spawn_poses()
 
     @rule()
     def reset_simulation(self):
-        self.ask('reset_simulation')
+        self.call('reset_simulation')
         self.now_ns = 0
-        self.all_are_home()
+        self.models_are_at_their_spawn_poses()
 
-    def all_are_home(self):
+    def models_are_at_their_spawn_poses(self):
         for name, home in self.homes.items():
             assert self.position(name) == pytest.approx(home, abs=1e-6)
 
     @invariant()
-    def the_world_is_as_it_should_be(self):
+    def names_time_and_states_are_as_expected(self):
         names, now_ns, paused, finite = self.child.call('state')
         assert (names, now_ns, paused) == (list(self.homes), self.now_ns, self.paused)
         assert finite
 
 
-LifeOfAWorld.TestCase.settings = settings(
+WorldInvariants.TestCase.settings = settings(
     max_examples=1 + settings.default.max_examples // 3, stateful_step_count=30
 )
-TestLifeOfAWorld = LifeOfAWorld.TestCase
+TestWorldInvariants = WorldInvariants.TestCase

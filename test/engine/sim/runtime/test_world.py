@@ -1,4 +1,4 @@
-"""The world: entering and leaving, resetting, names, and the same bits every time."""
+"""The world: spawns and deletions, resets, names, and bit-identical runs."""
 
 import gc
 import hashlib
@@ -33,7 +33,7 @@ from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 from rosbots_description.sim.runtime.scheduler import Hook
 
 MEGABYTE = 2**20
-LEAK_ALLOWED = 6 * MEGABYTE  # without the guard it would be 14
+LEAK_ALLOWED = 6 * MEGABYTE  # 14 without the rebuild
 CYCLES = 200
 
 
@@ -43,7 +43,7 @@ def resident_bytes():
 
 
 def drive_and_hash(world, model):
-    """Return a fingerprint of a drive, every bit of every pose."""
+    """Return a hash of all poses of a drive."""
     digest = hashlib.sha256()
     world.run(1000)
     model.plugins[0].command(0.5, 0.5)
@@ -69,7 +69,7 @@ def test_the_robot_has_gazebos_links_and_mass():
         assert sum(link.inertial.mass for link in model.spec.links) == pytest.approx(1.4)
 
 
-def test_time_comes_before_hooks_and_hooks_before_physics():
+def test_order_of_a_step_is_time_hooks_physics():
     class Watch(Hook):
         due = 1
 
@@ -85,7 +85,7 @@ def test_time_comes_before_hooks_and_hooks_before_physics():
         assert model.pose.position[2] < 5.0
 
 
-def test_running_in_pieces_is_running_at_once():
+def test_run_in_parts_is_identical_to_a_single_run():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         model.plugins[0].command(0.3, 0.2)
@@ -99,11 +99,11 @@ def test_running_in_pieces_is_running_at_once():
         assert model.state() == at_once
 
 
-def test_two_worlds_give_the_same_bits():
+def test_two_worlds_are_bit_identical():
     assert fresh_drive() == fresh_drive()
 
 
-def test_whoever_reads_what_plugins_give_out_the_bits_are_the_same():
+def test_readers_of_outputs_do_not_change_the_motion():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         found = []
@@ -113,7 +113,7 @@ def test_whoever_reads_what_plugins_give_out_the_bits_are_the_same():
         assert len(found) > 2 * 200  # of 2 s at 100 Hz
 
 
-def test_a_reset_simulation_gives_the_same_bits():
+def test_motion_after_reset_simulation_is_bit_identical():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         first = drive_and_hash(world, model)
@@ -122,13 +122,13 @@ def test_a_reset_simulation_gives_the_same_bits():
         assert drive_and_hash(world, model) == first
 
 
-def test_another_process_on_another_kind_of_machine_gives_the_same_bits():
+def test_another_process_with_another_kernel_is_bit_identical():
     code = 'from test_world import fresh_drive; print(fresh_drive())'
     here = Path(__file__).parent
     paths = [str(here), str(here.parent), str(here.parents[3] / 'src'), *sys.path]
     result = subprocess.run(
         [sys.executable, '-c', code],
-        # Another linear algebra kernel, as another machine would use.
+        # Another linear algebra kernel, as on another machine.
         env={'PYTHONPATH': ':'.join(paths), 'OPENBLAS_CORETYPE': 'Nehalem'},
         capture_output=True,
         text=True,
@@ -137,7 +137,7 @@ def test_another_process_on_another_kind_of_machine_gives_the_same_bits():
     assert result.stdout.strip() == fresh_drive()
 
 
-def test_two_worlds_at_once_do_not_disturb_each_other():
+def test_simultaneous_worlds_are_independent():
     alone = fresh_drive()
     with empty_world() as other:
         other.spawn(robot_spec(), 'rosbots', Pose((1.0, 1.0, 1.0)))
@@ -145,7 +145,7 @@ def test_two_worlds_at_once_do_not_disturb_each_other():
         assert fresh_drive() == alone
 
 
-def test_reset_world_brings_models_home_and_keeps_time_and_joint_angles():
+def test_reset_world_resets_poses_and_keeps_time_and_joint_angles():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(SETTLED)
@@ -161,10 +161,10 @@ def test_reset_world_brings_models_home_and_keeps_time_and_joint_angles():
         world.run(SETTLED)
         standing = model.pose.position
         world.run(1000)
-        assert math.dist(standing, model.pose.position) < 1e-3  # the command is forgotten
+        assert math.dist(standing, model.pose.position) < 1e-3  # the command is cleared
 
 
-def test_spawning_and_deleting_without_end_leaks_nothing():
+def test_repeated_spawns_and_deletions_do_not_leak_memory():
     with empty_world() as world:
         neighbour = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5, 5, 0.5)))
         before = None
@@ -181,7 +181,7 @@ def test_spawning_and_deleting_without_end_leaks_nothing():
         assert neighbour.pose.position == pytest.approx((5.0, 5.0, 0.5), abs=1e-3)
 
 
-def test_names_are_unique_and_not_empty():
+def test_duplicate_and_empty_names_are_rejected():
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
     with empty_world() as world:
         world.spawn(spec, 'box', Pose((0, 0, 2.0)))
@@ -202,12 +202,12 @@ def test_entities_are_found_by_plain_and_scoped_names_in_world_order():
         assert world.find_model('two').name == 'two'
         assert world.find_model('wheel_left_link') is None
         assert world.find_joint('two::wheel_left_joint').model.name == 'two'
-        assert world.find_entity('base_link') is None  # lumped
+        assert world.find_entity('base_link') is None  # reduced
         collision = world.find_entity('wheel_left_link_collision')
         assert collision.state()[0].position[1] == pytest.approx(0.5125, abs=1e-3)
 
 
-def test_links_of_inner_models_are_found_by_each_of_their_names():
+def test_links_of_nested_models_are_found_by_each_of_their_names():
     body = LinkSpec('inner::body', inertial=Inertial(1.0, Pose(), 0.1, 0.1, 0.1))
     with empty_world() as world:
         link = world.spawn(ModelSpec('outer', (body,)), 'outer', Pose()).links['inner::body']
@@ -224,7 +224,7 @@ NESTED = """<sdf version="1.6"><model name="outer">
   </model></model></sdf>"""
 
 
-def test_models_within_a_model_have_names_and_frames_of_their_own():
+def test_nested_models_have_their_own_names_and_frames():
     spec, _ = load_sdf(NESTED, 'robot', source='test', find_model=lambda _: None)
     with empty_world() as world:
         world.spawn(spec, 'robot', Pose((0.0, 0.0, 5.0)))
@@ -241,7 +241,7 @@ def test_models_within_a_model_have_names_and_frames_of_their_own():
 
 
 @pytest.mark.parametrize('name', ['', 'world', 'map', '/map'])
-def test_the_world_has_four_names(name):
+def test_each_name_of_the_world_is_accepted(name):
     with empty_world() as world:
         assert world.frame(name)[0] == Pose()
 
@@ -251,7 +251,7 @@ def test_an_unknown_frame_is_an_error():
         world.frame('base_link')
 
 
-def test_a_model_lives_on_without_a_plugin_nobody_knows(caplog):
+def test_model_is_spawned_without_an_unknown_plugin(caplog):
     plugin = PluginSpec('p', 'libnope.so', Element('plugin'))
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
     with empty_world() as world:
@@ -275,7 +275,7 @@ def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
         'yet; see doc/gazebo_compatibility.md')
 
 
-def test_a_model_lives_on_without_a_plugin_that_fails(caplog):
+def test_model_is_spawned_without_a_failing_plugin(caplog):
     drive = PluginSpec('d', 'libgazebo_ros_diff_drive.so', Element('plugin'))
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
     with empty_world() as world:
@@ -285,7 +285,7 @@ def test_a_model_lives_on_without_a_plugin_that_fails(caplog):
     assert "couldn't get wheel hinge joint named left_joint" in caplog.text
 
 
-def test_a_plugin_that_fails_leaves_the_wheels_alone():
+def test_failing_plugin_does_not_set_motors():
     spec = robot_spec()
     (drive,) = spec.plugins
     tags = tuple(
@@ -299,9 +299,9 @@ def test_a_plugin_that_fails_leaves_the_wheels_alone():
         assert model.body.motors['wheel_left_joint'] == (0.0, 0.0)
 
 
-def test_a_spawn_that_breaks_leaves_nothing_behind(monkeypatch):
+def test_failed_spawn_leaves_nothing_behind(monkeypatch):
     def break_down(plugin):
-        raise RuntimeError('a fault of ours')
+        raise RuntimeError('internal error')
 
     with empty_world() as world:
         monkeypatch.setattr(DiffDrive, 'load', break_down)
@@ -314,7 +314,7 @@ def test_a_spawn_that_breaks_leaves_nothing_behind(monkeypatch):
         world.delete('rosbots')
 
 
-def test_a_body_that_cannot_be_made_whole_is_not_made_at_all():
+def test_partly_created_body_is_removed():
     good, bad = (
         LinkSpec(name, Pose((0.0, 0.0, height)), collisions=(Collision('c', shape),))
         for name, height, shape in (
@@ -328,10 +328,10 @@ def test_a_body_that_cannot_be_made_whole_is_not_made_at_all():
             world.spawn(ModelSpec('wall', (good, bad), static=True), 'wall', Pose())
         box = world.spawn(ball, 'box', Pose((0.0, 0.0, 2.0)))
         world.run(1500)
-        assert box.pose.position[2] == pytest.approx(0.1, abs=0.01)  # nothing unseen in its way
+        assert box.pose.position[2] == pytest.approx(0.1, abs=0.01)  # no invisible body in its way
 
 
-def test_reset_world_brings_static_models_home_too():
+def test_reset_world_resets_static_models():
     static = box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>')
     with empty_world() as world:
         wall = world.spawn(urdf_spec(static), 'wall', Pose((1.0, 0.0, 0.5)))
@@ -340,7 +340,7 @@ def test_reset_world_brings_static_models_home_too():
         assert wall.pose.position == pytest.approx((1.0, 0.0, 0.5))
 
 
-def test_listeners_hear_of_models_coming_and_going():
+def test_listeners_are_notified_of_spawns_deletions_and_resets():
     class Listener:
         def model_spawned(self, model):
             heard.append(('spawned', model.name, len(model.plugins)))
@@ -360,7 +360,7 @@ def test_listeners_hear_of_models_coming_and_going():
     assert heard == [('spawned', 'rosbots', 1), 'reset', ('deleted', 'rosbots', 1)]
 
 
-def test_nothing_of_the_engine_reaches_the_terminal(capfd):
+def test_engine_prints_nothing(capfd):
     with empty_world() as world:
         world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(100)
@@ -371,7 +371,7 @@ def test_nothing_of_the_engine_reaches_the_terminal(capfd):
     assert 'pybullet' not in result.out + result.err
 
 
-def test_time_ends_where_stamps_do_and_begins_again_with_a_reset(caplog):
+def test_simulation_pauses_at_the_largest_stamp_until_a_reset(caplog):
     with empty_world() as world:
         world.clock.steps = 1000 * 2**32 - 5
         assert world.run(3) == 3
@@ -387,7 +387,7 @@ def test_time_ends_where_stamps_do_and_begins_again_with_a_reset(caplog):
         assert world.clock.now_ns == 10**7
 
 
-def test_single_steps_end_with_time_and_say_how_many_were_made():
+def test_single_steps_end_at_the_largest_stamp_and_report_their_number():
     with empty_world() as world:
         world.paused = True
         world.clock.steps = 1000 * 2**32 - 31
@@ -397,7 +397,7 @@ def test_single_steps_end_with_time_and_say_how_many_were_made():
         assert answer.sim_time == pytest.approx(2**32 - 0.001, abs=1e-6)
 
 
-def test_a_step_that_is_longer_than_what_is_left_of_time_is_not_made():
+def test_step_beyond_the_largest_stamp_is_not_made():
     with empty_world() as world:
         world.clock.steps = 1000 * 2**32 - 5
         world.set_physics(replace(world.physics, step_size=10.0))
@@ -416,7 +416,7 @@ def mesh_spec(path, size):
         '<box size="1 1 1"/>', f'<mesh filename="file://{path}"/>'))
 
 
-def test_the_files_of_meshes_go_with_the_last_model_that_uses_them(tmp_path, monkeypatch):
+def test_mesh_files_are_removed_with_the_last_model_that_uses_them(tmp_path, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path / 'scratch'))
     (tmp_path / 'scratch').mkdir()
 
@@ -435,7 +435,7 @@ def test_the_files_of_meshes_go_with_the_last_model_that_uses_them(tmp_path, mon
             assert files() == []
 
 
-def test_a_spawn_by_service_holds_files_no_longer_than_its_model_lives(tmp_path, monkeypatch):
+def test_spawn_by_service_keeps_files_only_as_long_as_its_model(tmp_path, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     xml = f'<robot name="part"><link name="a">{MESH_COLLISION}</link></robot>'
     mesh_spec(tmp_path / 'part.obj', 1)
@@ -451,7 +451,7 @@ def test_a_spawn_by_service_holds_files_no_longer_than_its_model_lives(tmp_path,
 
 
 @pytest.mark.parametrize('harm', ['source', 'folder'])
-def test_a_rebuild_needs_no_mesh_file_but_the_converted_one_or_its_source(tmp_path, monkeypatch,
+def test_rebuild_needs_only_the_converted_mesh_or_its_source(tmp_path, monkeypatch,
                                                                           harm):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path / 'scratch'))
     (tmp_path / 'scratch').mkdir()
@@ -470,7 +470,7 @@ def test_a_rebuild_needs_no_mesh_file_but_the_converted_one_or_its_source(tmp_pa
         world.rebuild([model])
 
 
-def test_a_model_that_is_rejected_leaves_no_file_of_a_mesh(tmp_path, monkeypatch):
+def test_rejected_model_leaves_no_mesh_file(tmp_path, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path / 'scratch'))
     (tmp_path / 'scratch').mkdir()
     spec = mesh_spec(tmp_path / 'part.obj', 1)
@@ -481,6 +481,6 @@ def test_a_model_that_is_rejected_leaves_no_file_of_a_mesh(tmp_path, monkeypatch
         monkeypatch.setattr(world.engine, 'add', fails)
         with pytest.raises(ModelError):
             world.spawn(spec, 'part', Pose())
-        gc.collect()  # the exception has seen the files
+        gc.collect()  # the exception references the files
         assert [path for path in (tmp_path / 'scratch').rglob('*') if path.is_file()] == []
         assert 'part' not in world.models

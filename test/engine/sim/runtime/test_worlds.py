@@ -1,4 +1,4 @@
-"""The worlds that come with the simulator stand; worlds from files move as they should."""
+"""The included worlds are at rest; worlds from files move by mechanics."""
 
 import itertools
 import math
@@ -15,8 +15,8 @@ from rosbots_description.sim.resources.search_path import ModelSearch, find_worl
 from rosbots_description.sim.runtime.population import populate
 from rosbots_description.sim.runtime.world import World
 
-STILL = 0.001  # [m] that something at rest may creep in the time below
-TURNED = 0.001  # [rad] and turn
+STILL = 0.001  # [m] permitted drift at rest in the time below
+TURNED = 0.001  # [rad] permitted rotation
 SECONDS = 3000  # steps of 1 ms
 OWN_WORLDS = {
     'empty': ['ground_plane'],
@@ -52,7 +52,7 @@ def fill(world, body):
 
 
 @pytest.mark.parametrize('name', OWN_WORLDS)
-def test_nothing_moves_or_falls_in_our_own_worlds(world, name, caplog):
+def test_included_worlds_are_at_rest(world, name, caplog):
     populate(world, own(name))
     before = {model.name: model.pose for model in world.models.values()}
     world.run(SECONDS)
@@ -67,7 +67,7 @@ def test_nothing_moves_or_falls_in_our_own_worlds(world, name, caplog):
 
 
 @pytest.mark.parametrize('name', OWN_WORLDS)
-def test_the_robot_finds_room_where_it_is_spawned(world, name):
+def test_spawn_pose_of_the_robot_is_free(world, name):
     populate(world, own(name))
     robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
     world.run(SETTLED)
@@ -76,7 +76,7 @@ def test_the_robot_finds_room_where_it_is_spawned(world, name):
 
 
 @pytest.mark.parametrize('name', OWN_WORLDS)
-def test_no_two_visible_faces_share_a_plane(name):
+def test_visible_faces_are_not_coplanar(name):
     boxes = []
     for spec, model_pose in own(name).models:
         for link in spec.links:
@@ -97,12 +97,12 @@ def test_no_two_visible_faces_share_a_plane(name):
                 assert on_the_floor or abs(one[axis][end] - other[axis][end]) > 1e-6, (one, other)
 
 
-def test_the_robot_does_not_drive_through_the_walls_of_the_maze(world):
+def test_walls_of_the_maze_stop_the_robot(world):
     populate(world, own('maze'))
     robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
     world.run(SETTLED)
     robot.plugins[0].command(1.0, 0.0)
-    world.run(10000)  # far longer than the way to the first wall, 3 m ahead
+    world.run(10000)  # far longer than to the first wall, 3 m ahead
     assert 2.0 < robot.pose.position[0] < 3.0
 
 
@@ -120,27 +120,27 @@ def test_the_line_is_closed_and_bends_gently():
         assert piece.pose.position[2] + piece.geometry.size[2] / 2 == pytest.approx(0.005)
 
 
-def test_an_empty_world_file_is_read_in_a_moment():
+def test_empty_world_file_is_read_quickly():
     path = find_world('worlds/empty.world', [LIBRARY])
-    load(path.read_bytes())  # what is done once in a process is done
+    load(path.read_bytes())  # warm up
     start = time.perf_counter()
     for _ in range(20):
         load(path.read_bytes())
     assert (time.perf_counter() - start) / 20 < 0.02
 
 
-def test_physics_of_the_file_holds(world):
+def test_physics_of_the_file_is_applied(world):
     fill(world, '''<gravity>0 0 -2</gravity>
       <physics type="ode"><max_step_size>0.002</max_step_size></physics>
       <model name="ball"><pose>0 0 100 0 0 0</pose><link name="link"/></model>''')
     world.run(500)
     assert world.clock.now == pytest.approx(1.0)
-    # g t^2 / 2, and half a step more since velocities change first
+    # g t^2 / 2, plus half a step of semi-implicit Euler
     fallen = 100.0 - world.models['ball'].pose.position[2]
     assert fallen == pytest.approx(1.0, rel=0.003)
 
 
-def test_a_kinematic_link_stays_and_carries(world):
+def test_kinematic_link_is_fixed_and_supports_others(world):
     fill(world, '''<model name="shelf"><pose>0 0 2 0 0 0</pose><link name="link">
       <kinematic>1</kinematic><collision name="c"><geometry><box><size>1 1 0.1</size></box>
       </geometry></collision></link></model>
@@ -159,20 +159,20 @@ DOORS = '''<model name="doors"><pose>0 0 1 0 0 0</pose>{}</model>'''.format(''.j
 ))
 
 
-def test_doors_hinged_to_the_world_swing_and_do_not_fall(world):
+def test_doors_hinged_to_the_world_swing(world):
     fill(world, DOORS)
     doors = world.models['doors']
     doors.joints['left_hinge'].set_motor(1.0, 100.0)
     world.run(1000)
     left, right = doors.links['left'].pose, doors.links['right'].pose
     assert to_rpy(left.orientation)[2] == pytest.approx(1.0, abs=0.05)
-    # It turns about the hinge, half a metre beside its middle.
+    # It turns about the hinge, 0.5 m from its centre.
     assert left.position == pytest.approx((-0.5 * math.sin(1.0), 0.5 + 0.5 * math.cos(1.0), 1.0),
                                           abs=0.03)
     assert right.position == pytest.approx((0.0, -1.0, 1.0), abs=0.001)
 
 
-def test_wheels_on_a_stand_that_the_world_holds_turn(world):
+def test_wheels_on_a_fixed_stand_turn(world):
     wheels = ''.join(
         f'''<link name="{side}"><pose>0 {y} 0 1.5708 0 0</pose><inertial><mass>1</mass></inertial>
         <collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.05</length></cylinder>
@@ -191,7 +191,7 @@ def test_wheels_on_a_stand_that_the_world_holds_turn(world):
         assert abs(joint.velocity) == pytest.approx(5.0, rel=0.1)
 
 
-def test_a_saved_state_puts_models_and_joints_where_they_were(world):
+def test_saved_state_restores_models_and_joints(world):
     y, x = 0.5 + 0.5 * math.cos(0.8), -0.5 * math.sin(0.8)
     fill(world, DOORS + f'''<state world_name="w"><sim_time>3 250000000</sim_time>
       <model name="doors"><pose>10 0 1 0 0 0</pose>
@@ -205,7 +205,7 @@ def test_a_saved_state_puts_models_and_joints_where_they_were(world):
     assert doors.initial_pose.position == (0.0, 0.0, 1.0)
 
 
-def test_links_of_a_standing_model_are_put_where_the_state_has_them(world):
+def test_saved_state_restores_links_of_a_static_model(world):
     fill(world, '''<model name="posts"><static>1</static><link name="a"/><link name="b"/></model>
       <state world_name="w"><model name="posts"><pose>1 0 0 0 0 0</pose>
       <link name="a"><pose>1 0 0 0 0 0</pose></link><link name="b"><pose>1 5 0 0 0 0</pose></link>
@@ -214,7 +214,7 @@ def test_links_of_a_standing_model_are_put_where_the_state_has_them(world):
     assert [link.pose.position for link in links.values()] == [(1.0, 0.0, 0.0), (1.0, 5.0, 0.0)]
 
 
-def test_fixed_joints_hold_links_of_an_sdf_together(world):
+def test_fixed_joints_of_an_sdf_are_rigid(world):
     fill(world, '''<model name="pair"><pose>0 0 9 0 0 0</pose><link name="a"/>
       <link name="b"><pose>1 0 0 0 0 0</pose></link>
       <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint></model>''')
@@ -233,14 +233,14 @@ def test_fixed_joints_hold_links_of_an_sdf_together(world):
     ('shapes', (2.5, 0.0, 0.5), {'box': 0.29}),
     ('maze', (0.0, 0.0, 0.0), {}),
 ])
-def test_what_a_model_is_spawned_into_is_known(world, world_name, place, overlaps):
+def test_overlaps_of_a_spawned_model_are_found(world, world_name, place, overlaps):
     populate(world, own(world_name))
     robot = world.spawn(robot_spec(), 'rosbots', Pose(place))
     found = world.overlaps(robot)
     assert found == pytest.approx(overlaps, abs=0.001)
 
 
-def test_looking_for_overlaps_changes_no_motion():
+def test_search_for_overlaps_does_not_change_the_motion():
     ends = []
     for looks in (False, True):
         world = World()
@@ -254,7 +254,7 @@ def test_looking_for_overlaps_changes_no_motion():
     assert ends[0] == ends[1]
 
 
-def test_a_world_stands_without_a_model_that_the_engine_does_not_take(world, monkeypatch, caplog):
+def test_world_is_loaded_without_a_model_that_the_engine_rejects(world, monkeypatch, caplog):
     spawn = world.spawn
 
     def refuse_one(spec, name, pose):

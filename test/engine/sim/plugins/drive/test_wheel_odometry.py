@@ -1,4 +1,4 @@
-"""Odometry from the wheels tells what the wheels did."""
+"""Encoder odometry agrees with the rotation of the wheels."""
 
 import math
 
@@ -13,7 +13,7 @@ EXACT = 1e-6  # [m and rad]
 
 
 class DeadReckoning(Hook):
-    """Adds up the ways of two wheels, from how far they say to have turned."""
+    """Integrates the distances of two wheels from their joint positions."""
 
     def __init__(self, world, plugin):
         self._world, self._plugin = world, plugin
@@ -37,21 +37,21 @@ class DeadReckoning(Hook):
 
 
 @pytest.mark.parametrize('command', [(0.5, 0.0), (0.3, -0.8), (-0.4, 0.2)])
-def test_encoder_odometry_is_what_the_wheels_did(command):
+def test_encoder_odometry_is_the_dead_reckoning_of_the_wheels(command):
     text = robot_urdf().replace('</plugin>', '<odometrySource>encoder</odometrySource></plugin>')
     spec = load_urdf(text, 'rosbots', robot_namespace='/', find_package=package_directory)[0]
     with empty_world() as world:
         model = world.spawn(spec, 'rosbots', SPAWN_POSE)
         plugin = model.plugins[0]
         world.run(SETTLED)
-        plugin.reset()  # where both begin
+        plugin.reset()  # both start here
         reckoned = DeadReckoning(world, plugin)
         world.schedule.add(reckoned)
         apart = []
 
         def compare(odometry):
             (x, y, _), orientation = odometry.pose
-            # The plugin comes first in a step, so what was reckoned is one step behind.
+            # The plugin runs first in a step, so the dead reckoning is one step behind.
             reckoned.before_step()
             turned = math.remainder(yaw_of(orientation) - reckoned.yaw, 2.0 * math.pi)
             apart.append(max(abs(x - reckoned.x), abs(y - reckoned.y), abs(turned)))

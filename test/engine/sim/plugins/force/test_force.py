@@ -1,4 +1,4 @@
-"""The force plugin: as recorded in Gazebo, until told else, through resets."""
+"""The force plugin: as recorded in Gazebo, until the next command, through resets."""
 
 from contextlib import closing
 
@@ -14,7 +14,7 @@ from rosbots_description.sim.runtime.world import World
 
 PUSH = ((5.0, 0.0, 60.0), (0.0, 0.0, 0.0))
 NOTHING = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-BEFORE = 6  # steps between the push and the first recorded state
+BEFORE = 6  # steps between the force and the first recorded state
 
 
 def spec(**tags):
@@ -24,7 +24,7 @@ def spec(**tags):
     return load_urdf(text, 'fbot')[0]
 
 
-def test_a_body_moves_as_recorded():
+def test_body_moves_as_recorded():
     states = load('model_plugins')['force']
     with empty_world() as world:
         model = world.spawn(spec(), 'fbot', Pose((0.0, 0.0, 0.0), from_rpy(0.0, 0.0, 1.0)))
@@ -33,12 +33,12 @@ def test_a_body_moves_as_recorded():
         for stamp, position, velocity in states:
             world.run(round(1000 * stamp) - world.clock.steps)
             pose, twist = model.state()
-            # Gazebo's stands 0.01 mm higher.
+            # Gazebo's body is 0.01 mm higher.
             assert pose.position == pytest.approx(position, abs=2e-5)
             assert twist.linear == pytest.approx(velocity, abs=1e-5)
 
 
-def test_zero_ends_it_and_a_reset_does_not():
+def test_force_ends_with_zero_and_not_with_a_reset():
     with closing(World()) as world:
         model = world.spawn(spec(), 'fbot', Pose((0.0, 0.0, 1.0)))
         plugin = model.plugin('force')
@@ -54,7 +54,7 @@ def test_zero_ends_it_and_a_reset_does_not():
         assert model.twist.linear[0] == pytest.approx(0.01)
 
 
-def test_torque_turns_about_the_centre_of_mass():
+def test_torque_rotates_about_the_centre_of_mass():
     with closing(World()) as world:
         model = world.spawn(spec(), 'fbot', Pose())
         model.plugin('force').command((0.0, 0.0, 0.0), (0.0, 0.0542, 0.0))
@@ -63,7 +63,7 @@ def test_torque_turns_about_the_centre_of_mass():
         assert model.twist.linear[0] == pytest.approx(-0.1 * model.twist.angular[1])
 
 
-def test_numbers_that_are_none_are_refused():
+def test_numbers_that_are_not_finite_are_rejected():
     with closing(World()) as world:
         plugin = world.spawn(spec(), 'fbot', Pose()).plugin('force')
         with pytest.raises(ValueError, match='takes finite numbers'):
@@ -75,7 +75,7 @@ def test_numbers_that_are_none_are_refused():
     ('topicName', '', 'force plugin: missing <topicName>, cannot proceed'),
     ('bodyName', 'nope', "force plugin: bodyName: nope does not exist: model 'fbot' has no link"),
 ])
-def test_bad_tags_leave_the_plugin_out_with_a_sentence(caplog, tag, value, sentence):
+def test_plugin_with_invalid_tags_is_left_out_with_an_error(caplog, tag, value, sentence):
     with closing(World()) as world:
         model = world.spawn(spec(**{tag: value}), 'fbot', Pose())
         assert sentence in caplog.text

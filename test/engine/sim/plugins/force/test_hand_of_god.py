@@ -21,8 +21,8 @@ from rosbots_description.sim.runtime.scheduler import NEVER
 from rosbots_description.sim.runtime.world import World
 
 GOAL = Pose((1.0, 0.0, 1.0))
-AFTER = 23  # steps from when the frame was known to the first recorded state
-LATE = 0.02  # [m/s] that a velocity changes by in the ms between reading it and the pose
+AFTER = 23  # steps from the first transform to the first recorded state
+LATE = 0.02  # [m/s] change of a velocity within 1 ms, between reading it and the pose
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def angle_between(one, other):
     return 2.0 * math.acos(min(1.0, abs(w)))
 
 
-def test_a_link_follows_as_recorded_without_weight_and_without_overshoot(world):
+def test_link_follows_as_recorded_without_gravity_and_overshoot(world):
     model = spawn(world, Pose((0.0, 0.0, 0.5)))
     plugin = model.plugin('hog')
     world.run(1000)
@@ -57,7 +57,7 @@ def test_a_link_follows_as_recorded_without_weight_and_without_overshoot(world):
         assert pose.position[0] <= 1.0
 
 
-def test_where_it_is_is_told_in_each_step_once_it_follows(world):
+def test_pose_is_output_in_each_step_while_it_follows(world):
     plugin = spawn(world, Pose()).plugin('hog')
     readings = collect(plugin.actual)
     world.run(10)
@@ -71,7 +71,7 @@ def test_where_it_is_is_told_in_each_step_once_it_follows(world):
 
 @pytest.mark.parametrize('turn', [(0.0, 0.0, 1.0), (0.5, -0.4, 2.0), (0.0, 3.0, 0.0),
                                   (0.0, 0.0, -3.1)])
-def test_it_turns_the_shorter_way_and_comes_to_rest(world, turn):
+def test_link_rotates_the_shorter_way_and_comes_to_rest(world, turn):
     model = spawn(world, Pose((0.0, 0.0, 0.5)))
     goal = Pose((0.0, 0.0, 0.5), from_rpy(*turn))
     model.plugin('hog').follow(goal)
@@ -84,7 +84,7 @@ def test_it_turns_the_shorter_way_and_comes_to_rest(world, turn):
 
 
 @pytest.mark.parametrize(('mass', 'inertia'), [(0.01, 1e-6), (0.1, 1e-5), (1e-3, 1e-7)])
-def test_a_small_link_does_not_fly_away(world, caplog, mass, inertia):
+def test_light_link_is_stable(world, caplog, mass, inertia):
     model = spawn(world, Pose(), lambda text: text.replace(
         'mass value="5"', f'mass value="{mass}"').replace('ixx="0.0542"', f'ixx="{inertia}"')
         .replace('iyy="0.0833"', f'iyy="{inertia}"').replace('izz="0.1042"', f'izz="{inertia}"'))
@@ -97,7 +97,7 @@ def test_a_small_link_does_not_fly_away(world, caplog, mass, inertia):
     assert not caplog.messages
 
 
-def test_a_reduced_link_is_brought_there_itself(world):
+def test_reduced_link_itself_follows(world):
     model = spawn(world, Pose(), lambda text: text.replace(
         '<linkName>base_footprint', '<linkName>base_link'))
     plugin = model.plugin('hog')
@@ -108,7 +108,7 @@ def test_a_reduced_link_is_brought_there_itself(world):
     assert model.pose.position == pytest.approx((1.0, 0.0, 0.9), abs=1e-4)
 
 
-def test_it_goes_on_after_a_reset_of_time(world):
+def test_link_follows_after_a_reset_of_time(world):
     model = spawn(world, Pose((0.0, 0.0, 0.5)))
     model.plugin('hog').follow(GOAL)
     world.run(3000)
@@ -126,12 +126,12 @@ def test_it_goes_on_after_a_reset_of_time(world):
     ('<ka>200', '<ka>much', "<ka> is 'much'; it takes a finite number"),
     ('<gazebo>', '<gazebo><static>true</static>', "link 'base_footprint' cannot move"),
 ])
-def test_bad_tags_leave_the_plugin_out_with_a_sentence(world, caplog, old, new, sentence):
+def test_plugin_with_invalid_tags_is_left_out_with_an_error(world, caplog, old, new, sentence):
     model = spawn(world, Pose(), lambda text: text.replace(old, new))
     assert f'hand_of_god: {sentence}' in caplog.text
     assert not model.plugins
 
 
-def test_a_pose_that_is_none_is_refused(world):
+def test_pose_that_is_not_finite_is_rejected(world):
     with pytest.raises(ValueError, match='follows finite numbers'):
         spawn(world, Pose()).plugin('hog').follow(compose(GOAL, Pose((math.inf, 0.0, 0.0))))

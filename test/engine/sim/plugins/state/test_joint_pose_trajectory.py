@@ -1,4 +1,4 @@
-"""Trajectories of joint positions: as recorded in Gazebo, and what holds meanwhile."""
+"""Trajectories of joint positions: as recorded in Gazebo, with physics paused meanwhile."""
 
 import math
 from contextlib import closing
@@ -13,7 +13,7 @@ from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.world import World
 
 HALF = 500_000_000  # [ns]
-BEGAN = 30.417  # [s] when the trajectory came; nobody recorded that
+BEGAN = 30.417  # [s] start of the trajectory, estimated: it was not recorded
 PLUGIN = ('<gazebo><plugin name="jpt" filename="libgazebo_ros_joint_pose_trajectory.so"/></gazebo>')
 ARM = (
     box('base', (1.0, 1.0, 1.0), 10.0) + link('rod', '<sphere radius="0.1"/>', 1.0, (0.1, 0.1, 0.1))
@@ -30,11 +30,11 @@ def world():
 
 @pytest.fixture
 def arm(world):
-    """Return a base and a rod on it, in free space."""
+    """Return a base with a rod on a joint, in free space."""
     return world.spawn(urdf_spec(ARM, 'arm'), 'arm', Pose((0.0, 0.0, 5.0)))
 
 
-def test_an_arm_plays_points_and_falls_as_recorded():
+def test_arm_moves_and_falls_as_recorded():
     text = (DATA / 'robots' / 'arm_ft.urdf').read_text(encoding='utf-8')
     with empty_world() as world:
         model = world.spawn(load_urdf(text, 'arm')[0], 'arm', Pose())
@@ -55,7 +55,7 @@ def test_an_arm_plays_points_and_falls_as_recorded():
         assert compared > 30
 
 
-def test_each_point_holds_for_its_own_time_and_one_comes_at_a_step(world, arm):
+def test_each_point_holds_until_its_time(world, arm):
     joint, found = arm.joints['turn'], {}
     arm.plugin('jpt').play('world', 0, ['turn'], [((1.0,), 3_000_000), ((2.0,), 0), ((3.0,), 0)])
     for step in range(1, 7):
@@ -64,7 +64,7 @@ def test_each_point_holds_for_its_own_time_and_one_comes_at_a_step(world, arm):
     assert found == {1: 1.0, 2: 1.0, 3: 2.0, 4: 3.0, 5: pytest.approx(3.0), 6: pytest.approx(3.0)}
 
 
-def test_nothing_in_the_world_moves_meanwhile_and_everything_goes_on_afterwards(world, arm):
+def test_physics_is_paused_during_a_trajectory_and_continues_after_it(world, arm):
     other = world.spawn(urdf_spec(box('box', (1.0, 1.0, 1.0), 1.0)), 'box', Pose((9.0, 0.0, 5.0)))
     world.run(100)
     arm.set_twist(Twist((0.1, 0.0, 0.0), (0.0, 0.0, 0.2)))
@@ -76,12 +76,12 @@ def test_nothing_in_the_world_moves_meanwhile_and_everything_goes_on_afterwards(
     assert arm.twist == before
     assert arm.joints['turn'].velocity == 0.7
     assert other.state() == falling
-    world.run(1)  # the last point is over in the step in which its time is
+    world.run(1)  # the last point ends in the step of its time
     assert other.state() != falling
     assert arm.joints['turn'].velocity == pytest.approx(0.7, abs=1e-3)
 
 
-def test_pushes_of_that_time_are_lost_and_do_not_add_up(world, arm):
+def test_forces_during_a_trajectory_have_no_effect(world, arm):
     other = world.spawn(urdf_spec(box('box', (1.0, 1.0, 1.0), 1.0)), 'box', Pose((9.0, 0.0, 5.0)))
     world.external_forces.add(
         other.link('box'),
@@ -91,7 +91,7 @@ def test_pushes_of_that_time_are_lost_and_do_not_add_up(world, arm):
     assert other.twist.linear[0] == pytest.approx(1e-3)
 
 
-def test_the_link_that_the_trajectory_names_stays_where_it_is(world, arm):
+def test_reference_link_of_a_trajectory_does_not_move(world, arm):
     rod = arm.link('rod').pose
     arm.plugin('jpt').play('arm::rod', 0, ['turn'], [((1.0,), HALF)])
     world.run(1)
@@ -101,20 +101,20 @@ def test_the_link_that_the_trajectory_names_stays_where_it_is(world, arm):
     assert arm.pose.orientation != pytest.approx(rod.orientation)
 
 
-def test_a_trajectory_moves_the_model_whose_link_it_names(world, arm):
+def test_trajectory_moves_the_model_of_its_reference_link(world, arm):
     second = world.spawn(urdf_spec(ARM, 'arm'), 'second', Pose((0.0, 9.0, 5.0)))
     arm.plugin('jpt').play('second::base', 0, ['turn'], [((1.0,), HALF)])
     world.run(1)
     assert (arm.joints['turn'].position, second.joints['turn'].position) == (0.0, 1.0)
 
 
-def test_positions_that_are_no_numbers_are_refused(arm):
+def test_positions_that_are_not_finite_are_rejected(arm):
     with pytest.raises(ValueError, match='takes finite positions'):
         arm.plugin('jpt').play('world', 0, ['turn'], [((math.nan,), HALF)])
 
 
 @pytest.mark.parametrize('frame', ['', 'nope', 'arm'])
-def test_a_frame_that_is_no_link_is_an_error_and_nothing_stops(world, arm, caplog, frame):
+def test_unknown_reference_link_is_an_error_without_a_pause(world, arm, caplog, frame):
     arm.plugin('jpt').play(frame, 0, ['turn'], [((1.0,), HALF)])
     assert caplog.messages == [
         f'ros_joint_trajectory plugin needs a reference link [{frame}] as frame_id, aborting.']
@@ -123,7 +123,7 @@ def test_a_frame_that_is_no_link_is_an_error_and_nothing_stops(world, arm, caplo
     assert arm.joints['turn'].position == 0.0
 
 
-def test_points_that_do_not_fit_are_skipped_and_unknown_joints_left_out(world, arm, caplog):
+def test_points_of_wrong_length_are_skipped_and_unknown_joints_ignored(world, arm, caplog):
     points = [((1.0,), 1_000_000), ((1.5, 9.0), 0)]
     arm.plugin('jpt').play('world', 0, ['turn', 'nope'], points)
     assert caplog.messages == [
@@ -134,7 +134,7 @@ def test_points_that_do_not_fit_are_skipped_and_unknown_joints_left_out(world, a
     assert arm.joints['turn'].position == 1.5
 
 
-def test_a_start_to_come_is_waited_for_and_said(world, arm, caplog):
+def test_trajectory_with_a_later_start_waits_with_a_message(world, arm, caplog):
     arm.plugin('jpt').play('world', 5_000_000, ['turn'], [((1.0,), 0)])
     assert 'begins at 0.005 s; until it has ended nothing moves' in caplog.text
     world.run(4)
@@ -144,8 +144,8 @@ def test_a_start_to_come_is_waited_for_and_said(world, arm, caplog):
     assert arm.twist.linear[2] == 0.0
 
 
-@pytest.mark.parametrize('end', ['another', 'delete', 'reset', 'delete what it moves'])
-def test_physics_goes_on_when_a_trajectory_is_replaced_or_its_model_goes(world, arm, end):
+@pytest.mark.parametrize('end', ['another', 'delete', 'reset', 'delete the moved model'])
+def test_physics_continues_when_a_trajectory_is_replaced_or_its_model_deleted(world, arm, end):
     other = world.spawn(urdf_spec(box('box', (1.0, 1.0, 1.0), 1.0)), 'box', Pose((9.0, 0.0, 5.0)))
     plugin = arm.plugin('jpt')
     plugin.play('world', 0, ['turn'], [((1.0,), HALF)])
@@ -155,7 +155,7 @@ def test_physics_goes_on_when_a_trajectory_is_replaced_or_its_model_goes(world, 
         world.run(1)
     elif end == 'delete':
         world.delete('arm')
-    elif end == 'delete what it moves':
+    elif end == 'delete the moved model':
         world.spawn(urdf_spec(ARM, 'arm'), 'second', Pose((0.0, 9.0, 5.0)))
         plugin.play('second::rod', 0, ['turn'], [((1.0,), 1_000_000)] * 9)
         world.run(2)

@@ -13,12 +13,12 @@ from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_r
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.world import World
 
-STEP = 1e-3  # [s] from one row of the recording to the next, and of physics between both
-NEAR = 0.01  # [m, m/s, rad/s]: what gravity, and the motion of a few ms, come to
+STEP = 1e-3  # [s] between rows of the recording, and step size
+NEAR = 0.01  # [m, m/s, rad/s]: effect of gravity and of some ms of motion
 
 
 def recorded(name):
-    """Return frames, and pose and twist, of a plugin's first message in the recorded drive."""
+    """Return frames, pose and twist of the first recorded message of a plugin."""
     stored = load('model_plugins')['p3d'][name]
     position, orientation, linear, angular = (tuple(part) for part in stored['row'][1:])
     return stored['frames'], Pose(position, orientation), Twist(linear, angular)
@@ -26,7 +26,7 @@ def recorded(name):
 
 @pytest.fixture
 def skid4():
-    """Yield the recorded robot in a world of its own, moving as it did at 5.797 s."""
+    """Yield the recorded robot with its motion at 5.797 s."""
     text = (DATA / 'robots' / 'skid4_p3d.urdf').read_text(encoding='utf-8')
     with closing(World()) as world:
         model = world.spawn(load_urdf(text, 'skid4', robot_namespace='/')[0], 'skid4', Pose())
@@ -51,7 +51,7 @@ def first_reading(model, plugin):
     return readings[0]
 
 
-def test_the_body_is_told_in_the_world_with_its_twist_in_the_worlds_axes(skid4):
+def test_twist_of_the_body_is_in_world_axes(skid4):
     _, pose, twist = recorded('gt')
     found = first_reading(skid4, 'p3d_a')
     assert found.pose.position == pytest.approx(pose.position, abs=NEAR)
@@ -60,24 +60,24 @@ def test_the_body_is_told_in_the_world_with_its_twist_in_the_worlds_axes(skid4):
     assert found.twist.angular == pytest.approx(twist.angular, abs=5 * NEAR)
 
 
-def test_a_wheel_in_the_frame_of_the_body_is_told_as_recorded(skid4):
+def test_wheel_in_the_frame_of_the_body_is_as_recorded(skid4):
     (_, child), pose, twist = recorded('gt_wheel')
     found = first_reading(skid4, 'p3d_wheel')
     assert skid4.plugin('p3d_wheel').body == child
     assert found.pose.position == pytest.approx(pose.position, abs=1e-4)
     alike = abs(sum(a * b for a, b in zip(
         found.pose.orientation, pose.orientation, strict=True)))
-    assert 2.0 * math.acos(alike) < 2 * NEAR  # [rad] between the two
+    assert 2.0 * math.acos(alike) < 2 * NEAR  # [rad] between both
     assert found.twist.linear == pytest.approx(twist.linear, abs=NEAR)
     assert found.twist.angular == pytest.approx(twist.angular, abs=5 * NEAR)
 
 
-def test_a_reduced_link_has_its_true_pose_under_the_name_of_its_parent(skid4):
+def test_reduced_link_has_its_true_pose_in_the_frame_named_after_its_parent(skid4):
     (_, child), pose, _ = recorded('gt_lumped')
     found = first_reading(skid4, 'p3d_lumped')
     assert skid4.plugin('p3d_lumped').body == child == 'base_footprint'
     assert found.pose.orientation == pytest.approx(pose.orientation, abs=NEAR)
-    # Gazebo tells -0.131: it subtracts the 0.13 m by which base_link stands higher.
+    # Gazebo gives -0.131: it subtracts the height of base_link, 0.13 m.
     assert found.pose.position[2] == pytest.approx(pose.position[2] + 2 * 0.13, abs=1e-4)
 
 
@@ -102,7 +102,7 @@ P3D = ('<gazebo><plugin name="{name}" filename="libgazebo_ros_p3d.so"><topicName
 PLACE = Pose((0.3, -0.2, 0.5), from_rpy(0.4, 0.2, -1.0))  # of the mast in the base
 
 
-def test_a_reduced_link_that_turns_has_the_pose_and_twist_that_it_has():
+def test_reduced_link_on_a_rotating_body_has_its_true_pose_and_twist():
     mast = ('<joint name="m" type="fixed"><parent link="base"/><child link="mast"/>'
             '<origin xyz="0.3 -0.2 0.5" rpy="0.4 0.2 -1.0"/></joint>')
     plugins = P3D.format(name='mast', body='mast', frame='world') + P3D.format(
