@@ -1,4 +1,4 @@
-"""Robots with all kinds of sensors in one world: runs repeat bit by bit, resets disturb nobody."""
+"""Robots with all kinds of sensors in one world: bit-identical runs, and resets."""
 
 import pickle
 from contextlib import closing
@@ -47,7 +47,7 @@ def world():
         yield made
 
 
-def test_a_run_repeats_bit_by_bit_with_all_sensors_and_drives_read():
+def test_runs_with_all_sensors_and_drives_read_are_bit_identical():
     def run():
         with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
             found = spawn_all(world, NOISY)
@@ -59,7 +59,7 @@ def test_a_run_repeats_bit_by_bit_with_all_sensors_and_drives_read():
     assert first == run()
 
 
-def test_after_a_reset_everything_is_measured_again_bit_by_bit(world):
+def test_readings_after_a_reset_are_bit_identical(world):
     found = spawn_all(world, NOISY)
     world.reset_simulation()
     world.run(200)
@@ -75,7 +75,7 @@ def test_after_a_reset_everything_is_measured_again_bit_by_bit(world):
 
 
 @pytest.mark.parametrize('robot', PERIODS)
-def test_a_reset_of_the_world_disturbs_no_output_and_after_one_of_time_all_go_on(world, robot):
+def test_outputs_continue_after_resets_of_poses_and_of_time(world, robot):
     found = spawn_all(world, [robot])
 
     def times():
@@ -99,7 +99,7 @@ def test_a_reset_of_the_world_disturbs_no_output_and_after_one_of_time_all_go_on
         assert any(between <= {period, period + 1, period - 1} for period in PERIODS[robot][output])
 
 
-def test_a_reset_begins_a_period_of_a_diff_drive_and_stops_it(world):
+def test_reset_restarts_the_period_of_a_diff_drive_and_stops_it(world):
     found = spawn_all(world, ['burger'])
     world.run(155)
     world.reset_world()

@@ -1,4 +1,4 @@
-"""Cameras see what Gazebo's saw, at the times they should, whatever happens to who draws."""
+"""Images of cameras agree with Gazebo's, are rendered on time, and survive render failures."""
 
 import logging
 import math
@@ -89,7 +89,7 @@ def process_of(world):
 
 
 @pytest.mark.parametrize('name', SCENES)
-def test_a_picture_is_the_recorded_one(name):
+def test_image_agrees_with_the_recording(name):
     world_name, robot, x, yaw = SCENES[name]
     with closing(recorded_world(world_name)) as world:
         _, camera = spawn_robot(world, robot, x, yaw)
@@ -101,7 +101,7 @@ def test_a_picture_is_the_recorded_one(name):
 @pytest.mark.parametrize('behind', [False, True])
 @pytest.mark.parametrize('turned', [False, True])
 @pytest.mark.parametrize('name', ['colours_0e', 'colours_1e', 'colours_2e'])
-def test_the_faces_of_cubes_have_the_recorded_colours_of_their_materials(
+def test_colours_of_materials_agree_with_the_recording(
         name, turned, behind, tmp_path):
     """Cubes of 0.4 m stand at x = 3, turned by 45 degrees or not; a texture is its mean colour."""
     text = (RECORDED / 'worlds' / f'{name}.world').read_text(encoding='utf-8')
@@ -133,7 +133,7 @@ def test_the_faces_of_cubes_have_the_recorded_colours_of_their_materials(
     assert len(away) >= (30 if turned else 15)
 
 
-def test_without_opengl_one_line_says_what_would_help(scene, caplog, monkeypatch):
+def test_missing_opengl_is_one_error_with_the_cure(scene, caplog, monkeypatch):
     monkeypatch.setenv('__EGL_VENDOR_LIBRARY_FILENAMES', '/nonexistent')
     _, camera = spawn_robot(scene, 'camera_320')
     taken = stamps(camera)
@@ -144,14 +144,14 @@ def test_without_opengl_one_line_says_what_would_help(scene, caplog, monkeypatch
         '0 devices); install libegl-mesa0 and libgl1-mesa-dri, which draw in software']
 
 
-def test_both_eyes_of_a_multicamera_see_from_where_they_are(scene):
+def test_cameras_of_a_multicamera_have_their_own_poses(scene):
     _, camera = spawn_robot(scene, 'multicamera')
     for side, picture in zip(('left', 'right'), camera.read(), strict=True):
         away = np.abs(picture.pixels.astype(int) - recorded_picture(f'multicamera_{side}'))
         assert (away.max(axis=2) > LEVELS).mean() < 10 * EDGES
 
 
-def test_sixteen_bits_are_those_of_eight_with_the_recorded_mean(scene):
+def test_16_bit_image_matches_the_8_bit_one_and_the_recorded_mean(scene):
     camera = scene.spawn(robot_with('>R8G8B8<', '>L16<')).sensors[0]
     images = []
     plugin_of(camera).outputs['image'].connect(images.append)
@@ -168,7 +168,7 @@ def test_sixteen_bits_are_those_of_eight_with_the_recorded_mean(scene):
     ('>30</update_rate>', '>15</update_rate>', [67, 134, 200, 267]),
     ('<updateRate>0<', '<updateRate>10<', [100, 200, 300, 400]),
 ])
-def test_pictures_come_at_the_lesser_rate_of_sensor_and_plugin(scene, old, new, times):
+def test_image_rate_is_the_lesser_of_sensor_and_plugin(scene, old, new, times):
     found = []
     camera = scene.spawn(robot_with(old, new)).sensors[0]
     plugin_of(camera).outputs['image'].connect(lambda image: found.append(image.stamp_ns // 10**6))
@@ -178,7 +178,7 @@ def test_pictures_come_at_the_lesser_rate_of_sensor_and_plugin(scene, old, new, 
 
 @pytest.mark.parametrize(('robot', 'share'), [('camera_dist_auto', 0.04),
                                               ('camera_dist_nocrop', 0.06)])
-def test_a_distorted_picture_is_the_recorded_one_but_for_its_ragged_edges(scene, robot, share):
+def test_distorted_image_agrees_with_the_recording_except_at_edges(scene, robot, share):
     """Gazebo's map of the distortion has gaps, which it fills with the mean of what is around."""
     _, camera = spawn_robot(scene, robot)
     seen = camera.read().pixels.astype(int)
@@ -186,7 +186,7 @@ def test_a_distorted_picture_is_the_recorded_one_but_for_its_ragged_edges(scene,
     assert (away > LEVELS).mean() < share
 
 
-def test_noise_has_the_deviation_that_was_asked_for_and_repeats_with_the_step(scene):
+def test_noise_has_the_given_deviation_and_is_repeatable(scene):
     _, camera = spawn_robot(scene, 'camera_noise')
     first, second = camera.read().pixels, camera.read().pixels
     assert np.array_equal(first, second)
@@ -199,7 +199,7 @@ def test_noise_has_the_deviation_that_was_asked_for_and_repeats_with_the_step(sc
 
 
 @pytest.mark.parametrize('name', INFOS)
-def test_camera_info_is_the_recorded_one(scene, name):
+def test_camera_info_agrees_with_the_recording(scene, name):
     recorded = INFOS[name]
     _, camera = spawn_robot(scene, recorded['robot'])
     plugin, infos = plugin_of(camera), []
@@ -248,7 +248,7 @@ def recorded_depths():
     ('openni_kinect', ('32FC1', 1280, 240, 320, False)),
     ('depth_camera', ('32FC1', 1280, 1, 76800, True)),
 ])
-def test_depths_and_points_are_the_recorded_ones(scene, robot, kind):
+def test_depths_and_points_agree_with_the_recording(scene, robot, kind):
     _, camera = spawn_robot(scene, robot)
     depths, found, points = depths_of(camera)
     assert found == kind
@@ -275,7 +275,7 @@ def test_millimetres_are_rounded_down_and_none_is_zero(scene):
     assert (depths != expected).mean() < 1e-3
 
 
-def test_a_wall_is_equally_deep_everywhere(scene):
+def test_depth_of_a_wall_is_constant(scene):
     """The level camera of the recording is 2 m from a wall 1.5 m high."""
     for name in [name for name in scene.models if name != 'ground_plane']:
         scene.delete(name)
@@ -290,7 +290,7 @@ def test_a_wall_is_equally_deep_everywhere(scene):
     assert depths[-1] == pytest.approx(PLANE_LOWEST, abs=DEPTH)
 
 
-def test_each_picture_comes_at_its_step_and_none_is_left_out(scene):
+def test_each_image_has_its_step_and_none_is_missing(scene):
     _, camera = spawn_robot(scene, 'camera_320')
     taken = stamps(camera)
     scene.run(seconds=1.0)
@@ -299,7 +299,7 @@ def test_each_picture_comes_at_its_step_and_none_is_left_out(scene):
         math.ceil(1000 * k / 30) for k in range(1, 31)]
 
 
-def test_pictures_repeat_bit_for_bit_with_shadows_and_noise():
+def test_images_with_shadows_and_noise_are_bit_identical():
     def take():
         with closing(recorded_world(shadows=True)) as world:
             model, camera = spawn_robot(world, 'camera_noise')
@@ -314,13 +314,13 @@ def test_pictures_repeat_bit_for_bit_with_shadows_and_noise():
     assert first == take()
 
 
-def test_nobody_draws_while_nobody_reads(scene):
+def test_nothing_is_rendered_without_readers(scene):
     spawn_robot(scene, 'camera_320')
     scene.run(seconds=0.2)
     assert process_of(scene) is None
 
 
-def test_at_the_pace_of_the_wall_clock_no_step_waits_for_a_picture(scene):
+def test_paced_simulation_does_not_wait_for_images(scene):
     _, camera = spawn_robot(scene, 'camera_320')
     camera.read()
     taken = stamps(camera)
@@ -340,7 +340,7 @@ def test_at_the_pace_of_the_wall_clock_no_step_waits_for_a_picture(scene):
     assert now > stamp
 
 
-def test_another_process_begins_where_one_has_died(scene, caplog):
+def test_dead_render_process_is_restarted(scene, caplog):
     _, camera = spawn_robot(scene, 'camera_320')
     before = camera.read().pixels
     dead = process_of(scene)
@@ -355,7 +355,7 @@ def test_another_process_begins_where_one_has_died(scene, caplog):
         'the render process has died (killed by signal 9); restarting it']
 
 
-def test_meshes_reach_it_whatever_timeout_sockets_have_by_default(scene, caplog):
+def test_meshes_are_sent_with_any_default_timeout_of_sockets(scene, caplog):
     socket.setdefaulttimeout(60.0)  # as rospy does
     try:
         scene.spawn(robot_spec(), 'rosbots', Pose((0.0, 2.0, 0.5)))
@@ -368,7 +368,7 @@ def test_meshes_reach_it_whatever_timeout_sockets_have_by_default(scene, caplog)
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == []
 
 
-def test_it_ends_with_the_process_that_it_draws_for():
+def test_render_process_ends_with_its_parent():
     text = f"""
 import os, sys
 sys.path[:0] = {sys.path!r}
@@ -387,7 +387,7 @@ os.kill(os.getpid(), 9)
     assert not os.path.exists(f'/proc/{drawing}')
 
 
-def test_what_stands_before_the_sun_casts_a_shadow_unless_the_world_says_no():
+def test_shadows_are_cast_unless_the_world_disables_them():
     def ground(shadows):
         with closing(recorded_world(shadows=shadows)) as world:
             _, camera = spawn_robot(world, 'camera_640')
@@ -405,7 +405,7 @@ def test_what_stands_before_the_sun_casts_a_shadow_unless_the_world_says_no():
     ('<clip><near>2</near><far>1</far></clip>', 'near must be above 0 and below far'),
     ('<noise><type>gaussian</type><stddev>nan</stddev></noise>', 'stddev'),
 ])
-def test_a_lens_that_cannot_be_is_said_in_one_sentence(element, said, caplog):
+def test_invalid_lens_is_one_error(element, said, caplog):
     with closing(World.empty()) as world:
         world.spawn('<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" '
                     f'type="camera"><camera>{element}</camera></sensor></link></model></sdf>', 'm')
@@ -413,7 +413,7 @@ def test_a_lens_that_cannot_be_is_said_in_one_sentence(element, said, caplog):
         world.run(steps=10)
 
 
-def test_the_smallest_and_the_largest_picture_are_drawn():
+def test_smallest_and_largest_images_are_rendered():
     for size in (1, 8192):
         with closing(World.empty()) as world:
             model = world.spawn(
@@ -424,7 +424,7 @@ def test_the_smallest_and_the_largest_picture_are_drawn():
             assert model.sensors[0].read().pixels.shape == (size, size, 3)
 
 
-def test_a_robot_may_go_while_its_picture_is_under_way(scene):
+def test_robot_can_be_deleted_while_its_image_is_rendered(scene):
     model, camera = spawn_robot(scene, 'camera_320')
     stamps(camera)
     scene.is_paced = True
@@ -445,7 +445,7 @@ def test_the_bytes_of_bgr8_are_in_its_order(scene, robot):
     assert camera.cameras[0].encoding == 'bgr8'
 
 
-def test_an_unknown_format_is_named(scene, caplog):
+def test_unknown_format_is_reported(scene, caplog):
     spawn_robot(scene, 'camera_BGR8')
     assert "<format> 'BGR8' is unknown; pictures are in bgr8, as in Gazebo" in caplog.text
 
@@ -477,7 +477,7 @@ TEXTURED = """<?xml version="1.0"?>
 <scene><instance_visual_scene url="#w"/></scene></COLLADA>"""
 
 
-def test_an_image_covers_a_mesh_the_right_way_round(tmp_path):
+def test_texture_has_the_right_orientation(tmp_path):
     """Seen along +x: y to the left, so that what is left in the image is right in the picture."""
     image = np.zeros((2, 2, 3), 'u1')
     image[0, 0], image[0, 1], image[1, 0] = (255, 0, 0), (0, 255, 0), (0, 0, 255)  # top row first

@@ -1,4 +1,4 @@
-"""IMUs measure what mechanics has, and what Gazebo recorded."""
+"""IMU readings agree with mechanics and with Gazebo's recordings."""
 
 import math
 from contextlib import closing
@@ -13,7 +13,7 @@ from rosbots_description.sim.public.world import World
 
 RECORDED = recordings('imu')
 GRAVITY = 9.8  # [m/s^2]
-# What standing on PyBullet's ground differs by from standing still [rad/s, m/s^2].
+# Residual motion of a body on PyBullet's ground [rad/s, m/s^2].
 STILL = 1e-4
 
 
@@ -46,7 +46,7 @@ def fall(model):
 
 
 @pytest.mark.parametrize('robot', RECORDED)
-def test_at_rest_it_reads_what_was_recorded(world, robot):
+def test_reading_at_rest_agrees_with_the_recording(world, robot):
     recording = RECORDED[robot]
     _, found = spawn(world, robot, recording['yaw'])
     world.run(500)
@@ -54,7 +54,7 @@ def test_at_rest_it_reads_what_was_recorded(world, robot):
 
 
 @pytest.mark.parametrize('robot', [name for name in RECORDED if RECORDED[name]['fall']])
-def test_falling_and_turning_it_reads_what_was_recorded(world, robot):
+def test_reading_in_a_rotating_fall_agrees_with_the_recording(world, robot):
     world.strict = True  # imu_model is recorded with its flaw
     model, found = spawn(world, robot, RECORDED[robot]['yaw'])
     world.run(500)
@@ -70,7 +70,7 @@ def test_falling_and_turning_it_reads_what_was_recorded(world, robot):
         assert nearest[7:] == pytest.approx(row[7:], abs=0.006 if robot == 'imu_model' else 0.001)
 
 
-def test_what_it_reads_adds_up_to_the_velocity_where_it_is(world):
+def test_integrated_readings_give_the_velocity_of_the_sensor(world):
     model, found = spawn(world, 'imu_sensor')
     world.run(5)
     fall(model)
@@ -92,7 +92,7 @@ def test_what_it_reads_adds_up_to_the_velocity_where_it_is(world):
     assert gained == pytest.approx(velocity() - before, abs=1e-9)
 
 
-def test_the_plugin_of_a_model_has_the_right_axes_unless_the_world_is_strict(world):
+def test_model_plugin_has_correct_axes_unless_the_world_is_strict(world):
     model, found = spawn(world, 'imu_model')
     world.run(20)
     fall(model)
@@ -104,7 +104,7 @@ def test_the_plugin_of_a_model_has_the_right_axes_unless_the_world_is_strict(wor
         (GRAVITY * math.sin(0.2), 0.0, -GRAVITY * math.cos(0.2)), abs=0.05)
 
 
-def test_a_body_behind_a_fixed_joint_has_its_true_attitude_under_its_parents_name(world):
+def test_imu_on_a_reduced_link_has_its_true_orientation(world):
     model, found = spawn(world, 'imu_model_lumped')
     world.run(20)
     assert found[-1][1].orientation == pytest.approx(from_rpy(0.2, -0.3, 0.5), abs=STILL)
@@ -128,7 +128,7 @@ def test_a_body_behind_a_fixed_joint_has_the_recorded_attitude_in_a_strict_world
     ('imu_sensor_sdfnoise', [0.0] * 4 + [2e-4] * 3 + [0.017] * 3, 0.0),
     ('imu_model_noise', [0.0] * 4 + [0.05] * 6, 0.05),
 ])
-def test_noise_is_on_the_numbers_that_gazebo_puts_it_on(world, robot, deviations, claimed):
+def test_noise_is_on_the_same_values_as_in_gazebo(world, robot, deviations, claimed):
     _, found = spawn(world, robot)
     world.run(8000)
     readings = np.array([numbers(reading) for time, reading in found if time > 1000])
@@ -140,13 +140,13 @@ def test_noise_is_on_the_numbers_that_gazebo_puts_it_on(world, robot, deviations
     ('imu_sensor', [10, 20, 30]), ('imu_sensor_norate', [1000, 2000, 3000]),
     ('imu_sensor_sdfnoise', [5, 10, 15]), ('imu_model', [20, 40, 60]),
 ])
-def test_messages_come_at_the_rate_of_the_plugin(world, robot, times):
+def test_readings_have_the_rate_of_the_plugin(world, robot, times):
     _, found = spawn(world, robot)
     world.run(times[-1])
     assert [time for time, _ in found] == times
 
 
-def test_without_a_rate_the_plugin_of_a_model_works_in_every_step_and_has_its_defaults(world):
+def test_model_plugin_without_a_rate_updates_every_step_with_defaults(world):
     def bare(text):
         plugin = '<plugin name="p" filename="libgazebo_ros_imu.so"><bodyName>base_footprint' \
             '</bodyName></plugin>'
@@ -168,7 +168,7 @@ def test_without_a_rate_the_plugin_of_a_model_works_in_every_step_and_has_its_de
     ('imu_model', '<bodyName>base_footprint</bodyName>', '', 'missing <bodyName>, cannot proceed'),
     ('imu_model', '>base_footprint</body', '>nobody</body', 'bodyName: nobody does not exist'),
 ])
-def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
+def test_invalid_imu_is_left_out_with_an_error(
         world, robot, old, new, sentence, caplog):
     text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
     assert old in text
@@ -180,7 +180,7 @@ def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
     world.run(20)
 
 
-def test_a_reading_does_not_depend_on_who_read_before(world):
+def test_reading_does_not_depend_on_earlier_readers(world):
     model, found = spawn(world, 'imu_sensor_noise')
     world.run(30)
     expected = [numbers(reading).tobytes() for _, reading in found]

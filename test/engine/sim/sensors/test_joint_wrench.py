@@ -1,4 +1,4 @@
-"""Joints pass on the weights and efforts that they were recorded to pass on."""
+"""Joint reactions agree with Gazebo's recordings."""
 
 import math
 from contextlib import closing
@@ -10,7 +10,7 @@ from rosbots_description.ros_api.adapters.wrenches import wrench_message
 from rosbots_description.sim.public.world import World
 
 ARM = (RECORDED / 'robots' / 'arm_ft.urdf').read_text(encoding='utf-8')
-# Of Gazebo, hanging at rest: force and torque of each joint [N, N m].
+# In Gazebo, hanging at rest: force and torque of each joint [N, N m].
 HANGING = {'ft_elbow': ((0.0, 0.0, 4.9), (0.0, 0.0, 0.0)),
            'ft_shoulder': ((0.0, 0.0, 14.7), (0.245, 0.0, 0.0))}
 CLOSE = 1e-3
@@ -36,7 +36,7 @@ def spawn(world, arm=ARM):
 
 
 @pytest.mark.parametrize('topic', HANGING)
-def test_hanging_at_rest_joints_bear_what_hangs_on_them(world, topic):
+def test_reactions_at_rest_are_the_weight_below_the_joint(world, topic):
     _, found = spawn(world)
     world.run(200)
     assert [time for time, _ in found[topic]] == list(range(10, 201, 10))
@@ -47,7 +47,7 @@ def test_hanging_at_rest_joints_bear_what_hangs_on_them(world, topic):
         torque, abs=CLOSE)
 
 
-def test_an_effort_on_a_joint_is_in_its_torque(world):
+def test_effort_on_a_joint_is_part_of_its_torque(world):
     model, found = spawn(world)
     # 0.118 rad is where 0.1 N m holds the fore-arm against gravity.
     world.apply_effort(model.joint('elbow'), 0.1)
@@ -98,7 +98,7 @@ def test_a_stop_bears_a_rod_and_what_lies_on_it(world, lower):
     assert found[-1].torque[1] == pytest.approx(9.8 + 0.8 * 9.8, abs=0.05)
 
 
-def test_the_frame_is_that_of_the_child_and_nothing_is_measured_unread(world):
+def test_frame_is_that_of_the_child_and_nothing_is_measured_without_readers(world):
     model = world.spawn(ARM, 'arm')
     plugin = model.plugin('ft')
     assert plugin.params.values['frame'] == 'fore'
@@ -110,7 +110,7 @@ def test_the_frame_is_that_of_the_child_and_nothing_is_measured_unread(world):
     assert world.engine.joint_reaction(model.body, 'elbow').force == pytest.approx((0, 0, 0))
 
 
-def test_after_a_reset_of_time_it_measures_on(world):
+def test_readings_continue_after_a_reset_of_time(world):
     model, found = spawn(world)
     world.run(50)
     world.reset_simulation()
@@ -126,7 +126,7 @@ def test_after_a_reset_of_time_it_measures_on(world):
     ('<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
     ('<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
 ])
-def test_one_that_makes_no_sense_is_left_out_with_a_sentence(world, old, new, sentence, caplog):
+def test_invalid_plugin_is_left_out_with_an_error(world, old, new, sentence, caplog):
     assert old in ARM
     world.spawn(ARM.replace(old, new), 'arm')
     assert sentence in caplog.text

@@ -1,4 +1,4 @@
-"""Laser scans are those that Gazebo recorded, and those that geometry has."""
+"""Laser scans agree with Gazebo's recordings and with geometry."""
 
 import math
 import random
@@ -42,7 +42,7 @@ def stamped(world, sensor):
 
 
 @pytest.mark.parametrize('name', SCANS)
-def test_a_scan_is_the_recorded_one(name):
+def test_scan_agrees_with_the_recording(name):
     world, robot = recorded_scene(SCANS[name])
     with closing(world):
         scan = robot.sensor('head_hokuyo_sensor').read()
@@ -102,7 +102,7 @@ def test_a_scan_of_a_driving_robot_belongs_to_the_pose_of_its_stamp(scene):
         assert sensor.read().ranges == pytest.approx(scan.ranges, abs=1e-9)
 
 
-def test_what_moves_is_seen_where_it_is_at_the_end_of_the_step(scene):
+def test_moving_model_is_seen_at_its_pose_at_the_end_of_the_step(scene):
     robot = scene.spawn(ROBOT)
     ball = scene.spawn('<sdf version="1.6"><model name="ball"><link name="l"><gravity>0</gravity>'
                        '<collision name="c"><geometry><sphere><radius>.1</radius></sphere>'
@@ -161,7 +161,7 @@ def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
     assert np.array_equal(culled, whole)
 
 
-def test_what_comes_is_seen_and_what_goes_is_not(scene):
+def test_spawned_model_is_seen_until_deleted(scene):
     sensor = scene.spawn(ROBOT).sensor('head_hokuyo_sensor')
     before = sensor.read().ranges
     scene.spawn('<sdf version="1.6"><model name="wall"><static>1</static><link name="l"><collision '
@@ -176,14 +176,14 @@ def test_what_comes_is_seen_and_what_goes_is_not(scene):
     (40, [25, 50, 75, 100]), (30, [34, 67, 100, 134]), (0, [1, 2, 3, 4]), (-5, [1, 2, 3, 4]),
     (2000, [1, 2, 3, 4]), (7, [143, 286, 429, 572]),
 ])
-def test_readings_come_at_the_rate_on_average_and_at_the_end_of_steps(scene, rate, times):
+def test_readings_have_the_mean_rate_at_ends_of_steps(scene, rate, times):
     sensor = scene.spawn(robot_with(update_rate=rate, samples=3)).sensor('head_hokuyo_sensor')
     found = stamped(scene, sensor)
     scene.run(600)
     assert [time for time, _ in found[:4]] == times
 
 
-def test_each_sensor_keeps_its_own_rate_whoever_is_there_and_reads(scene):
+def test_rate_of_a_sensor_does_not_depend_on_others_or_readers(scene):
     sensors = [scene.spawn(robot_with(update_rate=rate, samples=3), f'r{rate}', x=rate)
                .sensor('head_hokuyo_sensor') for rate in (40, 30, 7)]
     found = [stamped(scene, sensor) for sensor in sensors[1:]]
@@ -194,7 +194,7 @@ def test_each_sensor_keeps_its_own_rate_whoever_is_there_and_reads(scene):
     assert late[0][0] == 525  # in the rhythm that there would be without having slept
 
 
-def test_after_a_reset_of_time_it_goes_on_at_once(scene):
+def test_scans_continue_at_once_after_a_reset_of_time(scene):
     found = stamped(scene, scene.spawn(ROBOT).sensor('head_hokuyo_sensor'))
     scene.run(110)
     scene.reset_simulation()
@@ -203,7 +203,7 @@ def test_after_a_reset_of_time_it_goes_on_at_once(scene):
     assert [time for time, _ in found] == [25, 50]
 
 
-def test_nobody_computes_a_scan_that_nobody_reads(scene):
+def test_no_scan_is_computed_without_readers(scene):
     sensor = scene.spawn(ROBOT).sensor('head_hokuyo_sensor')
     read = []
     sensor.readings.connect(read.append)
@@ -213,7 +213,7 @@ def test_nobody_computes_a_scan_that_nobody_reads(scene):
     assert read == []
 
 
-def test_noise_is_of_its_size_and_stays_within_the_limits(scene):
+def test_noise_has_its_deviation_and_stays_within_the_range(scene):
     scans = stamped(scene, scene.spawn(NOISY).sensor('head_hokuyo_sensor'))
     scene.run(1000)
     clean = scene.models['lbot'].sensor('head_hokuyo_sensor').cast()[0]
@@ -227,7 +227,7 @@ def test_noise_is_of_its_size_and_stays_within_the_limits(scene):
     assert np.isposinf(ranges[:, ~met]).all()
 
 
-def test_noise_repeats_with_the_seed_whenever_somebody_begins_to_read():
+def test_noise_repeats_with_the_seed_at_any_start_of_reading():
     def scan_at(seed, begin):
         with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
             world.seed = seed
@@ -241,7 +241,7 @@ def test_noise_repeats_with_the_seed_whenever_somebody_begins_to_read():
     assert scan_at(1, 0) != scan_at(2, 0)
 
 
-def test_two_sensors_have_different_noise_and_a_reset_repeats_it(scene):
+def test_noise_differs_between_sensors_and_repeats_after_a_reset(scene):
     sensors = [scene.spawn(NOISY, f'r{i}').sensor('head_hokuyo_sensor') for i in range(2)]
     found = [stamped(scene, sensor) for sensor in sensors]
     scene.run(50)
@@ -252,7 +252,7 @@ def test_two_sensors_have_different_noise_and_a_reset_repeats_it(scene):
     assert np.array_equal(found[0][-1][1].ranges, first)
 
 
-def test_a_saved_state_goes_on_with_the_same_scans(scene):
+def test_scans_after_a_restore_are_identical(scene):
     sensor = scene.spawn(NOISY).sensor('head_hokuyo_sensor')
     found = stamped(scene, sensor)
     scene.run(30)
@@ -264,7 +264,7 @@ def test_a_saved_state_goes_on_with_the_same_scans(scene):
     assert [(time, scan.ranges.tobytes()) for time, scan in found[-2:]] == expected
 
 
-def test_the_plugin_hands_scans_on_only_while_somebody_reads_them(scene):
+def test_plugin_outputs_scans_only_with_readers(scene):
     robot = scene.spawn(ROBOT)
     plugin = robot.plugin('laser')
     assert plugin.params.values == {'frameName': 'laser_link', 'topicName': '/scan'}
@@ -277,7 +277,7 @@ def test_the_plugin_hands_scans_on_only_while_somebody_reads_them(scene):
     assert not plugin.sensor.readings.wanted
 
 
-def test_a_million_rays_fit_and_a_deleted_robot_hurts_nobody(scene):
+def test_a_million_rays_and_deletion_during_use(scene):
     many = scene.spawn(robot_with(samples=1_000_000)).sensor('head_hokuyo_sensor')
     few = scene.spawn(ROBOT, 'few', x=0.0, y=0.0).sensor('head_hokuyo_sensor')
     dense, sparse = many.read().ranges, few.read().ranges

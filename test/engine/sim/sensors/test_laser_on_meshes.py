@@ -1,4 +1,4 @@
-"""Rays meet the triangles of meshes, from both sides, wherever these are."""
+"""Rays hit the triangles of meshes from both sides."""
 
 import math
 import threading
@@ -78,7 +78,7 @@ def reference(triangles, origins, ways):
 @pytest.mark.parametrize('pose', ['4 0.5 0.3 0 0 0.4', '0 0 0.2 0 0 1', '9 -3 0 0.1 0.5 -2'])
 @pytest.mark.parametrize('scale', ['1', '-2'])
 @pytest.mark.parametrize('name', ['box', 'ring'])
-def test_a_mesh_is_met_where_its_triangles_are(folder, name, scale, pose):
+def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, name, scale, pose):
     with closing(World()) as world:
         robot = world.spawn(ROBOT)
         model = world.spawn(ROOM.format(static=1, pose=pose, uri=folder / f'{name}.obj',
@@ -100,7 +100,7 @@ def test_a_mesh_is_met_where_its_triangles_are(folder, name, scale, pose):
     assert set(scan.intensities[met]) == {7.0}
 
 
-def test_a_mesh_that_moves_is_met_where_it_is(folder):
+def test_moving_mesh_is_hit_at_its_pose(folder):
     with closing(World()) as world:
         sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')
         model = world.spawn(ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.obj',

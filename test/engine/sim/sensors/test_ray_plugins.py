@@ -1,4 +1,4 @@
-"""Range finders and block lasers give out what Gazebo's gave out."""
+"""Outputs of range finders and block lasers agree with Gazebo's recordings."""
 
 from contextlib import closing
 
@@ -33,7 +33,7 @@ def readings_of(world, robot, library, output, steps):
     return found
 
 
-def test_a_block_laser_gives_out_the_recorded_points():
+def test_points_of_a_block_laser_agree_with_the_recording():
     recording = RECORDINGS['laser_block']
     world, robot = recorded_scene(recording)
     with closing(world):
@@ -43,7 +43,7 @@ def test_a_block_laser_gives_out_the_recorded_points():
 
 
 @pytest.mark.parametrize('name', ['range', 'range_miss', 'range_noise_ir'])
-def test_a_range_finder_gives_out_the_recorded_message(name):
+def test_message_of_a_range_finder_agrees_with_the_recording(name):
     world, robot = recorded_scene(RECORDINGS[name])
     with closing(world):
         message = range_message(reading_of(robot, 'range', 'range'))
@@ -51,7 +51,7 @@ def test_a_range_finder_gives_out_the_recorded_message(name):
         assert getattr(message, field) == pytest.approx(expected, abs=EXACT)
 
 
-def test_a_range_finder_keeps_its_rate_on_average_beside_that_of_its_sensor():
+def test_range_finder_has_its_own_mean_rate():
     world, robot = recorded_scene(RECORDINGS['range_noise_ir'])  # 20 Hz in a sensor of 50 Hz
     with closing(world):
         times = [time for time, _ in readings_of(world, robot, 'range', 'range', 1000)]
@@ -59,7 +59,7 @@ def test_a_range_finder_keeps_its_rate_on_average_beside_that_of_its_sensor():
     assert set(np.diff(times)) == {40, 60}
 
 
-def test_the_noise_of_a_range_finder_ends_at_its_greatest_range():
+def test_noise_of_a_range_finder_is_limited_to_its_range():
     with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
         robot = world.spawn(ROBOTS / 'range_noise_ir.urdf', 'robot')
         world.spawn(WALL, x=2.15, name='wall')  # 1.98 m before the laser
