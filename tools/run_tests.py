@@ -20,9 +20,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
-REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest wants a path without blanks
+REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest needs a path without spaces
 COVERAGE = REPORTS / 'coverage'
-LEAST = 5  # files that are named
+LEAST = 5  # files to list
 OUTPUT_LINES = 60  # of a failed test's output, shown at the end
 
 
@@ -60,7 +60,7 @@ def count_report(path: Path) -> Count:
 
 
 def with_exit_code(count: Count, code: int) -> Count:
-    """Return the count, with a failure added where only the exit code tells of one."""
+    """Return the count, plus a failure if only the exit code reports one."""
     if count.failed == 0 and (code != 0 or count.passed == 0):
         return count + Count(failed=1)
     return count
@@ -75,7 +75,7 @@ def print_result(phase: str, name: str, count: Count, seconds: float) -> None:
 
 
 def run_command(phase: str, name: str, command: list[str]) -> Count:
-    """Run a check that passes or fails as a whole; show what it says when it fails."""
+    """Run a check that passes or fails as a whole; show its output if it fails."""
     start = time.monotonic()
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, check=False)
@@ -126,7 +126,7 @@ def run_unit(word: str) -> Count:
 
 
 def least_covered() -> str:
-    """Return one line about the lines that test/unit has run."""
+    """Return one line about the coverage of test/unit."""
     done = subprocess.run(
         [sys.executable, '-m', 'coverage', 'json', '-i', '-o', '-', f'--data-file={COVERAGE}'],
         cwd=ROOT, stdout=subprocess.PIPE, check=True)
@@ -142,12 +142,12 @@ def least_covered() -> str:
 
 
 def run_rostest(path: Path) -> Count:
-    """Run one .test file; its nodes' reports are counted, and its own exit code is heeded."""
+    """Run a .test file; return the count of its reports, with its exit code."""
     results = REPORTS / 'rostest' / path.stem
     results.mkdir(parents=True)
     log = results / 'output.log'
     environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(results)}
-    # the caller's own master and addresses must not matter, nor hide that a line is not flushed
+    # independent of the caller's master and addresses, and of unbuffered output
     for name in ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED'):
         environment.pop(name, None)
     start = time.monotonic()
@@ -161,12 +161,12 @@ def run_rostest(path: Path) -> Count:
     if count.failed:
         lines = log.read_text(errors='replace').splitlines()
         print('\n'.join(f'    {line}' for line in lines[-OUTPUT_LINES:]))
-        print(f'    (all of it: {log})')
+        print(f'    (complete output: {log})')
     return count
 
 
 def run_rostests(word: str) -> Count:
-    """Run the .test files one after the other, because they measure time."""
+    """Run the .test files one after the other, since they measure time."""
     paths = [path for path in sorted((ROOT / 'test' / 'rostest').glob('*.test'))
              if word in path.stem]
     if not paths:
