@@ -87,7 +87,7 @@ class WorldFilesTest(unittest.TestCase):
         (line,) = printed.splitlines()
         self.assertIn(f'{self.world}, line ', line)
 
-    def test_perf_shows_where_the_time_went(self):
+    def test_perf_prints_a_profile(self):
         with ServerProcess('--iters', '50', NAME, program='perf') as server:
             code, printed = server.wait()
         self.assertEqual(code, 0)

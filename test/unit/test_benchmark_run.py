@@ -99,7 +99,7 @@ def test_arguments_after_a_single_part_are_passed_to_it(tmp_path):
     (['fidelity', 'a.csv', 'b.csv'], ['fidelity'], ['a.csv', 'b.csv']),
     (['soak', '--seconds', '20'], ['soak'], ['--seconds', '20']),
 ])
-def test_parts_and_arguments_are_told_apart(run, arguments, parts, own):
+def test_parts_are_separated_from_arguments(run, arguments, parts, own):
     chosen, given = run.chosen(arguments)
     assert chosen[:2] == parts
     assert given == own

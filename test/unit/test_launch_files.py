@@ -120,7 +120,7 @@ def test_spawn_calls_spawn_model_as_the_article_does(load):
 
 
 @pytest.mark.parametrize('file', ['load_description', 'rviz', 'spawn', 'simulation'])
-def test_the_robot_gets_the_sensors_that_are_asked_for(load, file):
+def test_robot_has_the_requested_sensors(load, file):
     switches = [f'{name}:=true' for name in ('depth', 'imu', 'laser', 'bumper', 'surfaces')]
     text = load(f'{file}.launch', 'camera:=true', 'camera_pitch:=0.5', *switches
                 ).params['/robot_description'].value

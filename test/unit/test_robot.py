@@ -175,13 +175,13 @@ def test_an_argument_adds_its_sensor_and_nothing_else(argument):
     assert added(**{argument: 'false'}) == []
 
 
-def test_depth_makes_the_camera_a_depth_camera():
+def test_argument_depth_selects_a_depth_camera():
     assert sensors(added(camera='true', depth='true')) == {
         ('camera_link', 'depth', 'libgazebo_ros_openni_kinect.so')}
     assert added(depth='true') == []
 
 
-def test_the_camera_looks_down_as_far_as_is_wanted_and_its_frames_are_those_of_rep_103():
+def test_camera_has_the_given_pitch_and_the_frames_of_rep_103():
     tree = robot(camera='true', camera_pitch='0.6')
     assert origin(tree.find("joint[@name='camera_joint']"))['rpy'] == [0.0, 0.6, 0.0]
     joint = tree.find("joint[@name='camera_optical_joint']")

@@ -107,6 +107,6 @@ def test_banner_lists_every_key():
     assert BANNER.startswith('\n') and BANNER.endswith('\n')
 
 
-def test_help_and_readme_tell_to_hold_a_key():
+def test_help_and_readme_document_holding_a_key():
     for text in (BANNER, (ROOT / 'README.md').read_text(encoding='utf-8')):
         assert re.search(r'\bhold a key\b.*\blet go\b', text)

@@ -218,7 +218,7 @@ def test_camera_info_agrees_with_the_recording(scene, name):
 
 
 def test_numbers_have_six_digits_as_gazebos_sensors_read_them():
-    """Known to all who print a camera_info: 1.3962634 rad and 800 pixels make 476.7030836."""
+    """As in published camera_info messages: 1.3962634 rad and 800 pixels give 476.7030836."""
     with closing(World.empty()) as world:
         camera = world.spawn(
             '<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" type="camera">'

@@ -86,7 +86,7 @@ def test_the_bumper_feels_a_wall_with_both_decks_and_nothing_before(spawn, monke
                        for deck, number in (('base', ''), ('base_second', '_5'))}
 
 
-def test_the_camera_sees_the_line_just_before_the_robot(spawn):
+def test_camera_sees_the_line_in_front_of_the_robot(spawn):
     world, robot = spawn('line', ('camera',), camera_pitch='0.6')
     pictures = readings(robot, 'camera', 'image')
     world.run(50)

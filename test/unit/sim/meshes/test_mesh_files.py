@@ -198,12 +198,12 @@ def test_error_names_a_missing_file(tmp_path):
     assert 'does not exist' in complaint(str(tmp_path / 'no.dae'))
 
 
-def test_a_folder_is_no_mesh(tmp_path):
+def test_folder_is_rejected(tmp_path):
     (tmp_path / 'm.dae').mkdir()
     assert 'is no file' in complaint(str(tmp_path / 'm.dae'))
 
 
-def test_a_name_with_a_null_is_no_file():
+def test_name_with_a_null_character_is_rejected():
     with pytest.raises(ModelError, match='does not exist'):
         check_mesh('/a\0.dae')
 
