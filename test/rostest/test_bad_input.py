@@ -144,8 +144,8 @@ class BadInputTest(SimulatorTest):
         self.assertIn('<odometryTopic>/clock<', xml)
         self.assertTrue(self.spawn('loud', xml, pose(y=15.0), namespace='/loud').success)
         self.assertEqual(topics_of(), before | {'/loud/joint_states'})
-        told = len(clock)
-        wait_until(lambda: len(clock) > told + 100, 'advance of time')
+        count = len(clock)
+        wait_until(lambda: len(clock) > count + 100, 'advance of time')
         times = [message.clock.to_nsec() for message in list(clock)]
         self.assertEqual(times, sorted(times))
         self._assert_neighbour_drives()

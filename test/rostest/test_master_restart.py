@@ -109,8 +109,8 @@ class MasterRestartTest(unittest.TestCase):
         change = self._client('set_parameters', Reconfigure)
         self.master.kill()
         gravity = DoubleParameter('gravity_z', -3.5)
-        told = change(ReconfigureRequest(Config(doubles=[gravity]))).config
-        self.assertIn(gravity, told.doubles)
+        updated = change(ReconfigureRequest(Config(doubles=[gravity]))).config
+        self.assertIn(gravity, updated.doubles)
         self.master.start()
         wait_until(lambda: self.graph.hasParam('/gazebo/gravity_z'), 'the parameters')
         self.assertEqual(self.graph.getParam('/gazebo/gravity_z'), -3.5)

@@ -56,7 +56,7 @@ class ModelPluginsTest(SimulatorTest):
     def test_true_poses_and_joint_states_have_gazebos_frames_and_stamps(self):
         self.spawn_recorded('skid4_p3d',
                    {'/cmd_vel', '/odom', '/tf', '/joint_states', '/gt_badframe', *TOLD})
-        told = {topic: self.collect(topic, Odometry) for topic in TOLD}
+        received = {topic: self.collect(topic, Odometry) for topic in TOLD}
         nothing = self.collect('/gt_badframe', Odometry)
         states = self.collect('/joint_states', JointState)
         command = Twist()
@@ -64,10 +64,10 @@ class ModelPluginsTest(SimulatorTest):
         self.sender('/cmd_vel', Twist)(command)
         wait_until(lambda: len(states) > 40, 'two seconds of joint states')
         for topic, (frame, child, expected) in TOLD.items():
-            message = told[topic][-1]
+            message = received[topic][-1]
             self.assertEqual((message.header.frame_id, message.child_frame_id), (frame, child))
             self.assertEqual(message._connection_header.get('latching', '0'), '0')
-            self.assertEqual(period(told[topic]), expected, topic)
+            self.assertEqual(period(received[topic]), expected, topic)
             variance = 1e-4 if topic == '/gt_noise' else 0.0
             for covariance in (message.pose.covariance, message.twist.covariance):
                 for i, number in enumerate(covariance):
@@ -77,20 +77,20 @@ class ModelPluginsTest(SimulatorTest):
         self.assertEqual(states[-1].name, WHEELS)
         self.assertEqual((states[-1].header.frame_id, list(states[-1].effort)), ('', []))
         self.assertGreater(states[-1].velocity[1], states[-1].velocity[0])
-        self.check_poses({topic: messages[-1] for topic, messages in told.items()})
+        self.check_poses({topic: messages[-1] for topic, messages in received.items()})
 
-    def check_poses(self, told):
+    def check_poses(self, received):
         """Compare messages of almost equal stamps; the robot drives a left curve."""
-        twist = told['/gt'].twist.twist
-        yaw = 2.0 * math.atan2(told['/gt'].pose.pose.orientation.z,
-                               told['/gt'].pose.pose.orientation.w)
+        twist = received['/gt'].twist.twist
+        yaw = 2.0 * math.atan2(received['/gt'].pose.pose.orientation.z,
+                               received['/gt'].pose.pose.orientation.w)
         forward = math.cos(yaw) * twist.linear.x + math.sin(yaw) * twist.linear.y
         self.assertAlmostEqual(forward, 0.4, delta=0.02)
-        self.assertAlmostEqual(told['/gt_off'].pose.pose.position.z - 3.0,
-                               told['/gt'].pose.pose.position.z, delta=1e-3)
-        self.assertAlmostEqual(told['/gt_lumped'].pose.pose.position.z - 0.13,
-                               told['/gt'].pose.pose.position.z, delta=1e-3)
-        wheel = told['/gt_wheel'].pose.pose.position
+        self.assertAlmostEqual(received['/gt_off'].pose.pose.position.z - 3.0,
+                               received['/gt'].pose.pose.position.z, delta=1e-3)
+        self.assertAlmostEqual(received['/gt_lumped'].pose.pose.position.z - 0.13,
+                               received['/gt'].pose.pose.position.z, delta=1e-3)
+        wheel = received['/gt_wheel'].pose.pose.position
         for found, expected in ((wheel.x, 0.18), (wheel.y, 0.22), (wheel.z, 0.1)):
             self.assertAlmostEqual(found, expected, delta=1e-3)
 
@@ -140,10 +140,10 @@ class ModelPluginsTest(SimulatorTest):
         self.assertAlmostEqual(self.model_state('hog', '').pose.position.z, 0.5)
         lead(TFMessage([edge]))
         wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'the frame reached')
-        told = self.actual(transforms)
-        self.assertEqual({edge.header.frame_id for edge in told}, {'world'})
-        self.assertEqual(period(told), 1)
-        self.assertLess(max(edge.transform.translation.x for edge in told), 1.0 + 1e-9)
+        received = self.actual(transforms)
+        self.assertEqual({edge.header.frame_id for edge in received}, {'world'})
+        self.assertEqual(period(received), 1)
+        self.assertLess(max(edge.transform.translation.x for edge in received), 1.0 + 1e-9)
 
     def actual(self, transforms):
         """Return the published transforms of the link."""

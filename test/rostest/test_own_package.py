@@ -166,7 +166,7 @@ class OwnPackageTest(unittest.TestCase):
         cls.addClassCleanup(cls.reader.leave)
         cls.package = cls.reader.source / 'rosbots_description'
         write_article_package(cls.package)
-        cls.said = cls.reader.type(ONCE, BUILD)
+        cls.link_output = cls.reader.type(ONCE, BUILD)
 
     def test_all_nine_steps(self):
         self.addCleanup(self.reader.environment.update, self.reader.environment.copy())
@@ -249,7 +249,7 @@ class OwnPackageTest(unittest.TestCase):
             self.assertIn(THEIR_LINK, shown, name)
 
     def test_our_package_is_left_out_if_the_user_has_one_of_that_name(self):
-        self.assertIn(LEFT_OUT.format(self.package), self.said)
+        self.assertIn(LEFT_OUT.format(self.package), self.link_output)
         self.assertFalse(self.package.is_symlink())
         before = sorted(self.reader.source.iterdir())
         self.assertIn('nothing new', self.reader.type(LINK, BUILD))
@@ -289,8 +289,8 @@ class OwnPackageTest(unittest.TestCase):
             EACH_TERMINAL + by_hand + MAKE, BUILD, check=False).split())
         self.assertIn(f'There is another rosbots_description in {self.package}', refused)
         self.assertIn(f'rosbots link {over}', refused)
-        said = self.reader.type(EACH_TERMINAL + link, BUILD)
-        self.assertIn(LEFT_OUT.format(self.package), said)
+        shown_text = self.reader.type(EACH_TERMINAL + link, BUILD)
+        self.assertIn(LEFT_OUT.format(self.package), shown_text)
         shown = self.reader.type(
             f'{EACH_TERMINAL}cd ~/over_theirs\n{MAKE_ONE}source devel/setup.bash\n'
             f'{FIND}; rospack find xacro', BUILD)

@@ -62,11 +62,11 @@ class PhysicsSettingsTest(SimulatorTest):
         return response.success, response.status_message
 
     def test_defaults_in_an_empty_world(self):
-        told = self._before
-        self.assertEqual(told.status_message, 'GetPhysicsProperties: got properties')
-        self.assertEqual((told.time_step, told.max_update_rate, told.pause), (0.001, 1000.0, False))
-        self.assertEqual(told.gravity, Vector3(0.0, 0.0, -9.8))
-        self.assertEqual(told.ode_config, ODEPhysics(
+        now = self._before
+        self.assertEqual(now.status_message, 'GetPhysicsProperties: got properties')
+        self.assertEqual((now.time_step, now.max_update_rate, now.pause), (0.001, 1000.0, False))
+        self.assertEqual(now.gravity, Vector3(0.0, 0.0, -9.8))
+        self.assertEqual(now.ode_config, ODEPhysics(
             sor_pgs_iters=50, sor_pgs_w=1.3, contact_surface_layer=0.001,
             contact_max_correcting_vel=100.0, erp=0.2, max_contacts=20))
 
@@ -74,9 +74,9 @@ class PhysicsSettingsTest(SimulatorTest):
         ode = ODEPhysics(True, 1, 30, 1.1, 0.5, 0.002, 50.0, 0.01, 0.3, 7)
         self.assertEqual(self._set(0.002, 500.0, (1.0, 2.0, 3.0), ode),
                          (True, 'physics engine updated'))
-        told = self.get()
-        self.assertEqual((told.time_step, told.max_update_rate), (0.002, 500.0))
-        self.assertEqual((told.gravity, told.ode_config), (Vector3(1.0, 2.0, 3.0), ode))
+        now = self.get()
+        self.assertEqual((now.time_step, now.max_update_rate), (0.002, 500.0))
+        self.assertEqual((now.gravity, now.ode_config), (Vector3(1.0, 2.0, 3.0), ode))
 
     def test_invalid_settings_are_rejected_and_change_nothing(self):
         endless = ODEPhysics(sor_pgs_iters=4_000_000_000)
@@ -145,8 +145,8 @@ class PhysicsSettingsTest(SimulatorTest):
         client = Client('/gazebo', timeout=5.0)
         try:
             client.update_configuration({'gravity_z': -3.5, 'sor_pgs_iters': 40})
-            told = self.get()
-            self.assertEqual((told.gravity.z, told.ode_config.sor_pgs_iters), (-3.5, 40))
+            now = self.get()
+            self.assertEqual((now.gravity.z, now.ode_config.sor_pgs_iters), (-3.5, 40))
             self._assert_shown(updates, {'gravity_z': -3.5, 'sor_pgs_iters': 40})
             kept = client.update_configuration({'time_step': -5.0})  # clamped to 0, then rejected
             self.assertEqual(kept['time_step'], 0.001)

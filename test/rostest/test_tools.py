@@ -61,8 +61,8 @@ class ToolsTest(SimulatorTest):
         self.assertIn('/gazebo', rosrun('dynamic_reconfigure', 'dynparam', 'list').split())
         for gravity in ('-3.7', '-9.8'):
             rosrun('dynamic_reconfigure', 'dynparam', 'set', '/gazebo', 'gravity_z', '--', gravity)
-            told = rosrun('dynamic_reconfigure', 'dynparam', 'get', '/gazebo')
-            self.assertIn(f"'gravity_z': {gravity}", told)
+            output = rosrun('dynamic_reconfigure', 'dynparam', 'get', '/gazebo')
+            self.assertIn(f"'gravity_z': {gravity}", output)
 
 
 if __name__ == '__main__':

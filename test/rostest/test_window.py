@@ -171,8 +171,8 @@ class WindowTest(unittest.TestCase):
         self.assertEqual(window.process.returncode, 0, window.shown())
         self.assertNotIn('Traceback', window.shown())
         # RViz itself may report that time has jumped back
-        said = [line for line in said_by(window) if line.startswith('gzclient:')]
-        self.assertEqual(len(said), 2, window.shown())
+        logged = [line for line in said_by(window) if line.startswith('gzclient:')]
+        self.assertEqual(len(logged), 2, window.shown())
 
 
 if __name__ == '__main__':

@@ -48,7 +48,7 @@ def test_the_guard_notices_a_connection():
     assert run('import socket; socket.create_connection(("localhost", 9))').startswith('socket.')
 
 
-@pytest.mark.parametrize(('load', 'text', 'said'), [
+@pytest.mark.parametrize(('load', 'text', 'message'), [
     (LOAD_URDF, f'<robot name="r">{MESH.format("http://example.org/m.dae")}</robot>',
      'http:// addresses are not read here'),
     (LOAD_URDF, '<!DOCTYPE robot SYSTEM "http://example.org/r.dtd"><robot name="r"/>',
@@ -58,20 +58,20 @@ def test_the_guard_notices_a_connection():
     (LOAD_SDF, SDF.format('model://coke_can'),
      "'model://coke_can' is not to be found along the model path"),
 ], ids=['mesh', 'document type', 'included address', 'unknown model'])
-def test_address_is_rejected_without_network_access(load, text, said):
-    assert said in run(load, text)
+def test_address_is_rejected_without_network_access(load, text, message):
+    assert message in run(load, text)
 
 
-@pytest.mark.parametrize(('name', 'content', 'said'), [
+@pytest.mark.parametrize(('name', 'content', 'message'), [
     ('m.dae', COLLADA, 'm.dae\' '), ('m.obj', OBJECT, ''),
 ])
-def test_mesh_file_does_not_open_other_addresses(tmp_path, name, content, said):
+def test_mesh_file_does_not_open_other_addresses(tmp_path, name, content, message):
     path = tmp_path / name
     path.write_text(content, encoding='utf-8')
-    complaint = run(LOAD_URDF, f'<robot name="r">{MESH.format(path)}</robot>')
-    assert said in complaint
-    assert 'socket' not in complaint
-    assert 'urllib' not in complaint
+    error_message = run(LOAD_URDF, f'<robot name="r">{MESH.format(path)}</robot>')
+    assert message in error_message
+    assert 'socket' not in error_message
+    assert 'urllib' not in error_message
 
 
 @pytest.mark.parametrize('model', ['coke_can', 'http://example.org/coke_can'])

@@ -22,7 +22,7 @@ def rosbots(*arguments, script='', prefix=(), **environment):
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'code', 'said'),
+    ('arguments', 'code', 'message'),
     [
         (['help'], 0, ''),
         ([], 0, ''),
@@ -35,10 +35,10 @@ def rosbots(*arguments, script='', prefix=(), **environment):
         (['link', '/nowhere'], 2, 'there is no folder /nowhere/src'),
     ],
 )
-def test_exit_codes_and_error_messages(arguments, code, said):
+def test_exit_codes_and_error_messages(arguments, code, message):
     result = rosbots(*arguments)
     assert result.returncode == code
-    assert said in result.stderr
+    assert message in result.stderr
 
 
 def test_environment_has_the_packages_and_the_system_python():
@@ -85,8 +85,8 @@ def test_packages_are_linked_except_those_that_the_user_has(tmp_path):
 def test_link_is_removed_where_the_user_has_a_package_of_that_name(theirs):
     by_hand = theirs.parent / 'anything'
     by_hand.symlink_to(ROOT)
-    said = rosbots('link', str(theirs.parents[1]), ROS_PACKAGE_PATH='').stdout
-    assert f'rosbots_description is yours, in {theirs}; ours is left out' in said
+    message = rosbots('link', str(theirs.parents[1]), ROS_PACKAGE_PATH='').stdout
+    assert f'rosbots_description is yours, in {theirs}; ours is left out' in message
     assert not by_hand.is_symlink()
     assert (theirs / 'package.xml').exists()
 
@@ -102,8 +102,8 @@ def test_workspace_over_one_with_the_users_robot_gets_no_second_one(theirs, tmp_
     source = tmp_path / 'over' / 'src'
     source.mkdir(parents=True)
     (source / 'rosbots_description').symlink_to(ROOT)
-    said = rosbots('link', str(source.parent), ROS_PACKAGE_PATH=str(theirs.parent)).stdout
-    assert f'rosbots_description is yours, in {theirs}; ours is left out' in said
+    message = rosbots('link', str(source.parent), ROS_PACKAGE_PATH=str(theirs.parent)).stdout
+    assert f'rosbots_description is yours, in {theirs}; ours is left out' in message
     assert not (source / 'rosbots_description').exists()
     assert (source / 'rosbots_simulator').exists()
 

@@ -89,24 +89,24 @@ def test_rviz_that_crashes_at_its_start_is_restarted(tmp_path, number, times):
         assert time.monotonic() < deadline
         time.sleep(0.01)
     process.send_signal(signal.SIGTERM)
-    _, said = process.communicate(timeout=10.0)
+    _, output = process.communicate(timeout=10.0)
     assert process.returncode == 0
-    assert said.splitlines() == [
+    assert output.splitlines() == [
         f'gzclient: RViz crashed as it opened (SIG{number}); restarting it'] * times
 
 
 def test_restarts_of_a_crashing_rviz_are_limited(tmp_path):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='SEGV', times=99))
-    _, said = process.communicate(timeout=20.0)
+    _, output = process.communicate(timeout=20.0)
     assert (process.returncode, count_starts(tmp_path)) == (128 + signal.SIGSEGV, STARTS)
-    assert said.splitlines()[-1] == (
+    assert output.splitlines()[-1] == (
         f'gzclient: RViz crashed as it opened (SIGSEGV); no window after {STARTS} starts')
 
 
 def test_rviz_that_the_user_closes_is_not_restarted(tmp_path):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='KILL', times=9))
-    _, said = process.communicate(timeout=10.0)
-    assert (process.returncode, count_starts(tmp_path), said) == (128 + signal.SIGKILL, 1, '')
+    _, output = process.communicate(timeout=10.0)
+    assert (process.returncode, count_starts(tmp_path), output) == (128 + signal.SIGKILL, 1, '')
 
 
 def test_rviz_gets_default_folder_and_log_levels_unless_the_user_sets_them(tmp_path, monkeypatch):

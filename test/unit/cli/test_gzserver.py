@@ -20,15 +20,15 @@ def _read(line):
 
 
 def test_command_line_of_the_launch_file_gives_no_message():
-    given, said = _read('-u --verbose -e ode worlds/empty.world')
+    given, messages = _read('-u --verbose -e ode worlds/empty.world')
     assert given.pause
     assert given.world == 'worlds/empty.world'
-    assert said == ()
+    assert messages == ()
 
 
 def test_plugins_and_lockstep_are_accepted():
-    given, said = _read('-s liba.so -s libb.so --lockstep --minimal_comms --iters 100')
-    assert (given.iters, said) == (100, ())
+    given, messages = _read('-s liba.so -s libb.so --lockstep --minimal_comms --iters 100')
+    assert (given.iters, messages) == (100, ())
 
 
 @pytest.mark.parametrize('option', [
@@ -66,10 +66,10 @@ def test_another_engine_gives_an_info_message():
 
 
 def test_recording_and_unknown_options_are_warnings():
-    _, said = _read('-r --hologram')
-    assert [level for level, _ in said] == [logging.WARNING, logging.WARNING]
-    assert '--hologram' in said[0][1]
-    assert 'rosbag' in said[1][1]
+    _, messages = _read('-r --hologram')
+    assert [level for level, _ in messages] == [logging.WARNING, logging.WARNING]
+    assert '--hologram' in messages[0][1]
+    assert 'rosbag' in messages[1][1]
 
 
 def test_remappings_are_not_options():

@@ -89,7 +89,7 @@ def test_xacro_arguments_are_passed(world, tmp_path):
     assert [model.spec.links[0].inertial.mass for model in (plain, heavy)] == [2.0, 5.0]
 
 
-@pytest.mark.parametrize(('spawn', 'said'), [
+@pytest.mark.parametrize(('spawn', 'message'), [
     (lambda world: world.spawn('nowhere.urdf'), "'nowhere.urdf' cannot be read: No such file"),
     (lambda world: world.spawn('<html/>'), '<robot> (URDF) or <sdf>, not <html>'),
     (lambda world: world.spawn('<!-- -->'), '<robot> (URDF) or <sdf>, not missing'),
@@ -102,10 +102,10 @@ def test_xacro_arguments_are_passed(world, tmp_path):
     (lambda _: World.from_file('nowhere.world'), "no world file 'nowhere.world'"),
     (lambda _: World.from_file(XACRO), 'an SDF begins with <sdf'),
 ])
-def test_error_of_a_spawn_is_one_sentence(world, spawn, said):
+def test_error_of_a_spawn_is_one_sentence(world, spawn, message):
     with pytest.raises(SimError) as raised:
         spawn(world)
-    assert said in str(raised.value)
+    assert message in str(raised.value)
     assert list(world.models) == ['ground_plane']
 
 

@@ -16,8 +16,8 @@ def test_simulation_pauses_at_the_largest_stamp_until_a_reset(caplog):
         assert world.run(100) == 1
         assert world.clock.now_ns == 2**32 * 10**9 - 10**6
         assert world.paused
-        (complaint,) = caplog.messages
-        assert 'paused at 4294967296 s: stamps of 32 bits end there' in complaint
+        (error_message,) = caplog.messages
+        assert 'paused at 4294967296 s: stamps of 32 bits end there' in error_message
         assert world.run(1) == 0
         world.reset_simulation()
         assert world.run(10) == 10

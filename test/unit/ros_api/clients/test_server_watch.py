@@ -32,41 +32,41 @@ def simulator(place):
 
 
 def test_no_notice_before_the_first_simulator(place):
-    told = []
-    watch = ServerWatch(told.append)
+    notices = []
+    watch = ServerWatch(notices.append)
     watch.poll()
     watch.poll()
-    assert told == []
+    assert notices == []
 
 
 def test_end_and_return_of_the_simulator_are_notified_once(place, simulator):
-    told = []
-    watch = ServerWatch(told.append)
+    notices = []
+    watch = ServerWatch(notices.append)
     first = simulator()
     watch.poll()
     watch.poll()
-    assert told == []
+    assert notices == []
     first.close()  # killed: still registered with the master
     watch.poll()
     watch.poll()
-    assert told == [False]
+    assert notices == [False]
     place['address'] = None  # no longer registered
     watch.poll()
     simulator()
     watch.poll()
     watch.poll()
-    assert told == [False, True]
+    assert notices == [False, True]
 
 
 def test_replaced_simulator_gives_no_notice(place, simulator):
-    told = []
-    watch = ServerWatch(told.append)
+    notices = []
+    watch = ServerWatch(notices.append)
     first = simulator()
     watch.poll()
     simulator()
     first.close()
     watch.poll()
-    assert told == []
+    assert notices == []
 
 
 def test_no_simulator_without_a_master(monkeypatch):

@@ -54,7 +54,7 @@ def test_model_of_the_database_is_searched_on_the_model_path(tmp_path):
     assert [link.name for link in spec.links] == ['leaf']
 
 
-@pytest.mark.parametrize('arguments, complaint', [
+@pytest.mark.parametrize('arguments, error_message', [
     (['-urdf', '-param', 'p'], 'required: -model'),
     (['-param', 'p', '-model', 'm'], '-urdf -sdf is required'),
     (['-urdf', '-model', 'm'], '-file -param -database -stdin is required'),
@@ -65,11 +65,11 @@ def test_model_of_the_database_is_searched_on_the_model_path(tmp_path):
     ([*MINIMAL, '-gazebo'], '-gazebo'),
     ([*MINIMAL, 'robot.urdf'], 'unrecognized arguments: robot.urdf'),
 ])
-def test_wrong_usage_exits_with_2_and_names_the_flag(arguments, complaint, capsys):
+def test_wrong_usage_exits_with_2_and_names_the_flag(arguments, error_message, capsys):
     with pytest.raises(SystemExit) as end:
         parse_arguments(arguments)
     assert end.value.code == 2
-    assert complaint in capsys.readouterr().err
+    assert error_message in capsys.readouterr().err
 
 
 def test_help_exits_with_0(capsys):
@@ -94,13 +94,13 @@ def test_package_to_model_changes_only_meshes():
     assert 'model://' not in canonical_xml(text)
 
 
-@pytest.mark.parametrize('text, complaint', [
+@pytest.mark.parametrize('text, error_message', [
     (b'<robot name="x"><link name="a">', 'Invalid XML: no element found: line 1, column 31'),
     (b'hello world', 'Invalid XML: syntax error: line 1, column 0'),
     (b'<?xml version="1.0" encoding="klingon"?><a b="\xe9"/>', 'Invalid XML: unknown encoding'),
 ])
-def test_invalid_xml_is_rejected_with_its_location(text, complaint):
-    with pytest.raises(SourceError, match=complaint):
+def test_invalid_xml_is_rejected_with_its_location(text, error_message):
+    with pytest.raises(SourceError, match=error_message):
         canonical_xml(text)
 
 

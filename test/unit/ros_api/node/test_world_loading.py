@@ -138,18 +138,18 @@ def test_error_about_an_unknown_world_lists_the_known_ones():
     assert '\n' not in sentence
 
 
-@pytest.mark.parametrize(('text', 'said'), [
+@pytest.mark.parametrize(('text', 'message'), [
     ('<sdf version="1.6"><world name="w"><model', 'line 1'),
     ('<sdf version="1.6"/>', '<world>'),
     ('<robot name="r"/>', '<robot>'),
     ('', 'empty'),
 ])
-def test_error_about_an_invalid_world_names_its_file(tmp_path, text, said):
+def test_error_about_an_invalid_world_names_its_file(tmp_path, text, message):
     path = write(tmp_path / 'broken.world', text)
     with pytest.raises(ModelError) as caught:
         read_world(str(path))
     assert str(path) in str(caught.value)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert '\n' not in str(caught.value)
 
 

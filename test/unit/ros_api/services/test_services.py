@@ -69,12 +69,12 @@ def test_service_off_the_loop_runs_on_the_callers_thread():
     assert respond(busy, entry, 'text').status_message == 'text'
 
 
-@pytest.mark.parametrize('told', [True, False])
-def test_slow_registration_with_the_master_is_a_warning(told, caplog):
-    server = SimpleNamespace(loop=SERVER.loop, registrar=SimpleNamespace(wait=lambda _: told))
+@pytest.mark.parametrize('in_time', [True, False])
+def test_slow_registration_with_the_master_is_a_warning(in_time, caplog):
+    server = SimpleNamespace(loop=SERVER.loop, registrar=SimpleNamespace(wait=lambda _: in_time))
     entry = Service('s', DeleteModel, lambda *_: DONE, None, registers=True)
     assert respond(server, entry, None) is DONE
-    assert ('has not registered all topics within 5 s' in caplog.text) != told
+    assert ('has not registered all topics within 5 s' in caplog.text) != in_time
 
 
 def test_call_error_fails_the_call():

@@ -87,10 +87,10 @@ def test_malformed_request_is_answered_with_an_error_message(ends, service, capl
     theirs.sendall(struct.pack('<II', 4, 1000))  # a name of 1000 bytes in a request of four
     serve_once(service, ours)
     succeeded, length = struct.unpack('<BI', theirs.recv(5))
-    told = theirs.recv(length).decode()
+    error = theirs.recv(length).decode()
     assert not succeeded
-    assert told.startswith('the request does not fit gazebo_msgs/GetModelState')
-    assert told in caplog.text
+    assert error.startswith('the request does not fit gazebo_msgs/GetModelState')
+    assert error in caplog.text
     assert theirs.recv(1) == b''  # the connection is closed
 
 

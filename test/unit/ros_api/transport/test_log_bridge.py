@@ -27,12 +27,12 @@ def test_a_long_name_is_cut(logger, caplog):
 
 
 def test_repeated_message_is_suppressed_until_it_is_forgotten(logger, caplog):
-    said = DuplicateFilter()
-    logger.addFilter(said)
+    duplicates = DuplicateFilter()
+    logger.addFilter(duplicates)
     try:
         for name in ['torque', 'torque', 'legacyMode', *map(str, range(1000)), 'torque']:
             logger.warning('<%s> is not read', name)
     finally:
-        logger.removeFilter(said)
+        logger.removeFilter(duplicates)
     assert caplog.messages[:2] == ['<torque> is not read', '<legacyMode> is not read']
     assert caplog.messages.count('<torque> is not read') == 2

@@ -64,9 +64,9 @@ def test_running_node_is_reported_with_its_process_and_host(living):
     assert running_node(NAME) == RunningNode(living, os.getpid())
     with pytest.raises(NameTakenError) as caught:
         require_free(NAME)
-    said = str(caught.value)
-    assert f'the node {NAME}, process {os.getpid()} on localhost ({living})' in said
-    assert '--replace' in said
+    message = str(caught.value)
+    assert f'the node {NAME}, process {os.getpid()} on localhost ({living})' in message
+    assert '--replace' in message
 
 
 @pytest.mark.usefixtures('registered')

@@ -72,21 +72,21 @@ def may_be_opened(path, case, folder):
 @pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)
 def test_outcome_is_that_of_the_table(case, tmp_path, opened, caplog, capfd, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
-    said = ''
+    rejection = ''
     opened.paths.clear()
     opened.listening = True
     try:
         read(case, tmp_path)
     except ModelError as error:
-        said = str(error)
+        rejection = str(error)
     finally:
         opened.listening = False
     expected = case.parser or case.says
-    assert (expected in said) if expected else not said, said
+    assert (expected in rejection) if expected else not rejection, rejection
     logged = [(r.levelno, r.getMessage()) for r in caplog.records]
     for level, words in ((logging.WARNING, case.warns), (logging.ERROR, case.logs)):
         assert not words or any(level == at and words in text for at, text in logged), logged
-    for sentence in (said, *(text for _, text in logged)):
+    for sentence in (rejection, *(text for _, text in logged)):
         assert len(sentence) < MAX_LENGTH
         assert '\n' not in sentence
         assert not case.hides or case.hides not in sentence

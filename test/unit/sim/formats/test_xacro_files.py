@@ -44,16 +44,16 @@ def test_include_is_relative_to_the_including_file(tmp_path):
         assert 'name="inner"' in expand(tmp_path, f'<xacro:include filename="{name}"/>')
 
 
-@pytest.mark.parametrize(('body', 'said'), [
+@pytest.mark.parametrize(('body', 'message'), [
     ('<link name="$(find unknown)"/>', "'$(find unknown)' is not a known substitution"),
     ('<link name="$(arg unknown)"/>', "'$(arg unknown)' is not a known substitution"),
     ('<link name="${1 / 0}"/>', 'division by zero'),
     ('<link', 'xacro rejects it'),
 ])
-def test_error_of_xacro_is_one_message_with_the_file(tmp_path, body, said):
+def test_error_of_xacro_is_one_message_with_the_file(tmp_path, body, message):
     with pytest.raises(ModelError) as raised:
         expand(tmp_path, body)
-    assert said in str(raised.value)
+    assert message in str(raised.value)
     assert str(raised.value).startswith(f'{tmp_path}/r.xacro: xacro rejects it')
 
 

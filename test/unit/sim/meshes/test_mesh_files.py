@@ -140,7 +140,7 @@ def test_obj_has_a_part_for_each_material_grey_without_one(write):
     assert visual_parts(write('plain.obj', TRIANGLE))[0][3] == GREY
 
 
-def complaint(path):
+def error_message(path):
     with pytest.raises(ModelError) as caught:
         check_mesh(path)
     sentence = str(caught.value)
@@ -182,7 +182,7 @@ BROKEN = {
 
 @pytest.mark.parametrize('name', BROKEN)
 def test_error_names_an_invalid_file(write, name):
-    sentence = complaint(write(name, BROKEN[name]))
+    sentence = error_message(write(name, BROKEN[name]))
     assert 'is broken' in sentence or 'holds no triangles' in sentence
 
 
@@ -195,12 +195,12 @@ def test_normals_that_are_not_finite_are_accepted(write):
 
 
 def test_error_names_a_missing_file(tmp_path):
-    assert 'does not exist' in complaint(str(tmp_path / 'no.dae'))
+    assert 'does not exist' in error_message(str(tmp_path / 'no.dae'))
 
 
 def test_folder_is_rejected(tmp_path):
     (tmp_path / 'm.dae').mkdir()
-    assert 'is no file' in complaint(str(tmp_path / 'm.dae'))
+    assert 'is no file' in error_message(str(tmp_path / 'm.dae'))
 
 
 def test_name_with_a_null_character_is_rejected():
@@ -209,21 +209,21 @@ def test_name_with_a_null_character_is_rejected():
 
 
 def test_error_about_an_unknown_format_lists_the_known_ones(write):
-    sentence = complaint(write('m.glb', ''))
+    sentence = error_message(write('m.glb', ''))
     assert "format '.glb' is not read; convert it to .dae, .stl, .obj" in sentence
 
 
 def test_too_large_or_too_fine_file_is_rejected(write, monkeypatch):
     monkeypatch.setattr(loader, 'MAX_MESH_BYTES', 10)
-    assert 'at most 10 are accepted' in complaint(write('a.obj', TRIANGLE))
+    assert 'at most 10 are accepted' in error_message(write('a.obj', TRIANGLE))
     monkeypatch.undo()
     monkeypatch.setattr(loader, 'MAX_TRIANGLES', 1)
-    assert 'has 2 triangles; at most 1' in complaint(write('b.obj', TRIANGLE + 'f 3 2 1\n'))
+    assert 'has 2 triangles; at most 1' in error_message(write('b.obj', TRIANGLE + 'f 3 2 1\n'))
 
 
 def test_corrected_file_is_read_again(write):
     path = write('m.obj', 'f 1 2 3\n')
-    complaint(path)
+    error_message(path)
     write('m.obj', TRIANGLE)
     check_mesh(path)
 
@@ -231,8 +231,8 @@ def test_corrected_file_is_read_again(write):
 def test_nothing_is_printed_about_unusual_files(write, capfd, caplog, recwarn):
     path = write('m.obj', 'mtllib gone.mtl\nusemtl red\n' + TRIANGLE)
     check_mesh(path)
-    complaint(write('n.stl', ASCII_STL.replace('vertex 1 0 0', 'vertex 1 x 0')))
-    complaint(write('p.dae', '<COLLADA/>'))
+    error_message(write('n.stl', ASCII_STL.replace('vertex 1 0 0', 'vertex 1 x 0')))
+    error_message(write('p.dae', '<COLLADA/>'))
     assert capfd.readouterr() == ('', '')
     assert caplog.text == ''
     assert len(recwarn) == 0

@@ -34,7 +34,7 @@ def test_engine_has_no_public_method_outside_the_protocol():
 
 
 def test_simulator_uses_only_the_protocol():
-    asked = {
+    requested = {
         node.attr
         for room in ('runtime', 'plugins')
         for path in (LIBRARY / 'sim' / room).rglob('*.py')
@@ -43,5 +43,5 @@ def test_simulator_uses_only_the_protocol():
         and isinstance(node.value, ast.Name | ast.Attribute)
         and getattr(node.value, 'attr', getattr(node.value, 'id', '')) == 'engine'
     }
-    assert 'step' in asked
-    assert asked <= set(METHODS)
+    assert 'step' in requested
+    assert requested <= set(METHODS)

@@ -103,18 +103,18 @@ def test_error_without_any_space_names_the_mesh_and_all_folders(folder, places):
         'make room there, or set TMPDIR to a folder that has some')
 
 
-@pytest.mark.parametrize(('full', 'code', 'said'), [
+@pytest.mark.parametrize(('full', 'code', 'message'), [
     (1, 0, '/dev/shm/test_'),
     (2, 1, '(No space left on device) nor in /dev/shm (No space left on device)'),
 ])
-def test_shared_memory_replaces_a_full_disk(tmp_path, full, code, said):
+def test_shared_memory_replaces_a_full_disk(tmp_path, full, code, message):
     places = [str(tmp_path), scratch.MEMORY][:full]
     done = run(*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, TMPDIR=str(tmp_path),
                PYTHON=sys.executable, PROGRAM=WRITE)
     if done.returncode == NOT_PERMITTED:
         pytest.skip(f'this machine lets nobody mount a disk: {done.stderr.strip()}')
     assert done.returncode == code, done.stderr
-    assert said in done.stdout + done.stderr
+    assert message in done.stdout + done.stderr
 
 
 def test_file_above_the_size_limit_of_the_process_is_an_error():

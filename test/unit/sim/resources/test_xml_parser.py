@@ -8,7 +8,7 @@ from rosbots_description.sim.resources import xml_parser
 from rosbots_description.sim.resources.xml_parser import parse_xml, root_tag
 
 
-def complaint(text):
+def error_message(text):
     with pytest.raises(ModelError) as caught:
         parse_xml(text, 'bot.urdf')
     sentence = str(caught.value)
@@ -51,7 +51,7 @@ def test_declarations_and_byte_order_marks_are_accepted(text):
 
 
 def test_invalid_utf8_is_reported_with_its_line():
-    assert 'line 2: byte 0xe4 is not UTF-8' in complaint(b'<a>\n\xe4\0</a>')
+    assert 'line 2: byte 0xe4 is not UTF-8' in error_message(b'<a>\n\xe4\0</a>')
 
 
 def test_the_line_of_an_element_is_the_one_where_its_tag_begins():
@@ -71,16 +71,16 @@ def test_line_of_expanded_xacro_is_described_so():
 
 
 def test_lone_surrogate_is_rejected():
-    assert 'not valid Unicode' in complaint('<a>\ud800</a>')
+    assert 'not valid Unicode' in error_message('<a>\ud800</a>')
 
 
 @pytest.mark.parametrize('text', ['', '  \n\t ', b'', '\ufeff'])
 def test_empty_text_is_rejected(text):
-    assert 'the text is empty' in complaint(text)
+    assert 'the text is empty' in error_message(text)
 
 
 def test_text_without_elements_is_rejected():
-    assert 'has no element at all' in complaint('hello world')
+    assert 'has no element at all' in error_message('hello world')
 
 
 @pytest.mark.parametrize(('text', 'line'), [
@@ -91,11 +91,11 @@ def test_text_without_elements_is_rejected():
     ('<robot>\n&nope;</robot>', 2),
 ])
 def test_malformed_xml_is_rejected_with_its_line(text, line):
-    assert complaint(text).startswith(f'bot.urdf, line {line}: not well-formed XML: ')
+    assert error_message(text).startswith(f'bot.urdf, line {line}: not well-formed XML: ')
 
 
 def test_unclosed_comment_is_rejected_with_its_first_line():
-    sentence = complaint('<robot>\n<!-- fine -->\n<!-- not closed\n<link/>\n</robot>')
+    sentence = error_message('<robot>\n<!-- fine -->\n<!-- not closed\n<link/>\n</robot>')
     assert sentence == "bot.urdf, line 3: a comment '<!--' is never closed; add '-->'"
 
 
@@ -105,11 +105,11 @@ def test_entity_bomb_is_rejected():
         f'<!ENTITY e{i + 1} "{10 * entity.format(i)}">' for i in range(12)
     )
     bomb = f'<!DOCTYPE r [<!ENTITY e0 "x">{levels}]><robot a="&e12;">&e12;</robot>'
-    assert 'DOCTYPE' in complaint(bomb)
+    assert 'DOCTYPE' in error_message(bomb)
 
 
 def test_document_type_is_rejected_after_comments_but_not_within():
-    assert 'DOCTYPE' in complaint('<!-- a --> <?b c?>\n<!DOCTYPE r><robot/>')
+    assert 'DOCTYPE' in error_message('<!-- a --> <?b c?>\n<!DOCTYPE r><robot/>')
     assert parse_xml('<!-- <!DOCTYPE r> --><robot/>', 'bot.urdf').tag == 'robot'
 
 
@@ -121,14 +121,14 @@ def test_a_file_is_never_read_through_an_entity(tmp_path):
     secret = tmp_path / 'secret'
     secret.write_text('treasure')
     text = f'<!DOCTYPE r [<!ENTITY e SYSTEM "file://{secret}">]><robot>&e;</robot>'
-    sentence = complaint(text)
+    sentence = error_message(text)
     assert 'DOCTYPE' in sentence
     assert 'treasure' not in sentence
 
 
 @pytest.mark.parametrize('depth', [201, 5000])
 def test_too_deep_nesting_is_rejected(depth):
-    assert 'nested more than 200 deep' in complaint('<a>' * depth + '</a>' * depth)
+    assert 'nested more than 200 deep' in error_message('<a>' * depth + '</a>' * depth)
 
 
 def test_the_deepest_accepted_nesting_is_accepted():
@@ -137,12 +137,12 @@ def test_the_deepest_accepted_nesting_is_accepted():
 
 def test_too_long_text_is_rejected(monkeypatch):
     monkeypatch.setattr(xml_parser, 'MAX_XML_BYTES', 100)
-    assert 'at most 100' in complaint('<a>' + ' ' * 100 + '</a>')
+    assert 'at most 100' in error_message('<a>' + ' ' * 100 + '</a>')
 
 
 def test_too_many_elements_are_rejected(monkeypatch):
     monkeypatch.setattr(xml_parser, 'MAX_XML_ELEMENTS', 10)
-    assert 'more than 10 elements' in complaint('<a>' + '<b/>' * 10 + '</a>')
+    assert 'more than 10 elements' in error_message('<a>' + '<b/>' * 10 + '</a>')
 
 
 def test_expanded_xacro_with_its_namespace_is_accepted():

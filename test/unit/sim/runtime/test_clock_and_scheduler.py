@@ -138,35 +138,35 @@ class EveryThird(PreRunPublisher):
     due = 3
 
     def __init__(self):
-        self.told = []
+        self.published = []
 
     def publish_ahead(self, last):
         while self.due <= last:
-            self.told.append(self.due)
+            self.published.append(self.due)
             self.due += 3
 
 
 def test_pre_run_publisher_publishes_each_of_several_steps_once():
-    schedule, crier = Schedule(), EveryThird()
-    schedule.add_pre_run_publisher(crier)
+    schedule, publisher = Schedule(), EveryThird()
+    schedule.add_pre_run_publisher(publisher)
     for last in (1, 2, 7, 7, 12):
         schedule.publish_ahead(last)
-    assert crier.told == [3, 6, 9, 12]
+    assert publisher.published == [3, 6, 9, 12]
 
 
 def test_next_due_step_is_the_least_of_hooks_and_pre_run_publishers():
-    schedule, crier = Schedule(), EveryThird()
+    schedule, publisher = Schedule(), EveryThird()
     assert schedule.next_wanted() == NEVER
-    schedule.add_pre_run_publisher(crier)
+    schedule.add_pre_run_publisher(publisher)
     assert (schedule.next_wanted(), schedule.next_due()) == (3, NEVER)
     schedule.add(Every(2, [], 'a'))
     assert schedule.next_wanted() == 2
 
 
 def test_failing_pre_run_publisher_is_skipped_for_a_while(caplog):
-    schedule, crier = Schedule(), EveryThird()
-    crier.told = None
-    schedule.add_pre_run_publisher(crier)
+    schedule, publisher = Schedule(), EveryThird()
+    publisher.published = None
+    schedule.add_pre_run_publisher(publisher)
     schedule.publish_ahead(5)
-    assert crier.due == 5 + SUSPENSION
+    assert publisher.due == 5 + SUSPENSION
     assert 'internal fault of EveryThird' in caplog.text

@@ -140,10 +140,10 @@ def test_rays_give_distance_and_name_or_no_hit():
         assert len(world.engine.cast_rays(np.empty((0, 3)), np.empty((0, 3))).distances) == 0
 
 
-@pytest.mark.parametrize(('starts', 'told'), [
+@pytest.mark.parametrize(('starts', 'message'), [
     ([0.0, 0.0, 1.0], 'shape'), ([(0.0, 0.0)], 'shape'), ([(0.0, 0.0, math.nan)], 'finite')])
-def test_invalid_rays_are_rejected_with_a_message(starts, told):
-    with empty_world() as world, pytest.raises(SimError, match=told):
+def test_invalid_rays_are_rejected_with_a_message(starts, message):
+    with empty_world() as world, pytest.raises(SimError, match=message):
         world.engine.cast_rays(starts, starts)
 
 

@@ -103,7 +103,7 @@ def leaves(paths):
 
 
 @pytest.fixture
-def asked(monkeypatch):
+def requested(monkeypatch):
     """Return two sets, to be filled with the paths that the readers read and that they ignore."""
     wanted, idle = set(), set()
     check, parser = Notes.check, xml_parser._parser
@@ -143,8 +143,8 @@ def load(text, caplog):
     """Return the log messages about a world, as (level, text)."""
     caplog.set_level(logging.DEBUG, 'rosbots_description')
     assert load_world(text, 'w.world', find_model=ModelSearch([ROOT])).faults == ()
-    said = [(record.levelno, record.getMessage()) for record in caplog.records]
-    return [(level, text) for level, text in said if text.startswith('w.world')]
+    message = [(record.levelno, record.getMessage()) for record in caplog.records]
+    return [(level, text) for level, text in message if text.startswith('w.world')]
 
 
 def world_with(path):
@@ -171,9 +171,9 @@ def test_each_element_has_one_row_with_a_known_state():
     assert [row for row in ROWS if row[1] != 'same' and not row[2]] == []
 
 
-def test_rows_are_exactly_the_elements_that_the_readers_look_up(asked, caplog):
+def test_rows_are_exactly_the_elements_that_the_readers_look_up(requested, caplog):
     load(WORLD, caplog)
-    wanted, idle = asked
+    wanted, idle = requested
     assert leaves({row_name(path) for path in wanted}) - set(ABSENT) == SUPPORTED
     assert idle <= {name.rpartition('/')[2] for name, how in ABSENT.items() if QUIET in how}
 
@@ -197,6 +197,6 @@ def test_every_type_of_joint_has_a_row():
 
 @pytest.mark.parametrize('kind', TYPES)
 def test_type_of_joint_is_simulated_or_reported_as_in_its_row(kind, caplog):
-    said = load(WORLD.replace('"revolute"', f'"{kind}"'), caplog)
-    assert [f'{kind} joints are not simulated' in text for _, text in said] \
+    message = load(WORLD.replace('"revolute"', f'"{kind}"'), caplog)
+    assert [f'{kind} joints are not simulated' in text for _, text in message] \
         == [True] * (TYPES[kind] == MISSING)

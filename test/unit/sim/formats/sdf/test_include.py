@@ -36,7 +36,7 @@ def inside(include, directory):
     return load_sdf(text, 'm', source='m.sdf', find_model=ModelSearch([directory]))[0]
 
 
-def complaint(include, directory):
+def error_message(include, directory):
     with pytest.raises(ModelError) as caught:
         spawn(include, directory)
     return str(caught.value)
@@ -147,7 +147,7 @@ def test_circular_includes_are_rejected(tmp_path):
     for name, other in (('one', 'two'), ('two', 'one')):
         put(tmp_path, name, {'model.sdf': CONE.replace(
             '<link', f'<include><uri>model://{other}</uri></include><link')})
-    assert 'includes itself' in complaint('<uri>model://one</uri>', tmp_path)
+    assert 'includes itself' in error_message('<uri>model://one</uri>', tmp_path)
 
 
 @pytest.mark.parametrize('include, part', [
@@ -165,7 +165,7 @@ def test_unresolved_include_is_rejected(tmp_path, include, part):
     (tmp_path / 'bare').mkdir()
     put(tmp_path, 'dumb', {}, (('1.6', '../../secret.sdf'),))
     put(tmp_path, 'gone', {})
-    assert part in complaint(include, tmp_path)
+    assert part in error_message(include, tmp_path)
 
 
 def test_world_is_found_as_given_and_on_the_search_path(tmp_path, monkeypatch):

@@ -29,7 +29,7 @@ def only(*arguments, version='1.6', **options):
     return load(joint(*arguments, **options), version).joints[0]
 
 
-def complaint(joints):
+def error_message(joints):
     with pytest.raises(ModelError) as caught:
         load(joints)
     assert str(caught.value).startswith('m.sdf, line ')
@@ -162,7 +162,7 @@ def test_tree_connected_to_the_world_is_rooted_there():
      '<damping> is -1; it must not be negative'),
 ])
 def test_invalid_joint_is_rejected(text, part):
-    assert part in complaint(text)
+    assert part in error_message(text)
 
 
 def test_springs_are_read_and_negative_stiffness_is_rejected():
@@ -170,5 +170,5 @@ def test_springs_are_read_and_negative_stiffness_is_rejected():
               '<spring_reference>-0.5</spring_reference></dynamics></axis>')
     made = only(inside=inside.format(7.5))
     assert (made.stiffness, made.reference) == (7.5, -0.5)
-    assert '<spring_stiffness> is -1; it must not be negative' in complaint(
+    assert '<spring_stiffness> is -1; it must not be negative' in error_message(
         joint(inside=inside.format(-1)))

@@ -45,7 +45,7 @@ def visual(inside):
     return load(link(f'<visual name="v">{inside}{BOX}</visual>')).links[0].visuals[0]
 
 
-def complaint(body):
+def error_message(body):
     with pytest.raises(ModelError) as caught:
         load(body)
     sentence = str(caught.value)
@@ -225,18 +225,18 @@ def test_unknown_submesh_is_left_out_and_a_similar_one_suggested(tmp_path, caplo
 
 @pytest.mark.parametrize('uri', ['model://../secret.dae', 'model://a/../../secret.dae'])
 def test_path_out_of_the_model_path_is_rejected(uri):
-    sentence = complaint(link(
+    sentence = error_message(link(
         f'<collision name="c"><geometry><mesh><uri>{uri}</uri></mesh></geometry></collision>'
     ))
     assert "'..' is not accepted" in sentence
 
 
 def test_heightmap_is_reported_with_path_and_line(caplog):
-    said = warnings_of(caplog, '\n' + link(
+    message = warnings_of(caplog, '\n' + link(
         '<collision name="c"><geometry><heightmap><uri>x.png</uri></heightmap></geometry>'
         '</collision>'
     ))
-    assert said == [
+    assert message == [
         'bot.sdf: not simulated: model/link/collision/geometry/heightmap (line 2)'
     ]
 
@@ -385,7 +385,7 @@ def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
           '</collision>'), '<kp> is -5; it must not be negative'),
 ])
 def test_invalid_element_is_rejected_with_location_and_reason(body, part):
-    assert part in complaint(body)
+    assert part in error_message(body)
 
 
 @pytest.mark.parametrize('text, part', [

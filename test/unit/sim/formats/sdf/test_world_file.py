@@ -27,7 +27,7 @@ def physics(body):
     return load(f'<physics type="ode">{body}</physics>').physics
 
 
-def complaint(body):
+def error_message(body):
     with pytest.raises(ModelError) as caught:
         load(body)
     assert str(caught.value).startswith('w.world, line ')
@@ -123,15 +123,15 @@ def test_other_physics_engine_is_reported(caplog):
     assert "physics type 'bullet' is not available" in caplog.text
 
 
-@pytest.mark.parametrize(('model', 'cone', 'said'), [
+@pytest.mark.parametrize(('model', 'cone', 'logged'), [
     ('pyramid_model', False, ''), ('cone_model', True, ''),
     ('box_model', False, "friction_model 'box_model' is not supported; pyramid_model is used"),
 ])
-def test_the_friction_model_is_read(model, cone, said, caplog):
+def test_the_friction_model_is_read(model, cone, logged, caplog):
     tag = f'<friction_model>{model}</friction_model>'
     made = physics(f'<ode><solver>{tag}</solver></ode>')
     assert made == PhysicsSettings(friction_cone=cone)
-    assert said in caplog.text and bool(said) == bool(caplog.text)
+    assert logged in caplog.text and bool(logged) == bool(caplog.text)
 
 
 def test_the_scene_is_kept():
@@ -194,10 +194,10 @@ def test_saved_state_is_separate_from_the_initial_poses():
     ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
 ])
 def test_invalid_element_of_the_world_is_rejected(body, part):
-    assert part in complaint(body)
+    assert part in error_message(body)
 
 
-@pytest.mark.parametrize('body, said, without', [
+@pytest.mark.parametrize('body, logged, without', [
     ('<light type="laser" name="l"/>', "light type 'laser' is unknown", 'this light is left out'),
     ('<light type="point"/>', 'a <light> without name', 'this light is left out'),
     ('<light name="l"><pose>a b</pose></light>', 'it takes six finite numbers', 'this light'),
@@ -211,11 +211,11 @@ def test_invalid_element_of_the_world_is_rejected(body, part):
     ('<state world_name="w"><model name="m"><pose>a</pose></model></state>',
      'it takes six finite numbers', "the world's <state> is not applied"),
 ])
-def test_invalid_element_is_left_out_of_the_world(body, said, without, caplog):
+def test_invalid_element_is_left_out_of_the_world(body, logged, without, caplog):
     world = load(body + GROUND)
     assert [model.name for model, _ in world.models] == ['ground_plane']
     (fault,) = world.faults
-    assert said in fault
+    assert logged in fault
     (error,) = [r.getMessage() for r in caplog.records if r.levelno == logging.ERROR]
     assert error.startswith(fault) and without in error
 
@@ -233,8 +233,8 @@ def test_model_of_many_links_is_kept_without_its_missing_mesh(caplog):
     assert [len(link.collisions) for link in spec.links] == [1, 0]
     assert spec.left_out == ("mesh 'model://mailbox/meshes/mailbox.dae'",)
     assert world.faults == ()
-    (said,) = caplog.messages
-    assert said.endswith("; left out: collision of link 'mailbox' (line 1), "
+    (logged,) = caplog.messages
+    assert logged.endswith("; left out: collision of link 'mailbox' (line 1), "
                          "visual of link 'mailbox' (line 1)")
 
 
@@ -248,9 +248,9 @@ def test_pose_with_wrong_count_of_numbers_is_read_as_in_gazebo(pose, position, c
                f'<pose>{pose}</pose></include>')
     world = load(f'{box}\n{include}')
     assert [at.position for _, at in world.models] == [position, position]
-    said = [message for message in caplog.messages if 'six numbers' in message]
-    assert len(said) == 2
-    assert said[1].startswith(f'w.world, line 2: a <pose> has six numbers, this one has {count}:')
+    logged = [message for message in caplog.messages if 'six numbers' in message]
+    assert len(logged) == 2
+    assert logged[1].startswith(f'w.world, line 2: a <pose> has six numbers, this one has {count}:')
 
 
 def test_pose_within_a_plugin_is_unchanged(caplog):

@@ -51,14 +51,14 @@ def test_gazebo_element_agrees_with_its_row(name, state, how, caplog):
     plain = load_urdf(f'{ROBOT}</robot>', 'm')[0]
     with caplog.at_level(logging.DEBUG):
         changed = robot(name) != plain
-    said = {record.getMessage(): record.levelno for record in caplog.records}
+    message = {record.getMessage(): record.levelno for record in caplog.records}
     if state != MISSING:
         assert changed
-        assert said == {}
+        assert message == {}
         return
-    (sentence,) = said
+    (sentence,) = message
     assert f"<{name.rpartition('/')[2]}>" in sentence
-    assert (said[sentence] == logging.DEBUG) == ('level debug' in how)
+    assert (message[sentence] == logging.DEBUG) == ('level debug' in how)
 
 
 def test_every_known_gazebo_element_has_a_row():

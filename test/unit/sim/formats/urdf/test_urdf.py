@@ -37,7 +37,7 @@ def joint(name, parent, child, kind='continuous', inside=''):
             f'<child link="{child}"/>{inside}</joint>')
 
 
-def complaint(body, **options):
+def error_message(body, **options):
     with pytest.raises(ModelError) as caught:
         load(body, **options)
     sentence = str(caught.value)
@@ -67,9 +67,9 @@ def test_obstacle_of_the_course_loads_with_a_physical_inertia(caplog):
     # Nearest to (1, 100, 1): a, 2a, a with a = 101/3.
     assert (box.inertial.ixx, box.inertial.iyy, box.inertial.izz) == pytest.approx(
         (101 / 3, 202 / 3, 101 / 3))
-    (said,) = caplog.messages
-    assert 'ixx=1 iyy=100 izz=1 ixy=0' in said
-    assert 'ixx=33.6667 iyy=67.3333 izz=33.6667 ixy=0' in said
+    (message,) = caplog.messages
+    assert 'ixx=1 iyy=100 izz=1 ixy=0' in message
+    assert 'ixx=33.6667 iyy=67.3333 izz=33.6667 ixy=0' in message
     assert box.inertial.pose.position == (2.0, 0.0, 0.0)
 
 
@@ -242,7 +242,7 @@ def test_elements_without_use_in_simulation_are_not_reported(caplog):
     (link('a') + link('b') + joint('j' * 1100, 'a', 'b'), 'its name has 1100 characters'),
 ])
 def test_invalid_tree_is_rejected_with_location(body, expected):
-    assert expected in complaint(body)
+    assert expected in error_message(body)
 
 
 @pytest.mark.parametrize(('inside', 'expected'), [
@@ -258,13 +258,13 @@ def test_invalid_tree_is_rejected_with_location(body, expected):
     ('<limit effort="1" velocity="1" upper="1e999"/>', 'upper="1e999" of <limit> is wrong'),
 ])
 def test_malformed_number_in_a_joint_is_rejected_with_location(inside, expected):
-    sentence = complaint(link('a') + link('b') + joint('j', 'a', 'b', inside=inside))
+    sentence = error_message(link('a') + link('b') + joint('j', 'a', 'b', inside=inside))
     assert "line 1: joint 'j': " + expected in sentence
 
 
 @pytest.mark.parametrize('kind', ['revolute', 'prismatic'])
 def test_joint_without_its_required_limits_is_rejected(kind):
-    assert f'a {kind} joint needs <limit lower upper effort velocity/>' in complaint(
+    assert f'a {kind} joint needs <limit lower upper effort velocity/>' in error_message(
         link('a') + link('b') + joint('j', 'a', 'b', kind))
 
 
@@ -298,7 +298,7 @@ def inertial(mass='1', **moments):
     (link('a', MASS + '<visual/>'), 'a <visual> without shape'),
 ])
 def test_invalid_part_of_a_link_is_rejected_with_location(body, expected):
-    sentence = complaint(body)
+    sentence = error_message(body)
     assert expected in sentence
     assert "'a': " in sentence or "'m': " in sentence
 
@@ -320,7 +320,7 @@ def test_other_root_element_than_robot_is_rejected():
     link('world', '') + link('a', '') + joint('j', 'world', 'a', 'fixed'),
 ])
 def test_model_without_mass_is_rejected(body):
-    assert 'with a' in complaint(body)
+    assert 'with a' in error_message(body)
 
 
 def test_warning_begins_with_model_and_source(caplog):

@@ -29,7 +29,7 @@ def shape(kind, geometry):
     return f'<{kind} name="s"><geometry>{geometry}</geometry></{kind}>'
 
 
-def said(caplog):
+def logged(caplog):
     return [(record.levelname, record.getMessage()) for record in caplog.records]
 
 
@@ -41,7 +41,7 @@ def test_missing_mesh_is_one_error_that_lists_its_users(caplog, tmp_path):
     assert [part.geometry for part in spec.links[0].collisions] == [Box((1.0, 1.0, 1.0))]
     assert spec.links[0].visuals == ()
     assert spec.left_out == ("mesh 'package://p/wheel.dae'",)
-    assert said(caplog) == [('ERROR', (
+    assert logged(caplog) == [('ERROR', (
         f"model 'bot' (bot.urdf): mesh file '{tmp_path}/wheel.dae' does not exist or cannot be "
         "reached; check name and package (written 'package://p/wheel.dae'); "
         "left out: collision of link 'a' (line 2), visual of link 'a' (line 3)"))]
@@ -53,7 +53,7 @@ def test_error_about_a_mesh_missing_from_the_model_path_lists_the_searched_folde
                ModelSearch([tmp_path / 'a', tmp_path / 'b']))
     assert spec.links[0].collisions == ()
     assert spec.left_out == ("mesh 'model://mailbox/m.dae'",)
-    ((level, sentence),) = said(caplog)
+    ((level, sentence),) = logged(caplog)
     assert level == 'ERROR'
     assert sentence.startswith("b.sdf: 'model://mailbox/m.dae' is not to be found along the model "
                                f"path ({tmp_path}/a, {tmp_path}/b); add the folder")
@@ -78,7 +78,7 @@ def test_unreadable_mesh_is_left_out(tmp_path, caplog, filename, reason):
         (tmp_path / name).write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
     spec = urdf(shape('visual', f'<mesh filename="{filename.format(folder=tmp_path)}"/>'))
     assert spec.links[0].visuals == ()
-    ((level, sentence),) = said(caplog)
+    ((level, sentence),) = logged(caplog)
     assert level == 'ERROR' and reason in sentence
     assert sentence.endswith("; left out: visual of link 'a' (line 2)")
 
@@ -93,7 +93,7 @@ def test_a_shape_of_a_urdf_without_size_is_left_out(kind, geometry, caplog):
     spec = urdf(shape(kind, geometry))
     assert (spec.links[0].collisions, spec.links[0].visuals) == ((), ())
     assert spec.left_out == (f"{kind} of link 'a'",)
-    ((level, sentence),) = said(caplog)
+    ((level, sentence),) = logged(caplog)
     assert level == 'WARNING'
     assert sentence.startswith("model 'bot' (bot.urdf): line 2: link 'a': ")
     assert sentence.endswith(f'reduces it to nothing; the {kind} is left out')
@@ -109,7 +109,7 @@ def test_a_shape_of_an_sdf_without_size_is_left_out(kind, geometry, caplog):
     spec = sdf(shape(kind, geometry))
     assert (spec.links[0].collisions, spec.links[0].visuals) == ((), ())
     assert spec.left_out == (f"{kind} of link 'a'",)
-    ((level, sentence),) = said(caplog)
+    ((level, sentence),) = logged(caplog)
     assert level == 'WARNING'
     assert sentence.startswith("b.sdf, line 2: link 'a': ")
 
@@ -123,7 +123,7 @@ def test_model_is_read_without_a_missing_include_and_its_joint(caplog):
     assert [link.name for link in spec.links] == ['a']
     assert spec.joints == ()
     assert spec.left_out == ("model 'model://hokuyo'", "joint 'j'")
-    assert [level for level, _ in said(caplog)] == ['ERROR', 'ERROR']
+    assert [level for level, _ in logged(caplog)] == ['ERROR', 'ERROR']
     assert caplog.messages[0].startswith("b.sdf, line 2: model 'm': 'model://hokuyo' is not to be")
     assert caplog.messages[1].startswith("b.sdf, line 3: joint 'j': <child> names 'hokuyo::link'")
     assert caplog.messages[1].endswith("; joint 'j' is left out")
@@ -162,7 +162,7 @@ def test_unknown_library_has_its_own_remark(filename, remark):
 
 def test_unsupported_plugin_of_a_link_is_reported_with_its_library(caplog):
     urdf(after='<gazebo reference="a"><plugin filename="libgazebo_ros_elevator.so"/></gazebo>')
-    ((level, sentence),) = said(caplog)
+    ((level, sentence),) = logged(caplog)
     assert level == logging.getLevelName(logging.WARNING)
     assert 'libgazebo_ros_elevator.so is known but not supported yet' in sentence
     assert sentence.endswith('move it to a <gazebo> without reference')

@@ -67,7 +67,7 @@ def seen(count):
     return ModelSpec('seen', (LinkSpec('link', inertial=MASS, visuals=shapes),))
 
 
-@pytest.mark.parametrize('made, most, said', [
+@pytest.mark.parametrize('made, most, message', [
     (chain, size_limits.MAX_JOINTS, 'a kinematic tree of the model has more than 127 joints'),
     (rough, size_limits.MAX_JOINTS + 1,
      'has 128 collisions with surfaces of their own and 0 joints'),
@@ -77,11 +77,11 @@ def seen(count):
     (loose, size_limits.MAX_LINKS, 'has 501 links that fixed joints do not merge; at most 500 are'),
     (seen, size_limits.MAX_SHAPES, 'has 5001 collisions and visuals; at most 5000 are accepted'),
 ])
-def test_model_beyond_a_limit_of_the_engine_is_rejected(meshes, made, most, said):
+def test_model_beyond_a_limit_of_the_engine_is_rejected(meshes, made, most, message):
     compile_model(made(most), meshes)
     with pytest.raises(ModelError) as caught:
         compile_model(made(most + 1), meshes)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert str(caught.value).startswith(f"model '{made(1).name}': ")
 
 

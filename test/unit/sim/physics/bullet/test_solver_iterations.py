@@ -9,12 +9,12 @@ LOOKS = 100
 
 def iterations_after(*motors, looks=LOOKS):
     """Return all iteration counts that were set with these motors."""
-    told = []
-    effort = SolverEffort(told.append)
+    set_counts = []
+    effort = SolverEffort(set_counts.append)
     effort.start(11)
     for _ in range(looks):
         effort.update(motors)
-    return told
+    return set_counts
 
 
 @pytest.mark.parametrize('motor', [
@@ -41,38 +41,38 @@ def test_one_sample_changes_nothing():
 
 
 def test_iterations_are_lowered_when_all_motors_reach_their_targets():
-    told = []
-    effort = SolverEffort(told.append)
+    set_counts = []
+    effort = SolverEffort(set_counts.append)
     effort.start(11)
     for missed in (0.5, 0.0):
         for _ in range(LOOKS):
             effort.update([(1.0 - missed, 1.0, 0.1, 1.0)])
-    assert told == [11, 44, 176, 44, 11]
+    assert set_counts == [11, 44, 176, 44, 11]
 
 
 def test_iterations_are_raised_until_the_error_is_small():
-    told = []
-    effort = SolverEffort(told.append)
+    set_counts = []
+    effort = SolverEffort(set_counts.append)
     effort.start(11)
     for missed in (0.03, 0.1, 0.03):
         for _ in range(LOOKS):
-            effort.update([(1.0 - (missed if told[-1] < 176 else 0.01), 1.0, 0.1, 1.0)])
-    assert told == [11, 44, 176]
+            effort.update([(1.0 - (missed if set_counts[-1] < 176 else 0.01), 1.0, 0.1, 1.0)])
+    assert set_counts == [11, 44, 176]
 
 
-def tries(effort, told, looks, target=1.0):
+def tries(effort, set_counts, looks, target=1.0):
     """Return how often fewer iterations are tried for a motor that needs 44."""
-    before = told.count(11)
+    before = set_counts.count(11)
     for _ in range(looks):
-        effort.update([(0.9 * target if told[-1] < 44 else target, target, 0.1, 1.0)])
-    return told.count(11) - before
+        effort.update([(0.9 * target if set_counts[-1] < 44 else target, target, 0.1, 1.0)])
+    return set_counts.count(11) - before
 
 
 def test_attempts_with_fewer_iterations_become_rarer_until_a_target_changes():
-    told = []
-    effort = SolverEffort(told.append)
+    set_counts = []
+    effort = SolverEffort(set_counts.append)
     effort.start(11)
-    first, second, third = (tries(effort, told, 400) for _ in range(3))
+    first, second, third = (tries(effort, set_counts, 400) for _ in range(3))
     assert first > second >= third
     assert second <= 2
-    assert tries(effort, told, 400, 2.0) >= first - 1
+    assert tries(effort, set_counts, 400, 2.0) >= first - 1
