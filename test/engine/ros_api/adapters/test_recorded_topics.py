@@ -113,7 +113,7 @@ def spawn(world, wire, robot, namespace='/', old='', new=''):
     ('hog', None, '/', {'/tf': TF}, set()),
     ('force', None, '/', {}, set()),
 ])
-def test_names_and_types_are_the_recorded_ones(
+def test_names_and_types_agree_with_the_recording(
         world, wire, robot, edit, namespace, topics, services):
     spawn(world, wire, robot, namespace, *(edit or ()))
     assert {name: topic.message_class._type for name, topic in wire.publishers.items()} == topics
@@ -130,7 +130,7 @@ def test_commands_have_the_recorded_names(world, wire, robot, topics):
     assert set(wire.subscribers) == topics
 
 
-def test_an_empty_namespace_is_the_models_name_for_a_tricycle(world, wire):
+def test_empty_namespace_of_a_tricycle_is_the_name_of_the_model(world, wire):
     spawn(world, wire, 'tricycle', '/', 'tricycle_drive.so">',
           'tricycle_drive.so"><robotNamespace></robotNamespace>')
     assert set(wire.subscribers) == {'/bot/cmd_vel'}
@@ -140,7 +140,7 @@ def test_an_empty_namespace_is_the_models_name_for_a_tricycle(world, wire):
     ('camera_320', {'/camera1/image_raw'}), ('openni_kinect', {'/camera/rgb/image_raw'}),
     ('laser_nonoise', set()), ('imu_sensor', set()), ('bumper', set()), ('range', set()),
 ])
-def test_only_pictures_are_latched(world, wire, robot, latched):
+def test_only_images_are_latched(world, wire, robot, latched):
     spawn(world, wire, robot)
     assert {name for name, topic in wire.publishers.items() if topic.options['latch']} == latched
 
@@ -151,7 +151,7 @@ def test_only_pictures_are_latched(world, wire, robot, latched):
     ('imu_model', '', 'base_footprint'), ('bumper', '', 'pre/base_link'),
     ('bumper_defaults', '', 'pre/world'), ('range', '', 'pre/laser_link'),
 ])
-def test_a_tf_prefix_is_put_before_frames_but_not_before_those_of_imus(
+def test_tf_prefix_applies_to_all_frames_except_those_of_imus(
         world, wire, monkeypatch, robot, removed, frame):
     monkeypatch.setattr(adapter, 'find_tf_prefix', lambda _: 'pre')
     spawn(world, wire, robot, '/', removed)

@@ -57,7 +57,7 @@ def spawn(world, robot, old='', new=''):
     (ARM, '<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
     (ARM, '<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
 ])
-def test_what_makes_no_sense_is_left_out_with_a_sentence(world, caplog, robot, old, new, sentence):
+def test_invalid_sensor_is_left_out_with_an_error(world, caplog, robot, old, new, sentence):
     model, times = spawn(world, robot, old, new)
     world.run(30)
     assert sentence in caplog.text
@@ -90,7 +90,7 @@ def test_what_makes_no_sense_is_left_out_with_a_sentence(world, caplog, robot, o
     (ARM, '<updateRate>100.0<', '<updateRate>0<', None),
     (ARM, '<updateRate>100.0<', '<updateRate>-1<', None),
 ])
-def test_what_gazebo_takes_works(world, caplog, robot, old, new, expected):
+def test_irregular_values_accepted_by_gazebo_work(world, caplog, robot, old, new, expected):
     _, times = spawn(world, robot, old, new)
     world.run(30)
     assert 'spawned without' not in caplog.text
@@ -101,7 +101,7 @@ def test_what_gazebo_takes_works(world, caplog, robot, old, new, expected):
         assert times == expected
 
 
-def test_a_contact_sensor_without_a_collision_says_which_there_are(world, caplog):
+def test_error_about_an_unknown_collision_lists_the_known_ones(world, caplog):
     named = '<collision>base_footprint_fixed_joint_lump__base_link_collision</collision>'
     _, times = spawn(world, BUMPER, named, '')
     world.run(30)
@@ -110,7 +110,7 @@ def test_a_contact_sensor_without_a_collision_says_which_there_are(world, caplog
     assert times == [20]
 
 
-def test_a_scan_of_a_million_rays_comes_with_a_warning(world, caplog):
+def test_scan_of_a_million_rays_gives_a_warning(world, caplog):
     with caplog.at_level(logging.WARNING):
         _, times = spawn(world, LASER, '<samples>720<', '<samples>1000000<')
     assert '1000000 rays take long; the simulation waits for each scan' in caplog.text

@@ -27,7 +27,7 @@ def spawn_gpu(scene, robot, old='', new=''):
 
 
 @pytest.mark.parametrize('robot', ['laser_nonoise', 'laser_short'])
-def test_its_scan_is_that_recorded_of_a_ray(scene, robot):
+def test_scan_agrees_with_the_recording_of_a_ray_sensor(scene, robot):
     scan = spawn_gpu(scene, robot).sensors[0].read()
     expected = np.array([float(value) for value in recordings('laser')[robot]['message']['ranges']])
     assert np.array_equal(np.isinf(scan.ranges), np.isinf(expected))
@@ -36,7 +36,7 @@ def test_its_scan_is_that_recorded_of_a_ray(scene, robot):
     assert scan.intensities.max() == 1500.0
 
 
-def test_noise_ends_at_the_limits_and_what_is_beyond_stays_so(scene):
+def test_noise_is_limited_to_the_range_and_no_return_has_none(scene):
     """As recorded of a ray with a deviation of 0.05 m up to 3.5 m."""
     model = spawn_gpu(scene, 'laser_short', '</ray>', NOISE)
     clean = model.sensors[0].cast()[0]

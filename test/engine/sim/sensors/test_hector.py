@@ -1,4 +1,4 @@
-"""Hector's IMU and satellite navigation measure what mechanics and geodesy have."""
+"""Hector's IMU and satellite navigation agree with mechanics and geodesy."""
 
 import math
 from contextlib import closing
@@ -29,7 +29,7 @@ def world():
 
 
 def spawn(world, library, output, tags='', **pose):
-    """Return model, plugin, and a list that takes the readings of an output from now on."""
+    """Return model, plugin, and a list to which an output appends its readings."""
     model = world.spawn(ROBOT.format(library=library, tags=tags), 'r', **pose)
     plugin = model.plugin('p')
     found = []
@@ -37,7 +37,7 @@ def spawn(world, library, output, tags='', **pose):
     return model, plugin, found
 
 
-def test_a_fix_lies_on_the_ellipsoid_with_x_to_the_north_and_y_to_the_west(world):
+def test_fix_is_on_the_ellipsoid_with_x_north_and_y_west(world):
     _, plugin, found = spawn(world, 'gps', 'fix', x=100.0, y=50.0, z=3.0)
     plugin.report()
     fix = found[0]
@@ -48,7 +48,7 @@ def test_a_fix_lies_on_the_ellipsoid_with_x_to_the_north_and_y_to_the_west(world
     assert (fix.status, fix.service, fix.variances) == (0, 0, (0.0, 0.0, 0.0))
 
 
-def test_the_heading_turns_position_and_velocity(world):
+def test_heading_rotates_position_and_velocity(world):
     tags = ('<referenceLatitude>0</referenceLatitude><referenceLongitude>0</referenceLongitude>'
             '<referenceHeading>90</referenceHeading><referenceAltitude>7</referenceAltitude>')
     model, plugin, found = spawn(world, 'gps', 'fix', tags, y=100.0)
@@ -60,7 +60,7 @@ def test_the_heading_turns_position_and_velocity(world):
     assert velocities[0] == pytest.approx((2.0, 0.0, 0.5))
 
 
-def test_a_fix_comes_four_times_a_second_and_of_a_lumped_body_too(world):
+def test_fix_has_a_rate_of_4_hz_on_a_reduced_link_too(world):
     times = []
     _, plugin, found = spawn(world, 'gps', 'fix', '<bodyName>mast</bodyName>')
     plugin.outputs['fix'].connect(lambda _: times.append(world.clock.now_ns // 1_000_000))
@@ -69,7 +69,7 @@ def test_a_fix_comes_four_times_a_second_and_of_a_lumped_body_too(world):
     assert found[0].altitude == pytest.approx(2.0 - GRAVITY * 0.25**2 / 2, abs=0.01)
 
 
-def test_the_message_knows_its_covariance(world):
+def test_message_has_its_covariance(world):
     tags = '<drift>3 3 3</drift><gaussianNoise>4 0 1</gaussianNoise><service>1</service>'
     _, plugin, found = spawn(world, 'gps', 'fix', tags)
     plugin.report()
@@ -78,7 +78,7 @@ def test_the_message_knows_its_covariance(world):
     assert (message.position_covariance_type, message.status.service) == (2, 1)
 
 
-def test_drift_and_noise_have_their_size_and_forget_at_their_frequency():
+def test_drift_and_noise_have_their_deviation_and_correlation_time():
     """Over many seeds, as one drift is nearly constant."""
     tags = ('<accelDrift>.3</accelDrift><accelDriftFrequency>0.1</accelDriftFrequency>'
             '<yawDrift>.1</yawDrift><accelOffset>1 0 0</accelOffset>')
@@ -96,7 +96,7 @@ def test_drift_and_noise_have_their_size_and_forget_at_their_frequency():
     assert (now * last).mean() == pytest.approx(0.0, abs=0.02)
 
 
-def test_the_drift_of_the_velocity_moves_the_position(world):
+def test_drift_of_the_velocity_is_integrated_into_the_position(world):
     tags = '<velocityDrift>.5</velocityDrift><driftFrequency>0.001</driftFrequency>'
     plugin = spawn(world, 'gps', 'fix', tags)[1]
     model, step = plugin._speed, 0.5
@@ -108,7 +108,7 @@ def test_the_drift_of_the_velocity_moves_the_position(world):
 
 @pytest.mark.parametrize(('tags', 'mount'), [
     ('', 0.0), ('<bodyName>mast</bodyName>', 0.5), ('<rpyOffset>0 0 .5</rpyOffset>', 0.5)])
-def test_an_imu_that_falls_and_turns_reads_its_attitude_and_rate_and_no_weight(world, tags, mount):
+def test_falling_imu_measures_orientation_and_rate_and_no_acceleration(world, tags, mount):
     model, _, found = spawn(world, 'imu', 'imu', tags)
     attitude = from_rpy(0.0, 0.3, 0.4)
     model.set_pose(Pose((0.0, 0.0, 50.0), attitude))
@@ -122,7 +122,7 @@ def test_an_imu_that_falls_and_turns_reads_its_attitude_and_rate_and_no_weight(w
     assert np.linalg.norm(reading.linear_acceleration) < 2.1  # of the mast, 2 m off the axis
 
 
-def test_a_standing_imu_feels_gravity_and_its_errors_tilt_its_attitude(world):
+def test_imu_at_rest_measures_gravity_and_its_errors_tilt_the_orientation(world):
     tags = ('<accelOffset>.49 0 0</accelOffset><yawOffset>.2</yawOffset><rateOffset>0 0 1'
             '</rateOffset><rateScaleError>2 2 2</rateScaleError><accelGaussianNoise>.98 .98 0'
             '</accelGaussianNoise><yawGaussianNoise>.1</yawGaussianNoise>')
@@ -153,7 +153,7 @@ def test_calibration_removes_the_drift_until_it_returns(world):
     assert plugin._rate.drift(1.0) == pytest.approx(drift)
 
 
-def test_readings_repeat_with_the_seed_whenever_somebody_begins_to_read():
+def test_readings_repeat_with_the_seed_at_any_start_of_reading():
     def reading(seed, begin):
         with closing(World.empty()) as world:
             world.seed = seed
@@ -169,7 +169,7 @@ def test_readings_repeat_with_the_seed_whenever_somebody_begins_to_read():
     assert reading(1, 0) != reading(2, 0)
 
 
-def test_without_gravity_no_tilt_is_known(world):
+def test_tilt_is_unknown_without_gravity(world):
     plugin = spawn(world, 'imu', 'imu', '<accelOffset>1 1 1</accelOffset>')[1]
     world.physics = replace(world.physics, gravity=(0.0, 0.0, 0.0))
     plugin.outputs['imu'].latch()
@@ -189,7 +189,7 @@ def test_without_gravity_no_tilt_is_known(world):
     ('gps', '<status>300</status>', '<status> is 300; it must lie between -1 and 2'),
     ('gps', '<updateRate>fast</updateRate>', "<updateRate> is 'fast'; it takes a finite number"),
 ])
-def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
+def test_invalid_plugin_is_left_out_with_an_error(
         world, library, tags, sentence, caplog):
     model = world.spawn(ROBOT.format(library=library, tags=tags), 'r')
     assert sentence in caplog.text
@@ -198,7 +198,7 @@ def test_one_that_makes_no_sense_is_left_out_with_a_sentence(
     world.run(3)
 
 
-def test_the_old_names_of_the_headings_errors_are_pointed_out(world, caplog):
+def test_old_names_of_the_heading_errors_are_reported(world, caplog):
     spawn(world, 'imu', 'imu', '<headingDrift>1</headingDrift>')
     assert 'not read by this plugin: <headingDrift> (the tags of the heading begin with yaw' \
         in caplog.text

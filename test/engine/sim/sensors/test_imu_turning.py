@@ -15,7 +15,7 @@ MOUNTS = {'flat': (0.0, 0.0, 0.0), 'tilt': (0.2, -0.3, 0.5)}
 
 
 @pytest.mark.parametrize('name', MOUNTS)
-def test_it_reads_turning_and_the_acceleration_to_the_middle_of_the_circle(name):
+def test_turning_imu_measures_rate_and_centripetal_acceleration(name):
     text = (ROBOTS / f'planar_imu_{name}.urdf').read_text(encoding='utf-8')
     with closing(World.empty()) as world:
         model = world.spawn(load_urdf(text, 'bot', robot_namespace='/')[0], 'bot')

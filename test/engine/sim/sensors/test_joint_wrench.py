@@ -57,7 +57,7 @@ def test_effort_on_a_joint_is_part_of_its_torque(world):
     assert math.hypot(*reading.force) == pytest.approx(4.9, abs=0.01)
 
 
-def test_at_the_elbows_stop_joints_bear_what_was_recorded(world):
+def test_reactions_at_a_joint_limit_agree_with_the_recording(world):
     model, found = spawn(world)
     world.apply_effort(model.joint('elbow'), 1.0)  # [N m], more than the weight
     model.joint('elbow').set_position(2.5)
@@ -86,7 +86,7 @@ LOAD = ('<sdf version="1.6"><model name="load"><link name="l"><inertial><mass>1<
 
 
 @pytest.mark.parametrize('lower', [-1, 0])  # 0: as of a fixed joint that is kept for its sensor
-def test_a_stop_bears_a_rod_and_what_lies_on_it(world, lower):
+def test_reaction_at_a_joint_limit_is_the_weight_of_rod_and_load(world, lower):
     found = []
     world.spawn(ROD.format(lower=lower)).plugins[0].outputs['wrench'].connect(found.append)
     world.run(200)

@@ -132,7 +132,7 @@ def test_meshes_are_built_from_the_spawn_on(folder, monkeypatch, sensor_first):
         assert np.isfinite(world.models['lbot'].sensor('head_hokuyo_sensor').read().ranges).any()
 
 
-def test_a_mesh_that_is_gone_is_said_once_and_not_seen(folder, tmp_path, caplog):
+def test_missing_mesh_is_reported_once_and_not_hit(folder, tmp_path, caplog):
     file = tmp_path / 'box.obj'
     file.write_bytes((folder / 'box.obj').read_bytes())
     with closing(World()) as world:

@@ -1,4 +1,4 @@
-"""Velodyne's point clouds are those of upstream, made of exact rays."""
+"""Point clouds of Velodyne lasers are as upstream's, with exact rays."""
 
 import logging
 import math
@@ -41,7 +41,7 @@ def cloud_of(world, tags='', library='laser', kind='ray'):
 
 
 @pytest.mark.parametrize(('library', 'kind'), [('laser', 'ray'), ('gpu_laser', 'gpu_ray')])
-def test_points_lie_on_the_surface_azimuth_by_azimuth_from_the_lowest_ring(world, library, kind):
+def test_points_are_on_the_surface_ordered_by_azimuth_and_ring(world, library, kind):
     points, is_dense = cloud_of(world, library=library, kind=kind)
     met = [(yaw, pitch) for yaw in YAWS if abs(2 * math.tan(yaw)) < 2 for pitch in PITCHES]
     expected = [(2.0, 2.0 * math.tan(yaw), 2.0 * math.tan(pitch) / math.cos(yaw))
@@ -54,7 +54,7 @@ def test_points_lie_on_the_surface_azimuth_by_azimuth_from_the_lowest_ring(world
     assert is_dense
 
 
-def test_an_organised_cloud_has_a_column_for_each_ring_and_nan_where_nothing_is(world):
+def test_organised_cloud_has_a_column_for_each_ring_and_nan_without_a_hit(world):
     points, is_dense = cloud_of(world, '<organize_cloud>true</organize_cloud>')
     assert points.shape == (8, 3)
     assert not is_dense
@@ -66,7 +66,7 @@ def test_an_organised_cloud_has_a_column_for_each_ring_and_nan_where_nothing_is(
 @pytest.mark.parametrize(('tags', 'least', 'most'), [
     ('<min_range>2.2</min_range>', 2.2, 20.0), ('<max_range>2.2</max_range>', 0.3, 2.2),
     ('<max_range>99</max_range><min_range>0</min_range>', 0.3, 20.0)])
-def test_points_lie_between_the_tighter_limits(world, tags, least, most):
+def test_points_are_within_the_tighter_limits(world, tags, least, most):
     points = cloud_of(world, tags)[0][0]
     ranges = [2.0 / math.cos(yaw) / math.cos(pitch) for yaw in YAWS if abs(math.tan(yaw)) < 1
               for pitch in PITCHES]
@@ -74,7 +74,7 @@ def test_points_lie_between_the_tighter_limits(world, tags, least, most):
     assert found == pytest.approx([one for one in ranges if least < one < most], abs=1e-5)
 
 
-def test_dim_surfaces_are_left_out_and_noise_has_its_size(world):
+def test_surfaces_of_low_intensity_are_left_out_and_noise_has_its_deviation(world):
     assert cloud_of(world, '<min_intensity>7.5</min_intensity>')[0].size == 0
     world.delete('car')
     clean = cloud_of(world)[0][0]['x']
@@ -111,7 +111,7 @@ def test_the_namespace_is_the_prefix_of_the_frame(world):
     assert world.models['car'].plugin('plugin').params.values['frameName'] == 'top'
 
 
-def test_limits_that_leave_nothing_are_said(world, caplog):
+def test_empty_range_of_limits_is_reported(world, caplog):
     with caplog.at_level(logging.WARNING):
         points, _ = cloud_of(world, '<min_range>5</min_range><max_range>3</max_range>')
     assert points.size == 0
@@ -120,7 +120,7 @@ def test_limits_that_leave_nothing_are_said(world, caplog):
 
 @pytest.mark.parametrize('tags', ['<gaussianNoise>nan</gaussianNoise>', '<min_range>x</min_range>',
                                   '<gaussianNoise>-1</gaussianNoise>'])
-def test_a_bad_number_leaves_the_plugin_out_with_a_sentence(world, tags, caplog):
+def test_plugin_with_an_invalid_number_is_left_out_with_an_error(world, tags, caplog):
     robot = world.spawn(ROBOT.format(tags=tags, library='laser', kind='ray'), 'car')
     assert robot.plugins == []
     assert 'gaussianNoise' in caplog.text or 'min_range' in caplog.text

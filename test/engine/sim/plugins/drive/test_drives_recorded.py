@@ -1,4 +1,4 @@
-"""What drives do beside driving, as it was recorded in Gazebo."""
+"""Side effects of drive plugins, as recorded in Gazebo."""
 
 from contextlib import closing
 
@@ -21,7 +21,7 @@ def world():
 
 
 def spawn(world, name, z=0.0):
-    """Return the plugin of a recorded robot, and lists of what each of its outputs sends."""
+    """Return the plugin of a recorded robot, and lists of the readings of its outputs."""
     text = (DATA / 'robots' / f'{name}.urdf').read_text(encoding='utf-8')
     model = world.spawn(load_urdf(text, name, robot_namespace='/')[0], name, Pose((0.0, 0.0, z)))
     found = {}
@@ -30,7 +30,7 @@ def spawn(world, name, z=0.0):
     return model.plugins[0], found
 
 
-def test_planar_move_sinks_in_the_air_by_what_gravity_adds_in_each_step(world):
+def test_planar_move_in_the_air_sinks_by_gravity_in_each_step(world):
     plugin, found = spawn(world, 'planar', z=0.3)
     world.run(2122)
     pose, twist = plugin.model.state()
@@ -40,7 +40,7 @@ def test_planar_move_sinks_in_the_air_by_what_gravity_adds_in_each_step(world):
     assert found['odometry_transform'][-1].pose.position[2] == pytest.approx(0.2795, abs=5e-4)
 
 
-def test_planar_move_tells_its_twist_in_the_axes_that_it_has_in_the_end(world):
+def test_twist_of_planar_move_is_in_the_axes_at_the_end_of_the_step(world):
     plugin, found = spawn(world, 'planar', z=0.3)
     plugin.command(0.3, 0.4, 0.1)
     world.run(1000)
@@ -49,7 +49,7 @@ def test_planar_move_tells_its_twist_in_the_axes_that_it_has_in_the_end(world):
     assert angular[2] == pytest.approx(0.4, abs=1e-6)
 
 
-def test_a_steered_tricycle_has_the_recorded_speeds_of_its_joints_and_encoders(world):
+def test_joint_speeds_and_encoders_of_a_steered_tricycle_agree_with_the_recording(world):
     plugin, found = spawn(world, 'tricycle', z=0.02)
     plugin.command(0.5, 0.5)
     world.run(4500)
