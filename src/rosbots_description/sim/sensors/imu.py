@@ -106,6 +106,13 @@ def mean_acceleration(
     return (x / seconds, y / seconds, z / seconds)
 
 
+def _says_set_to(tag: str, default: str | float | bool) -> str:
+    """Word a warning as upstream."""
+    where = '/namespace/default' if tag == 'topicName' else 'default'
+    shown = f'{default:g}' if isinstance(default, float) else default
+    return f'missing <{tag}>, set to {where}: {shown}'
+
+
 @register_in_sensor('libgazebo_ros_imu_sensor.so')
 class ImuSensorPlugin(SensorPlugin[ImuReading]):
     """Publishes readings at its own rate. Output: `imu`."""
@@ -113,16 +120,19 @@ class ImuSensorPlugin(SensorPlugin[ImuReading]):
     sensor_class = ImuSensor
     absent_namespace = '/{}'
     rate_tag = 'updateRateHZ'
-    missing = staticmethod('missing <{}>, set to default: {}'.format)
+    missing = staticmethod(_says_set_to)
 
     def load(self) -> None:
         """Read the tags; <bodyName> and <xyzOffset> are ignored, as upstream."""
         read = self.params.read
-        self.params.ignore('bodyName', 'xyzOffset')
+        self.params.ignore('bodyName')
+        if self.params.text('robotNamespace') is None:
+            logger.warning('missing <robotNamespace>, set to default: %s/', self.namespace)
         read('topicName', 'imu_data')
         self.params.required('frameName')
         self.rate = self.params.rate('updateRateHZ', 1.0)
         self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
+        read('xyzOffset', '0 0 0')
         self._turn = from_rpy(*self.params.vector('rpyOffset'))
         self._reference = None
         if self.params.text('initialOrientationAsReference') is not None and \

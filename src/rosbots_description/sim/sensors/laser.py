@@ -3,6 +3,8 @@
 Tags, defaults and namespaces are those of gazebo_ros_pkgs 2.9.2.
 """
 
+import logging
+
 from ..plugin_registry import register_in_sensor
 from .base import SensorPlugin
 from .ray import RaySensor, Scan
@@ -14,7 +16,9 @@ class LaserPlugin(SensorPlugin[Scan]):
     """Publishes scans. Output: `scan`, unless <topicName> is empty."""
 
     sensor_class = RaySensor
-    prefix = 'Laser Plugin (ns = {}) '
+    prefix = 'Laser plugin '
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
     empty_namespace = '{}'
 
     def load(self) -> None:

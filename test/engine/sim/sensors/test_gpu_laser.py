@@ -1,5 +1,6 @@
 """A gpu_ray measures as a ray does; Gazebo's differs by centimetres, and loses laser_retro."""
 
+import logging
 from contextlib import closing
 
 import numpy as np
@@ -47,3 +48,10 @@ def test_noise_is_limited_to_the_range_and_no_return_has_none(scene):
     assert np.isposinf(ranges[:, ~met]).all()
     assert ranges[:, met].max() <= 3.5
     assert (ranges[:, met] - clean[met]).std() == pytest.approx(0.05, rel=0.02)
+
+
+def test_what_is_missing_is_said_in_upstreams_words_but_warns_of_nothing(scene, caplog):
+    caplog.set_level(logging.INFO, 'rosbots_description.sim.plugins')
+    spawn_gpu(scene, 'laser_nonoise', '<frameName>laser_link</frameName>', '')
+    assert [(record.levelname, record.getMessage()) for record in caplog.records] == [
+        ('INFO', 'Laser plugin missing <frameName>, defaults to /world')]

@@ -160,6 +160,16 @@ def test_model_plugin_without_a_rate_updates_every_step_with_defaults(world):
         '/default_imu', '/default_imu', 'base_footprint')
 
 
+def test_tags_that_are_missing_are_warnings_in_upstreams_words(world, caplog):
+    spawn(world, 'imu_sensor', edit=lambda text: text.split('<topicName>')[0]
+          + '<frameName>imu_link</frameName></plugin></sensor></gazebo></robot>')
+    assert [record.getMessage() for record in caplog.records] == [
+        'missing <robotNamespace>, set to default: /ibot/',
+        'missing <topicName>, set to /namespace/default: imu_data',
+        'missing <updateRateHZ>, set to default: 1', 'missing <gaussianNoise>, set to default: 0',
+        'missing <xyzOffset>, set to default: 0 0 0', 'missing <rpyOffset>, set to default: 0 0 0']
+
+
 @pytest.mark.parametrize(('robot', 'old', 'new', 'sentence'), [
     ('imu_sensor', '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
     ('imu_sensor', '<rpyOffset>0 0 0', '<rpyOffset>0 0', "<rpyOffset> is '0 0'; it takes three"),
