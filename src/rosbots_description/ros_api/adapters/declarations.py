@@ -16,7 +16,7 @@ from genpy import Message
 
 from ..messages import stamp
 from ..transport import has_subscribers, next_number, publish_serialized, topic_name
-from .adapter import Adapter
+from .adapter import Adapter, where
 
 logger = logging.getLogger(__name__)
 
@@ -213,7 +213,9 @@ class Offers:
     """Another ROS interface with the lifetime of the plugin, such as a service."""
 
     name: str
-    make: Callable[[Adapter, str], Callable[[], None]]  # opens it, returns a function to close it
+    # Opens it, and returns a function to close it; raises rospy.ServiceException if a service of
+    # its name exists.
+    make: Callable[[Adapter, str], Callable[[], None]]
 
     def join(self, adapter: Adapter) -> 'Offered':
         """Return the endpoint of the adapter's plugin."""
@@ -228,5 +230,13 @@ class Offered(Endpoint):
         self._declared = declared
 
     def open(self) -> None:
-        """Offer it."""
-        self.adapter.on_close(self._declared.make(self.adapter, self.name))
+        """Offer it, unless another plugin offers a service of its name."""
+        try:
+            close = self._declared.make(self.adapter, self.name)
+        except rospy.ServiceException:
+            logger.warning(
+                '%s: the services of %s are those of another plugin; names of its own, or a '
+                'robot_namespace, would give this one its own', where(self.adapter.plugin),
+                self.name)
+        else:
+            self.adapter.on_close(close)

@@ -10,7 +10,6 @@ Services:
         hector's imu it removes the drift of the angular velocity.
 """
 
-import logging
 from collections.abc import Callable
 from typing import cast
 
@@ -22,11 +21,9 @@ from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 from ...sim.core import Vector
 from ...sim.sensors import Fix, HectorGps, HectorImu, ImuSensorPlugin, LinkImu
 from ..messages import ImuLayout
-from .adapter import Adapter, where
+from .adapter import Adapter
 from .declarations import Offers, Pack, Publishes
 from .registry import connects
-
-logger = logging.getLogger(__name__)
 
 
 def imu_pack(adapter: Adapter) -> Pack:
@@ -42,13 +39,7 @@ def calibration(adapter: Adapter, name: str) -> Callable[[], None]:
         adapter.server.loop.call(plugin.calibrate)
         return EmptyResponse()
 
-    try:
-        service = rospy.Service(name, Empty, answer)
-    except rospy.ServiceException:
-        logger.warning('%s: there is a service %s already; give this one another <serviceName>',
-                       where(adapter.plugin), name)
-        return lambda: None
-    return service.shutdown
+    return rospy.Service(name, Empty, answer).shutdown
 
 
 def fix_message(fix: Fix) -> NavSatFix:

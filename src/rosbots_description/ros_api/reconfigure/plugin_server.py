@@ -3,6 +3,7 @@
 import contextlib
 from collections.abc import Callable, Sequence
 
+import rospy
 from dynamic_reconfigure.encoding import Config
 from dynamic_reconfigure.server import Server
 
@@ -16,8 +17,16 @@ class PluginReconfigure(Server):
     """Advertises parameters of a plugin; a subclass applies them in `apply`."""
 
     def __init__(self, parameters: Sequence[Parameter], name: str) -> None:
-        """Advertise them in the namespace `name`."""
-        super().__init__(description(parameters), self._reconfigure, name)
+        """Advertise them in the namespace `name`.
+
+        Raises:
+            rospy.ServiceException: there is a server in this namespace.
+        """
+        try:
+            super().__init__(description(parameters), self._reconfigure, name)
+        except rospy.ServiceException:
+            self._unregister_topics()
+            raise
 
     def apply(self, config: Config) -> None:
         """Apply the requested values; called from ROS's threads, and once by `__init__`."""
@@ -26,6 +35,9 @@ class PluginReconfigure(Server):
     def close(self) -> None:
         """Unregister the service and topics."""
         self.set_service.shutdown()
+        self._unregister_topics()
+
+    def _unregister_topics(self) -> None:
         for topic in (self.descr_topic, self.update_topic):
             topic.unregister()
 

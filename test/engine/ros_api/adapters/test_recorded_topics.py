@@ -38,12 +38,17 @@ def wire(monkeypatch):
     made, made.services = Wire(monkeypatch), set()
 
     def offer(name, *_):
+        if name in made.services:
+            raise rospy.ServiceException(f'{name} is there already')
         made.services.add(name)
-        return SimpleNamespace(shutdown=lambda: None)
+        return SimpleNamespace(shutdown=lambda: made.services.remove(name))
+
+    def reconfigure(server, _type, _callback, name):
+        server.descr_topic = server.update_topic = SimpleNamespace(unregister=lambda: None)
+        server.set_service = offer(f'{name}/set_parameters')
 
     monkeypatch.setattr(rospy, 'Service', offer)
-    monkeypatch.setattr(ReconfigureServer, '__init__', lambda _self, _type, _callback, name:
-                        made.services.add(f'{name}/set_parameters'))
+    monkeypatch.setattr(ReconfigureServer, '__init__', reconfigure)
     return made
 
 
@@ -53,16 +58,15 @@ def world():
         yield made
 
 
-def spawn(world, wire, robot, namespace='/', old='', new=''):
-    """Spawn a recorded robot, called `bot`, and open its topics; `old` is replaced by `new`."""
+def spawn(world, wire, robot, namespace='/', old='', new='', name='bot'):
+    """Spawn a recorded robot, and return its open adapters; `old` is replaced by `new`."""
     file = ROBOTS / f'{robot}.urdf'
     text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text(encoding='utf-8')
     if old:
         assert old in text
         text = text.replace(old, new)
-    model = world.spawn(load_urdf(text, 'bot', robot_namespace=namespace)[0], 'bot')
-    for plugin in model.plugins:
-        wire.join(plugin)
+    model = world.spawn(load_urdf(text, name, robot_namespace=namespace)[0], name)
+    return [wire.join(plugin) for plugin in model.plugins]
 
 
 @pytest.mark.parametrize(('robot', 'edit', 'namespace', 'topics', 'services'), [
@@ -159,3 +163,22 @@ def test_tf_prefix_applies_to_all_frames_except_those_of_imus(
     topic.read()
     world.run(100)
     assert topic.sent[-1].header.frame_id == frame
+
+
+@pytest.mark.parametrize(('robot', 'topic'), [
+    ('camera_320', '/camera1/image_raw'), ('openni_kinect', '/camera/depth/points'),
+    ('multicamera', '/multisense/right/image_raw'), ('imu_model', '/imu'),
+])
+def test_two_robots_of_the_same_names_share_topics_and_the_first_has_the_services(
+        world, wire, caplog, robot, topic):
+    spawn(world, wire, robot)
+    services = wire.services.copy()
+    (second,) = spawn(world, wire, robot, name='other')
+    assert wire.services == services
+    assert "model 'other', plugin" in caplog.text
+    assert 'are those of another plugin; names of its own, or a robot_namespace' in caplog.text
+    wire.publishers[topic].read()
+    second.refresh()
+    world.run(100)
+    sent = len(wire.publishers[topic].sent)
+    assert sent == 2 * len({message.header.stamp for message in wire.publishers[topic].sent}) > 0
