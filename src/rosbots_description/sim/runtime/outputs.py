@@ -51,6 +51,10 @@ class Output(Generic[Reading]):
         """Return how many there are."""
         return len(self._readers)
 
+    def is_read_by(self, read: Callable[[Reading], object]) -> bool:
+        """Return whether `read` is connected."""
+        return read in self._readers
+
     def connect(self, read: Callable[[Reading], object]) -> None:
         """Pass every reading to `read(reading)`, after the readers connected before."""
         self._set_readers((*self._readers, read))
@@ -61,7 +65,7 @@ class Output(Generic[Reading]):
 
     def latch(self) -> None:
         """Keep the newest reading from now on, for `newest`."""
-        if self._latch not in self._readers:
+        if not self.is_read_by(self._latch):
             self.connect(self._latch)
 
     @property

@@ -98,8 +98,8 @@ class Sensor(SensorLife):
         return self.measure()
 
     def shared(self) -> Iterable[object]:
-        """Return description, output and random numbers."""
-        return (self.spec, self.readings, self.random)
+        """Return description and output."""
+        return (self.spec, self.readings)
 
     def restart(self) -> None:
         """Restart the schedule of readings at the current time."""
@@ -175,21 +175,19 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         self._wake()
         self.reset()
 
-    def shared(self) -> Iterable[object]:
-        """Return the random numbers, too."""
-        return (*super().shared(), self.random)
-
     def process(self, reading: Reading) -> None:
         """Send the outputs for a reading of the sensor."""
         raise NotImplementedError
 
     def readers_changed(self) -> None:
         """Take readings while any output has readers."""
-        self.sensor.readings.disconnect(self._receive)
-        if self.is_read:
-            self.sensor.readings.connect(self._receive)
-            if not self._receiving:
-                self._wake()
+        readings = self.sensor.readings
+        if not self.is_read:
+            readings.disconnect(self._receive)
+        elif not readings.is_read_by(self._receive):
+            readings.connect(self._receive)
+        if self.is_read and not self._receiving:
+            self._wake()
         self._receiving = self.is_read
 
     def _wake(self) -> None:

@@ -21,6 +21,10 @@ class RandomSteps:
         self._state = self._bits.state
         self._generator = np.random.Generator(self._bits)
 
+    def __deepcopy__(self, _memo: dict[int, object]) -> 'RandomSteps':
+        """Return itself: nothing of a step outlasts it. A copied generator has bits of its own."""
+        return self
+
     def at(self, step: int) -> np.random.Generator:
         """Return the generator at the start of a step's sequence."""
         self._state['state']['counter'][2] = step  # leaves 2^128 blocks for each step

@@ -74,6 +74,22 @@ def test_readings_after_a_reset_are_bit_identical(world):
     assert differing == set()
 
 
+def test_from_a_saved_state_everything_is_measured_again_bit_by_bit(world):
+    found = spawn_all(world, NOISY)
+    world.run(130)
+    state = world.save_state()
+    found.clear()
+    world.run(150)
+    first = found.copy()
+    world.restore(state)
+    found.clear()
+    world.run(150)
+    assert [entry[:2] for entry in found] == [entry[:2] for entry in first]
+    differing = {key for (key, _, one), (_, _, other) in zip(first, found, strict=True)
+                 if one != other}
+    assert differing == set()
+
+
 @pytest.mark.parametrize('robot', PERIODS)
 def test_outputs_continue_after_resets_of_poses_and_of_time(world, robot):
     found = spawn_all(world, [robot])
