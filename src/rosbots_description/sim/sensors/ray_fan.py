@@ -100,14 +100,14 @@ class RayFan:
         rows_end = np.where(far - radii < most, rows_end, 0)
         middle = np.arctan2(y, x)
         low, high = _span(middle, radii, flat)
-        # A box subtends the azimuths of its corners, unless it may be around the axis of the fan.
-        across, along = x * corners[1] - y * corners[0], x * corners[0] + y * corners[1]
-        slopes = across / (along + flat * flat)
-        beside = flat > radii
+        # A box whose corners are all ahead of the axis subtends the azimuths of its corners.
+        across, ahead = x * corners[1] - y * corners[0], x * corners[0] + y * corners[1]
+        ahead += flat * flat
+        slopes, is_ahead = across / ahead, ahead.min(axis=0) > 0.0
         low = np.where(
-            beside, np.maximum(low, middle + np.arctan(slopes.min(axis=0)) - _SLACK), low)
+            is_ahead, np.maximum(low, middle + np.arctan(slopes.min(axis=0)) - _SLACK), low)
         high = np.where(
-            beside, np.minimum(high, middle + np.arctan(slopes.max(axis=0)) + _SLACK), high)
+            is_ahead, np.minimum(high, middle + np.arctan(slopes.max(axis=0)) + _SLACK), high)
         columns, columns_end = self.columns.within(
             low[:, None] + self._turns, high[:, None] + self._turns)
         there = (columns_end > columns) & (rows_end > rows)[:, None]

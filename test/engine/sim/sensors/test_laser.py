@@ -146,7 +146,7 @@ def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
               '<cylinder><radius>{0}</radius><length>{2}</length></cylinder>')
     links = ''.join(
         f'<collision name="c{i}"><pose>{" ".join(str(draw.gauss(0, 2)) for _ in range(6))}</pose>'
-        f'<geometry>{shapes[i % 3].format(*(draw.lognormvariate(-1.5, 1) for _ in range(3)))}'
+        f'<geometry>{shapes[i % 3].format(*(draw.lognormvariate(-0.9, 0.8) for _ in range(3)))}'
         '</geometry></collision>' for i in range(90))
     with closing(World()) as world:
         world.spawn(f'<sdf version="1.6"><model name="m"><static>1</static><link name="l">{links}'

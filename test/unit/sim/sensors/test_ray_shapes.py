@@ -1,5 +1,6 @@
 """Ray hits lie on the surface of shapes, by an independent definition."""
 
+import itertools
 import math
 
 import numpy as np
@@ -73,21 +74,36 @@ def test_ray_from_inside_hits_the_far_side(least, expected):
     assert meet('box', [(-2, 0, 0)], [(1, 0, 0)], least)[0] == pytest.approx(expected)
 
 
-@pytest.mark.parametrize('columns', [
+SWEEPS = pytest.mark.parametrize('columns', [
     Sweep(720, 720, -1.5708, 1.5708), Sweep(360, 360, -math.pi, math.pi), Sweep(90, 90, 3.0, -3.0),
     Sweep(400, 400, 0.0, 2 * math.pi), Sweep(500, 500, -7.0, 8.0), Sweep(1, 1, 0.5, 1.0),
     Sweep(5, 5, 0.3, 0.3),
 ])
-@pytest.mark.parametrize('rows', [
+ROWS = pytest.mark.parametrize('rows', [
     Sweep(1, 1, 0.0, 0.0), Sweep(16, 16, -0.26, 0.26), Sweep(9, 9, 1.6, -1.6),
 ])
+
+
+def corners_of(halves):
+    """Return the corners (3, 8, m) of boxes with these half extents (m, 3)."""
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    return (signs[None] * halves[:, None]).transpose(2, 1, 0)
+
+
+def kept_by(fan, centres, radii, halves):
+    """Return the pairs of shape and ray that may meet within 4 m."""
+    patches = fan.near(centres, radii, corners_of(halves), 4.0)
+    which, rays, _ = fan.rays(patches)
+    assert rays.size == 0 or rays.max() < fan.ways.shape[1]
+    return set(zip(patches.shapes[which].tolist(), rays.tolist(), strict=True))
+
+
+@SWEEPS
+@ROWS
 def test_culling_keeps_every_ray_that_hits_a_ball(rows, columns):
     fan = RayFan(rows, columns)
     random = np.random.default_rng(2)
     centres, radii = random.uniform(-5.0, 5.0, (60, 3)), random.uniform(0.01, 3.0, 60)
-    patches = fan.near(centres, radii, 4.0)
-    which, rays, _ = fan.rays(patches)
-    kept = set(zip(patches.spheres[which].tolist(), rays.tolist(), strict=True))
     along = centres @ fan.ways
     apart = (centres ** 2).sum(axis=1)[:, None] - along ** 2
     inside = (centres ** 2).sum(axis=1) < radii ** 2
@@ -95,11 +111,34 @@ def test_culling_keeps_every_ray_that_hits_a_ball(rows, columns):
     meets = (apart < radii[:, None] ** 2) & ((along > 0.0) & (reach < 4.0) | inside[:, None])
     needed = set(zip(*(part.tolist() for part in np.nonzero(meets)), strict=True))
     assert needed
-    assert needed <= kept
-    assert rays.size == 0 or rays.max() < fan.ways.shape[1]
+    assert needed <= kept_by(fan, centres, radii, np.repeat(radii[:, None], 3, axis=1))
+
+
+@SWEEPS
+@ROWS
+def test_culling_keeps_every_ray_that_hits_a_box(rows, columns):
+    fan = RayFan(rows, columns)
+    random = np.random.default_rng(3)
+    centres, halves = random.uniform(-4.0, 4.0, (60, 3)), random.uniform(0.01, 2.0, (60, 3))
+    needed = set()
+    for shape, (centre, half) in enumerate(zip(centres, halves, strict=True)):
+        start = -centre[:, None] + 0.0 * fan.ways
+        met = ray_shapes.first_from(0.0, *ray_shapes.box(start, fan.ways, half[:, None]))
+        needed |= {(shape, ray) for ray in np.flatnonzero(met < 4.0).tolist()}
+    assert needed
+    assert needed <= kept_by(fan, centres, np.linalg.norm(halves, axis=1), halves)
 
 
 def test_culling_for_a_small_ball_keeps_few_rays():
     fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(720, 720, -1.5708, 1.5708))
-    _, rays, _ = fan.rays(fan.near(np.array([[5.0, 0.0, 0.0], [0.0, 0.0, 5.0]]), np.ones(2), 9.0))
+    centres = np.array([[5.0, 0.0, 0.0], [0.0, 0.0, 5.0]])
+    _, rays, _ = fan.rays(fan.near(centres, np.ones(2), corners_of(np.ones((2, 3))), 9.0))
     assert len(rays) == pytest.approx(2 * math.asin(0.2) / math.pi * 720, abs=2)
+
+
+def test_culling_for_a_long_wall_keeps_the_rays_between_its_ends():
+    fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(720, 720, -1.5708, 1.5708))
+    half = np.array([[0.1, 2.0, 1.0]])
+    _, rays, _ = fan.rays(fan.near(
+        np.array([[4.0, 0.0, 0.0]]), np.linalg.norm(half, axis=1), corners_of(half), 9.0))
+    assert len(rays) == pytest.approx(2 * math.atan2(2.0, 3.9) / math.pi * 720, abs=2)

@@ -26,11 +26,12 @@ AppliedForce = tuple[Callable[..., None], tuple[Any, ...]]  # method, arguments
 class BodyStates:
     """State of the bodies of one PyBullet world; see `PhysicsEngine`."""
 
+    placements = 0
+
     def __init__(self, client: int) -> None:
         """Work in the world of that PyBullet client."""
         self._client = client
         self._enabled = True
-        self.placements = 0  # as of `PhysicsEngine`
         self._fast = FastBodies(client)
         self._driven: dict[Body, None] = {}  # bodies with motors, in the order they were added
         self._applied_forces: list[AppliedForce] = []  # since the last step
