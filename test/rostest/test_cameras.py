@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
 """Topics of cameras: names, types, frames, stamps, latching, and settings by clients."""
 
+import io
 import sys
 
+import numpy as np
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
-from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+from PIL import Image as PilImage
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from sensor_msgs.srv import SetCameraInfo
 from simulator import SimulatorTest, pose, topics_of, wait_until
 from test_sensors import ROBOTS, spacing
 
+IMAGES = ('image_raw', 'image_raw/compressed')  # the latter as with image_transport's plugin
 SETTINGS = ('parameter_descriptions', 'parameter_updates')
 
 
@@ -30,7 +34,7 @@ class CameraTest(SimulatorTest):
 
     def test_images_and_camera_infos_have_equal_stamps(self):
         self.spawn_recorded(
-            'camera_320', '/nsx/camera1', {'image_raw', 'camera_info', *SETTINGS}, '/nsx')
+            'camera_320', '/nsx/camera1', {*IMAGES, 'camera_info', *SETTINGS}, '/nsx')
         infos = self.collect('/nsx/camera1/camera_info', CameraInfo)
         images = self.read('/nsx/camera1/image_raw', Image, 12)
         image = images[-1]
@@ -44,8 +48,22 @@ class CameraTest(SimulatorTest):
         self.assertLessEqual(min(spacing(images)), 34)
         self.assertAlmostEqual(infos[-1].P[3], -13.347686, 5)
 
+    def test_compressed_image_is_the_image(self):
+        self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
+        compressed = self.read('/camera1/image_raw/compressed', CompressedImage, 2)
+        images = self.collect('/camera1/image_raw', Image)
+        wait_until(lambda: images and compressed[-1].header.stamp >= images[0].header.stamp,
+                   'both images of one time')
+        image = images[0]
+        same, = (one for one in compressed if one.header.stamp == image.header.stamp)
+        self.assertEqual((same.format, same.header.frame_id),
+                         ('rgb8; jpeg compressed bgr8', 'camera_link_optical'))
+        pixels = np.asarray(PilImage.open(io.BytesIO(same.data)), int)
+        away = np.abs(pixels - np.frombuffer(image.data, 'u1').reshape(240, 320, 3))
+        self.assertLess(away.mean(), 1.0)
+
     def test_subscriber_during_a_pause_gets_the_last_image(self):
-        self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+        self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         self.read('/camera1/image_raw', Image, 2)
         self.pause()
         infos = self.collect('/camera1/camera_info', CameraInfo)
@@ -53,7 +71,7 @@ class CameraTest(SimulatorTest):
         self.assertEqual(infos, [])
 
     def test_clients_set_rate_and_camera_info(self):
-        self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+        self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         self.assertEqual(rospy.get_param('/camera1/imager_rate'), 2.0)
         client = Client('/camera1', timeout=10.0)
         client.update_configuration({'imager_rate': 5.0})
@@ -68,7 +86,7 @@ class CameraTest(SimulatorTest):
 
     def test_both_cameras_of_a_multicamera_have_equal_stamps(self):
         topics = {f'{side}/{topic}' for side in ('left', 'right')
-                  for topic in ('image_raw', 'camera_info', *SETTINGS)}
+                  for topic in (*IMAGES, 'camera_info', *SETTINGS)}
         self.spawn_recorded('multicamera', '/multisense', topics)
         left = self.collect('/multisense/left/image_raw', Image)
         right = self.read('/multisense/right/image_raw', Image, 5)
@@ -77,8 +95,8 @@ class CameraTest(SimulatorTest):
 
     def test_depth_camera_publishes_all_its_topics(self):
         self.spawn_recorded('openni_kinect', '/camera', {
-            'rgb/image_raw', 'rgb/camera_info', 'depth/image_raw', 'depth/camera_info',
-            'depth/points', *SETTINGS})
+            'rgb/image_raw', 'rgb/image_raw/compressed', 'rgb/camera_info', 'depth/image_raw',
+            'depth/camera_info', 'depth/points', *SETTINGS})
         cloud = self.read('/camera/depth/points', PointCloud2, 2)[-1]
         self.assertEqual((cloud.height, cloud.width, cloud.point_step), (240, 320, 32))
         self.assertEqual([(f.name, f.offset) for f in cloud.fields],
@@ -90,7 +108,7 @@ class CameraTest(SimulatorTest):
 
     def test_robot_can_be_deleted_while_its_camera_is_subscribed(self):
         for _ in range(2):
-            self.spawn_recorded('camera_320', '/camera1', {'image_raw', 'camera_info', *SETTINGS})
+            self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
             self.read('/camera1/image_raw', Image, 2)
             self.assertTrue(self.delete('bot').success)
             self.assertNotIn('/camera1/image_raw', topics_of())

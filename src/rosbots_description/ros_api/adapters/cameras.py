@@ -2,6 +2,7 @@
 
 Publishes:
     <ns>/<cameraName>/<imageTopicName> (sensor_msgs/Image, latched)
+    <ns>/<cameraName>/<imageTopicName>/compressed (sensor_msgs/CompressedImage, latched): JPEG
     <ns>/<cameraName>/<cameraInfoTopicName> (sensor_msgs/CameraInfo)
     multicamera: the same, for each side, in <cameraName>/left and <cameraName>/right
     depth_camera, openni_kinect: <depthImageTopicName> (sensor_msgs/Image),
@@ -18,6 +19,7 @@ from typing import cast
 
 import rospy
 from sensor_msgs.msg import CameraInfo as CameraInfoMessage
+from sensor_msgs.msg import CompressedImage as CompressedMessage
 from sensor_msgs.msg import Image as ImageMessage
 from sensor_msgs.msg import PointCloud2, PointField, RegionOfInterest
 from sensor_msgs.srv import SetCameraInfo, SetCameraInfoRequest, SetCameraInfoResponse
@@ -27,6 +29,7 @@ from ...sim.sensors import (
     CameraInfo,
     CameraPlugin,
     Cloud,
+    CompressedImage,
     DepthCameraPlugin,
     Image,
     MultiCameraPlugin,
@@ -53,6 +56,11 @@ def image_message(image: Image) -> ImageMessage:
     return ImageMessage(
         header(image.stamp_ns, image.frame), image.height, image.width, image.encoding, 0,
         len(image.pixels) // image.height, image.pixels)
+
+
+def compressed_message(image: CompressedImage) -> CompressedMessage:
+    """Return a compressed image as a message."""
+    return CompressedMessage(header(image.stamp_ns, image.frame), image.format, image.data)
 
 
 def cloud_message(cloud: Cloud) -> PointCloud2:
@@ -123,6 +131,8 @@ def channel_topics(side: str, image: str, info: str, folder: str, number: int) -
     """
     return (
         Publishes(f'{side}image', image, ImageMessage, image_message, queue=QUEUE, latch=True),
+        Publishes(f'{side}compressed', f'{image}/compressed', CompressedMessage,
+                  compressed_message, queue=QUEUE, latch=True),
         Publishes(f'{side}camera_info', info, CameraInfoMessage, info_message, queue=QUEUE),
         Offers(f'{folder}/set_camera_info', set_camera_info(number)),
         Offers(folder, reconfigure),

@@ -1,7 +1,7 @@
 """Rendering: camera images without a display, and meshes for RViz."""
 
 from .camera import EYE, TARGET, View
-from .gl import BYTES, Lens
+from .gl import BYTES, Lens, Wants
 from .image_capture import ImageCapture, Picture
 from .render_process import NoRendererError, RenderError
 from .sunlit_meshes import SunlitMeshes
@@ -17,4 +17,5 @@ __all__ = [
     'RenderError',
     'SunlitMeshes',
     'View',
+    'Wants',
 ]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..core import Pose
 from ..runtime import World
-from .gl import Lens
+from .gl import Lens, Wants
 from .render_process import MAX_PENDING, RenderedCamera, RenderError, RenderProcess
 from .scene import SceneMirror
 
@@ -19,12 +19,13 @@ class Picture(NamedTuple):
     """A picture of one camera at `stamp_ns` [ns]; None for what was not requested.
 
     Pixels are (height, width, channels) in the encoding of the lens, depths (height, width) float32
-    along the optical axis [m], inf for the background.
+    along the optical axis [m], inf for the background. `jpeg` is a file of the pixels.
     """
 
     stamp_ns: int
     pixels: NDArray[Any] | None
     depths: NDArray[Any] | None
+    jpeg: bytes | None = None
 
 
 class SceneRenderer:
@@ -82,14 +83,14 @@ class ImageCapture:
         return len(self._stamps) < MAX_PENDING
 
     def request(
-        self, lenses: Sequence[tuple[Lens, Pose]], seed: int, wants: tuple[bool, bool]
+        self, lenses: Sequence[tuple[Lens, Pose]], seed: int, wants: Wants
     ) -> None:
         """Request a picture of the world in its current state.
 
         Args:
             lenses: always the same lenses, with their poses in the world.
             seed: of the noise.
-            wants: pixels, depths.
+            wants: what the pictures are to contain.
         Raises:
             RenderError: drawing was given up.
         """
@@ -113,7 +114,7 @@ class ImageCapture:
         found, faults = [], []
         for camera in self._cameras:
             try:
-                found.append(Picture(stamp_ns, *(camera.receive_image(wait) or (None, None))))
+                found.append(Picture(stamp_ns, *(camera.receive_image(wait) or ())))
             except RenderError as error:
                 faults.append(error)
         if faults:

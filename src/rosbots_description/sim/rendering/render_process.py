@@ -7,6 +7,7 @@ import logging
 import mmap
 import os
 import socket
+import struct
 import subprocess
 import sys
 from collections import deque
@@ -19,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .gl import Lens, Scene
+from .gl import Lens, Scene, Wants
 
 logger = logging.getLogger(__name__)
 
@@ -36,6 +37,9 @@ main(int(sys.argv[2]))
 """
 # A picture may take long on shared processors; a hung process is killed after this time.
 TIMEOUT = 60.0  # [s, wall]
+
+# Pixels, depths and a JPEG file; None for what was not wanted.
+Content = tuple[NDArray[Any] | None, NDArray[Any] | None, bytes | None]
 
 
 class RenderError(Exception):
@@ -215,7 +219,7 @@ class RenderedCamera:
         self.number = number
         self.lens = lens
         self._process = process
-        self._size = lens.colour_bytes + lens.depth_bytes
+        self._size = lens.colour_bytes + lens.depth_bytes + lens.jpeg_bytes
         self.file = os.memfd_create('picture')
         os.truncate(self.file, MAX_PENDING * self._size)
         self.memory = mmap.mmap(self.file, MAX_PENDING * self._size)
@@ -236,8 +240,7 @@ class RenderedCamera:
         return len(self._requested) + len(self._done)
 
     def request(
-        self, eye: NDArray[Any], poses: NDArray[Any], seed: int = 0,
-        wants: tuple[bool, bool] = (True, False),
+        self, eye: NDArray[Any], poses: NDArray[Any], seed: int, wants: Wants
     ) -> None:
         """Request a picture of the current scene.
 
@@ -245,22 +248,22 @@ class RenderedCamera:
             eye: the camera's pose (7,), position [m] and quaternion x, y, z, w.
             poses: of the bodies of the scene (n, 7).
             seed: of the noise.
-            wants: colours, depths.
+            wants: what is to be returned by `take`.
         Raises:
             RenderError: drawing was given up.
         """
-        message = ('picture', self.number, self._next * self._size, *wants, seed, eye.tobytes(),
-                   poses.tobytes())
+        message = ('picture', self.number, self._next * self._size, tuple(wants), seed,
+                   eye.tobytes(), poses.tobytes())
         if self._process.fault:
             raise NoRendererError(self._process.fault)
         self._next = (self._next + 1) % MAX_PENDING
         self._requested.append(message)
         self._process.request(message)
 
-    def receive_image(self, wait: bool) -> tuple[NDArray[Any] | None, NDArray[Any] | None] | None:
-        """Return colours and depths of the oldest requested picture, or None if it is pending.
+    def receive_image(self, wait: bool) -> Content | None:
+        """Return what was wanted of the oldest requested picture, or None if it is pending.
 
-        Colours are (height, width, channels), depths (height, width) float32 [m], inf for the
+        Pixels are (height, width, channels), depths (height, width) float32 [m], inf for the
         background. They are copies.
 
         Args:
@@ -273,7 +276,7 @@ class RenderedCamera:
         message, fault = self._done.popleft()
         if fault:
             raise (NoRendererError if self._process.fault else RenderError)(fault)
-        return self._content(*message[2:5])
+        return self._content(message[2], Wants(*message[3]))
 
     def has_image(self, wait: bool) -> bool:
         """Tell whether a picture is finished; with `wait`, wait for a pending one."""
@@ -296,18 +299,20 @@ class RenderedCamera:
         while self._requested:
             self.complete(fault)
 
-    def _content(
-        self, place: int, has_colour: bool, has_depth: bool
-    ) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
+    def _content(self, place: int, wanted: Wants) -> Content:
         lens = self.lens
         shape = lens.height, lens.width
-        colours = depths = None
-        if has_colour:
+        pixels = depths = jpeg = None
+        if wanted.pixels:
             content = self.memory[place:place + lens.colour_bytes]
             wide = lens.encoding.endswith('16')
-            colours = np.frombuffer(content, '<u2' if wide else 'u1').reshape(*shape, -1)
-            place += lens.colour_bytes
-        if has_depth:
+            pixels = np.frombuffer(content, '<u2' if wide else 'u1').reshape(*shape, -1)
+        place += lens.colour_bytes
+        if wanted.depths:
             depths = np.frombuffer(
                 self.memory[place:place + lens.depth_bytes], 'f4').reshape(shape)
-        return colours, depths
+        place += lens.depth_bytes
+        if wanted.jpeg:
+            size, = struct.unpack_from('<I', self.memory, place)
+            jpeg = self.memory[place + 4:place + 4 + size]
+        return pixels, depths, jpeg

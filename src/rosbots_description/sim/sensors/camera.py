@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..core import PluginError, Pose, compose, from_rpy, parse_numbers
 from ..description import Element
 from ..plugin_registry import register_sensor
-from ..rendering import ImageCapture, Lens, NoRendererError, Picture, RenderError
+from ..rendering import ImageCapture, Lens, NoRendererError, Picture, RenderError, Wants
 from ..runtime import NEVER
 from .base import DueTimes, Sensor
 from .noise import read_noise
@@ -51,7 +51,7 @@ class CameraSensor(Sensor):
         elements = [one for one in self.spec.element.children if one.tag == 'camera']
         elements = elements or [Element('camera')]  # with all defaults
         self.cameras = tuple(self._camera(one) for one in self._chosen(elements))
-        self._wanted: dict[object, tuple[bool, bool]] = {}  # by plugin: pixels, depths
+        self._wanted: dict[object, Wants] = {}  # by plugin
         self._capture = ImageCapture(self.world)
         self._picture_step = NEVER
         self._complaint = ''
@@ -67,8 +67,8 @@ class CameraSensor(Sensor):
         """Return what is not part of the state."""
         return (*super().shared(), self.cameras, self._capture)
 
-    def want(self, plugin: object, what: tuple[bool, bool] | None) -> None:
-        """Set whether a plugin wants (pixels, depths), None: neither; other readers get both."""
+    def want(self, plugin: object, what: Wants | None) -> None:
+        """Set what a plugin wants, None: nothing; other readers get pixels and depths."""
         if what is None:
             self._wanted.pop(plugin, None)
         else:
@@ -97,7 +97,7 @@ class CameraSensor(Sensor):
             PluginError: the picture cannot be drawn.
         """
         try:
-            self._request((True, self.has_depth))
+            self._request(Wants(depths=self.has_depth))
             taken: tuple[Picture, ...] = ()
             while self._capture.pending:  # earlier requests are answered first
                 taken = self._capture.receive_image(wait=True) or taken
@@ -133,13 +133,13 @@ class CameraSensor(Sensor):
         if self.due != NEVER and self._capture.pending:
             self.due = min(self.due, self.world.clock.steps + POLL)
 
-    def _wants(self) -> tuple[bool, bool]:
-        if self.readings.readers > len(self._wanted):
-            return True, self.has_depth
-        wanted = self._wanted.values()
-        return any(pixels for pixels, _ in wanted), any(depths for _, depths in wanted)
+    def _wants(self) -> Wants:
+        wanted = list(self._wanted.values())
+        if self.readings.readers > len(wanted):
+            wanted.append(Wants(depths=self.has_depth))
+        return Wants(*map(any, zip(*wanted, strict=True)))
 
-    def _request(self, wants: tuple[bool, bool]) -> None:
+    def _request(self, wants: Wants) -> None:
         while not self._capture.is_free:
             self._capture.receive_image(wait=True)
         here = self.pose

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..plugin_registry import register_in_sensor
-from ..rendering import BYTES, Lens, Picture
+from ..rendering import BYTES, Lens, Picture, Wants
 from ..runtime import Output
 from .base import SensorPlugin
 from .camera import CameraSensor, DepthSensor, MultiCameraSensor, SensedCamera
@@ -61,6 +61,16 @@ class Image:
 
 
 @dataclass(frozen=True)
+class CompressedImage:
+    """A JPEG file of an image at a time [ns]; formats are those of compressed_image_transport."""
+
+    stamp_ns: int
+    frame: str
+    format: str
+    data: bytes
+
+
+@dataclass(frozen=True)
 class Cloud:
     """Points in the optical frame, (height, width, 8) float32: x, y, z [m], 0, colour, 0, 0, 0.
 
@@ -74,7 +84,7 @@ class Cloud:
 
 
 class Channel:
-    """Outputs and calibration of one camera of a plugin: `image` and `camera_info`."""
+    """Outputs and calibration of one camera of a plugin: `image`, `compressed`, `camera_info`."""
 
     def __init__(self, plugin: 'CameraPlugin', camera: SensedCamera, side: str, baseline: float
                  ) -> None:
@@ -82,8 +92,11 @@ class Channel:
         self.camera = camera
         self.frame = plugin.frame
         self.image: Output[Image] = plugin.output(f'{side}image')
+        self.compressed: Output[CompressedImage] = plugin.output(f'{side}compressed')
         self.camera_info: Output[StampedInfo] = plugin.output(f'{side}camera_info')
         self.info = plugin.info(camera.lens, baseline)
+        colours = 'bgr8' if BYTES[camera.lens.encoding] % 3 == 0 else ''
+        self._format = f'{camera.encoding}; jpeg compressed {colours}'
 
     def send(self, picture: Picture) -> None:
         """Send a picture."""
@@ -91,13 +104,16 @@ class Channel:
             lens = self.camera.lens
             self.image.send(Image(picture.stamp_ns, self.frame, lens.width, lens.height,
                                   self.camera.encoding, picture.pixels.tobytes()))
+        if self.compressed.wanted and picture.jpeg is not None:
+            self.compressed.send(CompressedImage(
+                picture.stamp_ns, self.frame, self._format, picture.jpeg))
         if self.camera_info.wanted:
             self.camera_info.send(StampedInfo(picture.stamp_ns, self.info))
 
 
 @register_in_sensor('libgazebo_ros_camera.so')
 class CameraPlugin(SensorPlugin[Pictures]):
-    """Publishes pictures. Outputs: `image`, `camera_info`."""
+    """Publishes pictures. Outputs: `image`, `compressed`, `camera_info`."""
 
     sensor_class: type[CameraSensor] = CameraSensor
     prefix = 'Camera Plugin (ns = {}) '
@@ -162,13 +178,14 @@ class CameraPlugin(SensorPlugin[Pictures]):
         self.sensor.set_rate(rate)
 
     def readers_changed(self) -> None:
-        """Request pixels and depths according to the readers."""
+        """Request what is read."""
         self.sensor.want(self, self.wants() if self.is_read else None)
         super().readers_changed()
 
-    def wants(self) -> tuple[bool, bool]:
-        """Tell whether pixels and depths are read."""
-        return any(channel.image.wanted for channel in self.channels), False
+    def wants(self) -> Wants:
+        """Return what is read."""
+        return Wants(any(channel.image.wanted for channel in self.channels), False,
+                     any(channel.compressed.wanted for channel in self.channels))
 
     def stamp_of(self, reading: Pictures) -> int:
         """Return the stamp of a picture [ns]."""
@@ -201,7 +218,7 @@ class CameraPlugin(SensorPlugin[Pictures]):
 class MultiCameraPlugin(CameraPlugin):
     """Publishes the pictures of the cameras named left and right, with equal stamps.
 
-    Outputs: `left_image`, `left_camera_info`, `right_image`, `right_camera_info`.
+    Outputs: `left_image`, `left_compressed`, `left_camera_info`, and the same of `right`.
     """
 
     sensor_class = MultiCameraSensor
@@ -241,7 +258,7 @@ class MultiCameraPlugin(CameraPlugin):
 class DepthCameraPlugin(CameraPlugin):
     """Publishes pictures and depths.
 
-    Outputs: `image`, `camera_info`, `depth`, `depth_camera_info`, `points`.
+    Outputs: `image`, `compressed`, `camera_info`, `depth`, `depth_camera_info`, `points`.
     """
 
     sensor_class = DepthSensor
@@ -271,11 +288,11 @@ class DepthCameraPlugin(CameraPlugin):
         """Return the distance beyond which depths are NaN [m]."""
         return math.inf
 
-    def wants(self) -> tuple[bool, bool]:
-        """Tell whether pixels and depths are read."""
-        channel = self.channels[0]
-        return (channel.image.wanted or self.points.wanted,
-                self.depth.wanted or self.points.wanted)
+    def wants(self) -> Wants:
+        """Return what is read."""
+        own = super().wants()
+        return own._replace(pixels=own.pixels or self.points.wanted,
+                            depths=self.depth.wanted or self.points.wanted)
 
     def process(self, reading: Pictures) -> None:
         """Send a picture, its depth image and its point cloud."""

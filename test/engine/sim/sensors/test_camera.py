@@ -1,5 +1,6 @@
 """Images of cameras agree with Gazebo's, are rendered on time, and survive render failures."""
 
+import io
 import logging
 import math
 import os
@@ -288,6 +289,26 @@ def test_depth_of_a_wall_is_constant(scene):
     assert np.isnan(depths).sum() == np.isnan(depths[:30]).sum() == 9600
     assert depths[30:236] == pytest.approx(2.0, abs=DEPTH)
     assert depths[-1] == pytest.approx(PLANE_LOWEST, abs=DEPTH)
+
+
+@pytest.mark.parametrize(('robot', 'mode', 'form'), [
+    ('camera_320', 'RGB', 'rgb8; jpeg compressed bgr8'),
+    ('camera_L8', 'L', 'mono8; jpeg compressed '),
+])
+def test_compressed_image_is_a_jpeg_file_of_the_image(scene, robot, mode, form):
+    _, camera = spawn_robot(scene, robot)
+    compressed, whole = [], []
+    plugin_of(camera).channels[0].compressed.connect(compressed.append)
+    camera.readings.connect(whole.append)
+    scene.run(seconds=0.07)
+    camera.readings.disconnect(whole.append)
+    scene.run(seconds=0.07)
+    assert whole[-1].stamp_ns == compressed[len(whole) - 1].stamp_ns < compressed[-1].stamp_ns
+    assert compressed[-1].format == form
+    image = Image.open(io.BytesIO(compressed[len(whole) - 1].data))
+    assert (image.format, image.mode) == ('JPEG', mode)
+    away = np.asarray(image, int) - whole[-1].pixels.reshape(np.asarray(image).shape)
+    assert np.abs(away).mean() < 1.0
 
 
 def test_each_image_has_its_step_and_none_is_missing(scene):

@@ -4,6 +4,6 @@ To start fast, that process puts the parent folder on its path and imports this 
 name. It exchanges plain tuples and arrays with the simulator.
 """
 
-from .values import BYTES, Appearance, Lens, Light, Scene, ScenePart
+from .values import BYTES, Appearance, Lens, Light, Scene, ScenePart, Wants
 
-__all__ = ['BYTES', 'Appearance', 'Lens', 'Light', 'Scene', 'ScenePart']
+__all__ = ['BYTES', 'Appearance', 'Lens', 'Light', 'Scene', 'ScenePart', 'Wants']

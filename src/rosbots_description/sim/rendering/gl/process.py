@@ -5,6 +5,7 @@ import mmap
 import os
 import signal
 import socket
+import struct
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -12,9 +13,9 @@ import numpy as np
 from PIL import Image
 
 from .context import NoContextError, open_context
-from .image_pipeline import ImagePipeline
+from .image_pipeline import ImagePipeline, jpeg_file
 from .renderer import Renderer
-from .values import Appearance, Colour, Lens, Light, Scene, ScenePart
+from .values import Appearance, Colour, Lens, Light, Scene, ScenePart, Wants
 
 MAX_IMAGE_SIZE = 2048  # [pixels] along an edge; larger ones are scaled down
 NICENESS = 2  # the simulation has priority
@@ -81,23 +82,27 @@ class _Service:
         self._cameras.pop(number).memory.close()
 
     def _picture(
-        self, number: int, place: int, has_colour: bool, has_depth: bool, seed: int,
-        eye: bytes, poses: bytes,
+        self, number: int, place: int, wants: tuple[bool, ...], seed: int, eye: bytes,
+        poses: bytes,
     ) -> None:
         """Write a picture to the camera's memory at offset `place`, and answer."""
-        camera = self._cameras[number]
+        camera, wanted = self._cameras[number], Wants(*wants)
         lens = camera.lens
         where, bodies = np.frombuffer(eye), np.frombuffer(poses).reshape(-1, 7)
         fault = ''
         try:
-            if has_colour:
+            if wanted.pixels or wanted.jpeg:
                 pixels = self._renderer.colours(lens, where, bodies)
                 content = camera.pipeline.finish(pixels, seed)
-                camera.memory[place:place + lens.colour_bytes] = content.reshape(-1).view('u1').data
-                place += lens.colour_bytes
-            if has_depth:
+                if wanted.pixels:
+                    camera.write(place, content.reshape(-1).view('u1').data)
+                if wanted.jpeg:
+                    file = jpeg_file(content, lens.encoding)
+                    camera.write(place + lens.colour_bytes + lens.depth_bytes,
+                                 struct.pack('<I', len(file)) + file)
+            if wanted.depths:
                 depths = self._renderer.depths(lens, where, bodies)
-                camera.memory[place:place + lens.depth_bytes] = depths.reshape(-1).view('u1').data
+                camera.write(place + lens.colour_bytes, depths.reshape(-1).view('u1').data)
         except Exception as error:  # such as a picture too large for the driver
             fault = f'{type(error).__name__}: {error}'
         self._connection.send((number, fault))
@@ -110,3 +115,7 @@ class _Camera:
         self.lens = lens
         self.memory = memory
         self.pipeline = ImagePipeline(lens)
+
+    def write(self, place: int, content: 'bytes | memoryview') -> None:
+        """Write to the shared memory at offset `place`."""
+        self.memory[place:place + len(content)] = content

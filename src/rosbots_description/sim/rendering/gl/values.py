@@ -63,6 +63,14 @@ class Scene(NamedTuple):
     shadows: bool = True
 
 
+class Wants(NamedTuple):
+    """What is requested of a picture."""
+
+    pixels: bool = True
+    depths: bool = False
+    jpeg: bool = False  # the pixels as a JPEG file
+
+
 class Lens(NamedTuple):
     """A camera that looks along x, with y to the left and z up.
 
@@ -97,3 +105,8 @@ class Lens(NamedTuple):
     def depth_bytes(self) -> int:
         """Return the size of a depth image of float32."""
         return self.width * self.height * 4
+
+    @property
+    def jpeg_bytes(self) -> int:
+        """Return the room for a JPEG file: white noise takes half of it, a header some 600."""
+        return self.width * self.height * 3 + 4096
