@@ -12,6 +12,7 @@ from PIL import Image as PilImage
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from sensor_msgs.srv import SetCameraInfo
 from simulator import SimulatorTest, pose, topics_of, wait_until
+from std_msgs.msg import Empty
 from test_sensors import ROBOTS, spacing
 
 IMAGES = ('image_raw', 'image_raw/compressed')  # the latter as with image_transport's plugin
@@ -20,12 +21,18 @@ SETTINGS = ('parameter_descriptions', 'parameter_updates')
 
 class CameraTest(SimulatorTest):
 
-    def spawn_recorded(self, robot, folder, topics, namespace='/'):
+    def spawn_recorded(self, robot, folder, topics, namespace='/', plugin=None):
         """Spawn a recorded robot and assert that its topics below `folder` are `topics`."""
         before = topics_of()
         text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
+        if plugin is not None:
+            text = text.replace('libgazebo_ros_camera.so', plugin)
         self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
         self.assertEqual(topics_of() - before, {f'{folder}/{topic}' for topic in topics})
+
+    def wait(self, seconds):
+        end = self.world().sim_time + seconds
+        wait_until(lambda: self.world().sim_time > end, f'{seconds} s of simulated time')
 
     def read(self, topic, message_class, count):
         messages = self.collect(topic, message_class)
@@ -83,6 +90,23 @@ class CameraTest(SimulatorTest):
         self.assertEqual((answer.success, answer.status_message), (True, ''))
         info = self.read('/camera1/camera_info', CameraInfo, 2)[-1]
         self.assertEqual((list(info.K), info.header.frame_id), (list(wanted.K), ''))
+
+    def test_each_trigger_gives_one_image(self):
+        self.spawn_recorded(
+            'camera_320', '/camera1', {*IMAGES, 'camera_info', 'image_trigger', *SETTINGS},
+            plugin='libgazebo_ros_triggered_camera.so')
+        images = self.collect('/camera1/image_raw', Image)
+        trigger = rospy.Publisher('/camera1/image_trigger', Empty, queue_size=1)
+        self.addCleanup(trigger.unregister)
+        wait_until(lambda: trigger.get_num_connections() == 1, 'the camera that is triggered')
+        # Again and again, for the camera does not take pictures before it knows its reader.
+        wait_until(lambda: trigger.publish(Empty()) or images, 'a picture')
+        self.wait(0.3)
+        before = len(images)
+        trigger.publish(Empty())
+        wait_until(lambda: len(images) > before, 'another picture')
+        self.wait(0.3)
+        self.assertEqual(len(images), before + 1)
 
     def test_both_cameras_of_a_multicamera_have_equal_stamps(self):
         topics = {f'{side}/{topic}' for side in ('left', 'right')

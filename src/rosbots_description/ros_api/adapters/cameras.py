@@ -9,6 +9,9 @@ Publishes:
         <depthImageCameraInfoTopicName> (sensor_msgs/CameraInfo), <pointCloudTopicName>
         (sensor_msgs/PointCloud2), below <cameraName>, too
     <cameraName>/parameter_descriptions and parameter_updates, of dynamic_reconfigure
+Subscribes:
+    <ns>/<cameraName>/<triggerTopicName> (std_msgs/Empty): triggered_camera; triggered_multicamera
+        has one for each side, and either takes the pictures of both
 Services:
     <cameraName>/set_camera_info (sensor_msgs/SetCameraInfo)
     <cameraName>/set_parameters (dynamic_reconfigure/Reconfigure): imager_rate
@@ -23,7 +26,7 @@ from sensor_msgs.msg import CompressedImage as CompressedMessage
 from sensor_msgs.msg import Image as ImageMessage
 from sensor_msgs.msg import PointCloud2, PointField, RegionOfInterest
 from sensor_msgs.srv import SetCameraInfo, SetCameraInfoRequest, SetCameraInfoResponse
-from std_msgs.msg import Header
+from std_msgs.msg import Empty, Header
 
 from ...sim.sensors import (
     CameraInfo,
@@ -35,10 +38,12 @@ from ...sim.sensors import (
     MultiCameraPlugin,
     OpenniKinectPlugin,
     StampedInfo,
+    TriggeredCameraPlugin,
+    TriggeredMultiCameraPlugin,
 )
 from ..messages import stamp
 from .adapter import Adapter
-from .declarations import Offers, Publishes
+from .declarations import Offers, Publishes, Subscribes
 from .registry import connects
 
 QUEUE = 2
@@ -147,10 +152,17 @@ _DEPTH = (
               info_message, queue=QUEUE),
     Publishes('points', '<pointCloudTopicName>', PointCloud2, cloud_message, queue=QUEUE),
 )
-connects(CameraPlugin, *_ONE)
-connects(MultiCameraPlugin, *(
-    declared for number, side in enumerate(('left', 'right')) for declared in channel_topics(
+_SIDES = 'left', 'right'
+_BOTH = tuple(
+    declared for number, side in enumerate(_SIDES) for declared in channel_topics(
         f'{side}_', f'<{side} imageTopicName>', f'<{side} cameraInfoTopicName>',
-        f'<cameraName>/{side}', number)))
+        f'<cameraName>/{side}', number))
+_TRIGGERS = tuple(
+    Subscribes(f'<{side}triggerTopicName>', Empty, 'trigger', lambda _message: ())
+    for side in ('', *(f'{side} ' for side in _SIDES)))
+connects(CameraPlugin, *_ONE)
+connects(MultiCameraPlugin, *_BOTH)
+connects(TriggeredCameraPlugin, *_ONE, *_TRIGGERS[:1])
+connects(TriggeredMultiCameraPlugin, *_BOTH, *_TRIGGERS[1:])
 connects(DepthCameraPlugin, *_DEPTH)
 connects(OpenniKinectPlugin, *_DEPTH)

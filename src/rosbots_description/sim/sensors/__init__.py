@@ -12,6 +12,8 @@ from .camera_plugins import (
     MultiCameraPlugin,
     OpenniKinectPlugin,
     StampedInfo,
+    TriggeredCameraPlugin,
+    TriggeredMultiCameraPlugin,
 )
 from .contact import BumperPlugin, ContactPair, ContactPoint
 from .hector_gps import Fix, HectorGps
@@ -54,5 +56,7 @@ __all__ = [
     'Sensor',
     'SensorPlugin',
     'StampedInfo',
+    'TriggeredCameraPlugin',
+    'TriggeredMultiCameraPlugin',
     'VelodynePlugin',
 ]

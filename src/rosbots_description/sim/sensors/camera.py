@@ -54,6 +54,8 @@ class CameraSensor(Sensor):
         self._wanted: dict[object, Wants] = {}  # by plugin
         self._capture = ImageCapture(self.world)
         self._picture_step = NEVER
+        # Whether one picture is to be taken in the next step, None: pictures come at the rate.
+        self.triggered: bool | None = None
         self._complaint = ''
 
     def _chosen(self, elements: list[Element]) -> list[Element]:
@@ -86,6 +88,11 @@ class CameraSensor(Sensor):
         self._times.begin(self.world.clock.now_ns)
         self.count_readers()
 
+    def trigger(self) -> None:
+        """Take one picture in the next step, if it has readers."""
+        self.triggered = self.readings.wanted
+        self.count_readers()
+
     def unload(self) -> None:
         """Close the shutter."""
         self._capture.close()
@@ -116,6 +123,7 @@ class CameraSensor(Sensor):
         try:
             self._send_finished(waits)
             if self._takes and self._capture.is_free:
+                self.triggered = None if self.triggered is None else False
                 self._request(self._wants())
                 self._send_finished(waits)
         except NoRendererError:
@@ -129,8 +137,10 @@ class CameraSensor(Sensor):
     def count_readers(self) -> None:
         """Set the next due step: the next picture, or an earlier poll for a pending one."""
         super().count_readers()
+        if self.triggered is not None and self.due != NEVER:
+            self.due = self.world.clock.steps + 1 if self.triggered else NEVER
         self._picture_step = self.due
-        if self.due != NEVER and self._capture.pending:
+        if self.readings.wanted and self._capture.pending:
             self.due = min(self.due, self.world.clock.steps + POLL)
 
     def _wants(self) -> Wants:

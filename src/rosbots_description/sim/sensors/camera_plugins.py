@@ -134,9 +134,14 @@ class CameraPlugin(SensorPlugin[Pictures]):
             'Cx', 'Cy', 'focalLength', 'hackBaseline', 'distortionK1', 'distortionK2',
             'distortionK3', 'distortionT1', 'distortionT2')}
         self._takes_distortion = self._value('autoDistortion', False)
-        self.params.ignore('CxPrime', 'triggerTopicName')
+        self.params.ignore('CxPrime')
+        self.load_trigger()
         self.sensor.crop(self._value('borderCrop', True))
         self.load_channels()
+
+    def load_trigger(self) -> None:
+        """Ignore what triggered cameras read."""
+        self.params.ignore('triggerTopicName')
 
     def load_channels(self) -> None:
         """Make the outputs."""
@@ -252,6 +257,30 @@ class MultiCameraPlugin(CameraPlugin):
         pictures = (reading,) if isinstance(reading, Picture) else reading
         for channel, number in zip(self.channels, self._numbers, strict=True):
             channel.send(pictures[number])
+
+
+class Triggered(CameraPlugin):
+    """Publishes one picture for each `trigger()`; triggers in the same step count as one."""
+
+    def load_trigger(self) -> None:
+        """Stop the sensor's own rate."""
+        self.rate = 0.0
+        self._topic('triggerTopicName', 'image_trigger')
+        self.sensor.triggered = False
+
+    def trigger(self) -> None:
+        """Take a picture in the next step, as by a message on the trigger topic."""
+        self.sensor.trigger()
+
+
+@register_in_sensor('libgazebo_ros_triggered_camera.so')
+class TriggeredCameraPlugin(Triggered):
+    """A camera that is triggered."""
+
+
+@register_in_sensor('libgazebo_ros_triggered_multicamera.so')
+class TriggeredMultiCameraPlugin(Triggered, MultiCameraPlugin):
+    """A multicamera that is triggered."""
 
 
 @register_in_sensor('libgazebo_ros_depth_camera.so')

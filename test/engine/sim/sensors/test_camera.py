@@ -320,6 +320,27 @@ def test_each_image_has_its_step_and_none_is_missing(scene):
         math.ceil(1000 * k / 30) for k in range(1, 31)]
 
 
+@pytest.mark.parametrize(('robot', 'plugin', 'output'), [
+    ('camera_320', 'triggered_camera', 'image'),
+    ('multicamera', 'triggered_multicamera', 'right_image'),
+])
+def test_triggered_camera_takes_one_image_for_each_trigger(scene, robot, plugin, output):
+    text = (FILES.parent / 'robots' / f'{robot}.urdf').read_text(encoding='utf-8')
+    name = plugin.removeprefix('triggered_')
+    model = scene.spawn(text.replace(f'libgazebo_ros_{name}.so', f'libgazebo_ros_{plugin}.so'), 'm')
+    camera = plugin_of(model.sensors[0])
+    camera.trigger()  # nobody reads
+    found = []
+    camera.outputs[output].connect(lambda image: found.append(image.stamp_ns // 1_000_000))
+    scene.run(seconds=0.1)
+    for _ in range(2):
+        camera.trigger()
+    scene.run(seconds=0.05)
+    camera.trigger()
+    scene.run(seconds=0.2)
+    assert found == [101, 151]
+
+
 def test_images_with_shadows_and_noise_are_bit_identical():
     def take():
         with closing(recorded_world(shadows=True)) as world:

@@ -48,8 +48,8 @@ def test_sensor_of_an_unsupported_type_is_kept_and_reported(caplog):
 
 
 @pytest.mark.parametrize(('library', 'level', 'remark'), [
-    ('libgazebo_ros_triggered_camera.so', 'WARNING',
-     'libgazebo_ros_triggered_camera.so is known but not supported yet'),
+    ('libgazebo_ros_prosilica.so', 'WARNING',
+     'libgazebo_ros_prosilica.so is known but not supported yet'),
     ('libgazebo_ros_laserr.so', 'ERROR', "unknown library 'libgazebo_ros_laserr.so'; "
      "did you mean 'libgazebo_ros_laser.so'?"),
     ('libgazebo_ros_diff_drive.so', 'ERROR',
