@@ -442,6 +442,7 @@ def test_shadows_are_cast_unless_the_world_disables_them():
 @pytest.mark.parametrize(('element', 'said'), [
     ('<horizontal_fov>0</horizontal_fov>', 'horizontal_fov'),
     ('<horizontal_fov>3.2</horizontal_fov>', 'horizontal_fov'),
+    ('<horizontal_fov>nan</horizontal_fov>', 'horizontal_fov'),
     ('<image><width>0</width></image>', 'width'),
     ('<image><width>9000</width></image>', 'width'),
     ('<clip><near>2</near><far>1</far></clip>', 'near must be above 0 and below far'),
@@ -453,6 +454,18 @@ def test_invalid_lens_is_one_error(element, said, caplog):
                     f'type="camera"><camera>{element}</camera></sensor></link></model></sdf>', 'm')
         assert said in caplog.text
         world.run(steps=10)
+
+
+@pytest.mark.parametrize('rate', ['0', '-30', '5000'])
+def test_rate_of_zero_or_above_that_of_the_steps_is_every_step(rate):
+    with closing(World.empty()) as world:
+        model = world.spawn(
+            '<sdf version="1.6"><model name="m"><static>1</static><link name="l"><sensor name="s" '
+            f'type="camera"><update_rate>{rate}</update_rate><camera/></sensor></link></model>'
+            '</sdf>', 'm')
+        taken = stamps(model.sensors[0])
+        world.run(steps=5)
+        assert [stamp // 1_000_000 for stamp, _ in taken] == [1, 2, 3, 4, 5]
 
 
 def test_smallest_and_largest_images_are_rendered():
