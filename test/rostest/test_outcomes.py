@@ -228,7 +228,7 @@ class OutcomesTest(SimulatorTest):
             rospy.set_param(f'/gazebo/view/{name}', place)
             self.addCleanup(rospy.delete_param, f'/gazebo/view/{name}')
         picture = rospy.wait_for_message('/gazebo/view/image_raw', Image, PICTURE)
-        self.assertEqual(set(picture.data), {255})  # the sky
+        self.assertEqual(set(picture.data), {178})  # the background
 
     def test_link_state_is_set_and_read_relative_to_another_link(self):
         self._done('set_link_state', link_state={

@@ -38,8 +38,7 @@ ARROWS = {
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
     'sim/rendering':
-        'sim/core sim/description sim/resources sim/meshes sim/physics/bullet sim/runtime '
-        'sim/rendering/gl',
+        'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
     'sim/rendering/gl': '',
     'sim/sensors':
         'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
@@ -213,9 +212,9 @@ def test_pybullet_is_imported_in_one_place():
     assert using == ['sim/physics/bullet/client']
 
 
-def test_only_the_engine_on_pybullet_and_the_renderer_know_pybullet():
+def test_only_the_engine_on_pybullet_knows_pybullet():
     using = {folder_of(module) for module, _, name in imports() if name == 'pybullet'}
-    assert using == {'sim/physics/bullet', 'sim/rendering'}
+    assert using == {'sim/physics/bullet'}
 
 
 def test_only_ros_api_imports_rospy():

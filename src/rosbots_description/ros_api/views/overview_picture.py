@@ -2,12 +2,13 @@
 
 Publishes:
     ~view/image_raw (sensor_msgs/Image, rgb8): while subscribed, at `RATE` in wall time, also while
-        paused. Each picture takes about 0.1 s: use camera sensors for perception.
+        paused. It is drawn as those of camera sensors, which are for perception.
 Parameters:
     ~view/eye, ~view/target (lists of three numbers) [m, world]: position and target of the camera;
         read before the first picture, then with each picture, for the next one.
 """
 
+import contextlib
 import logging
 import math
 
@@ -15,7 +16,16 @@ import rospy
 from sensor_msgs.msg import Image
 
 from ...sim.core import Vector
-from ...sim.rendering import EYE, TARGET, View
+from ...sim.rendering import (
+    EYE,
+    OVERVIEW,
+    TARGET,
+    ImageCapture,
+    NoRendererError,
+    RenderError,
+    Wants,
+    look_at,
+)
 from ..messages import RequestError, stamp
 from ..server import Server
 from ..transport import Registrar
@@ -23,32 +33,41 @@ from ..transport import Registrar
 logger = logging.getLogger(__name__)
 
 RATE = 2.0  # of pictures [Hz, wall]
+POLL = 0.05  # between two looks for a finished one [s, wall]
 
 
 def advertise_view(server: Server) -> None:
     """Advertise pictures; they are drawn only while there are subscribers."""
     publisher = rospy.Publisher('~view/image_raw', Image, queue_size=1)
-    view = View(server.world)
+    capture = ImageCapture(server.world)
     viewpoint = Viewpoint()
     viewpoint.read()
 
-    def show() -> None:
+    def request() -> None:
         if publisher.get_num_connections() == 0:
-            view.close()
             viewpoint.rest()
             return
         viewpoint.read_soon(server.registrar)
-        if not viewpoint.ready:
-            return
-        pixels = view.picture(*viewpoint.sight)
-        height, width, _ = pixels.shape
-        image = Image(height=height, width=width, encoding='rgb8', step=3 * width)
-        image.header.frame_id = 'world'
-        image.header.stamp = stamp(server.world.clock.now_ns)
-        image.data = pixels.tobytes()
-        publisher.publish(image)
+        if viewpoint.ready and not capture.pending:
+            with contextlib.suppress(NoRendererError):  # the log says why
+                capture.request([(OVERVIEW, look_at(*viewpoint.sight))], 0, Wants())
 
-    server.loop.every(1.0 / RATE, show)
+    def publish() -> None:
+        try:
+            taken = capture.receive_image(wait=False)
+        except RenderError as error:
+            logger.error('~view: %s', error)
+            return
+        if taken is not None and taken[0].pixels is not None:
+            height, width, _ = taken[0].pixels.shape
+            image = Image(height=height, width=width, encoding='rgb8', step=3 * width)
+            image.header.frame_id = 'world'
+            image.header.stamp = stamp(taken[0].stamp_ns)
+            image.data = taken[0].pixels.tobytes()
+            publisher.publish(image)
+
+    server.loop.every(1.0 / RATE, request)
+    server.loop.every(POLL, publish)
 
 
 class Viewpoint:

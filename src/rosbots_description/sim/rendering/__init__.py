@@ -1,6 +1,6 @@
-"""Rendering: camera images without a display, and meshes for RViz."""
+"""Rendering: pictures without a display, and meshes for RViz."""
 
-from .camera import EYE, TARGET, View
+from .camera import EYE, OVERVIEW, TARGET, look_at
 from .gl import BYTES, Lens, Wants
 from .image_capture import ImageCapture, Picture
 from .render_process import NoRendererError, RenderError
@@ -9,6 +9,7 @@ from .sunlit_meshes import SunlitMeshes
 __all__ = [
     'BYTES',
     'EYE',
+    'OVERVIEW',
     'TARGET',
     'ImageCapture',
     'Lens',
@@ -16,6 +17,6 @@ __all__ = [
     'Picture',
     'RenderError',
     'SunlitMeshes',
-    'View',
     'Wants',
+    'look_at',
 ]
