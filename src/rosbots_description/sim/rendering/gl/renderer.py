@@ -1,6 +1,5 @@
 """Draws the view of cameras of a scene."""
 
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -13,16 +12,18 @@ from .shaders import (
     DEPTH_FRAGMENT,
     NOTHING_FRAGMENT,
     PLACED_VERTEX,
-    SURFACE_VERTEX,
-    surface_fragment,
+    ShaderVariant,
+    surface_shaders,
 )
-from .shadows import Shadows, uniform
+from .shadows import Shadows, Sweeps, uniform
 from .values import DIRECTIONAL, Appearance, Lens, Scene, ScenePart
 
 SAMPLES = 4  # per pixel, for antialiasing
 MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have no antialiasing
 MAX_LIGHTS = 8
-_MAX_SHADOW_DISTANCE = 30.0  # [m] from its caster
+_BLUR = 0.1  # [m] by which shadow maps may widen shadows
+_CORNERS = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3), axis=-1).reshape(8, 3)  # of a cube
+_DULL = 0.5 / 255.0  # specular light that cannot be seen
 _LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a vertex
 
 
@@ -38,8 +39,8 @@ class Renderer:
         self._placed = _PlacedPrograms(context)
         self._shadows: Shadows | None = None
         self._drawables: list[_Drawable] = []
-        # By whether they are textured, and whether there are moving shadows.
-        self._surfaces: dict[tuple[bool, bool], moderngl.Program] = {}
+        self._programs: dict[ShaderVariant, moderngl.Program] = {}
+        self._program_key: tuple[object, ...] = ()  # of the lights for which they were written
         self.set_scene(Scene(()))
 
     def add_mesh(self, key: str, triangles: NDArray[Any]) -> None:
@@ -79,23 +80,23 @@ class Renderer:
         ]
         self._static_bodies = sorted({part.body for part in scene.parts if part.still})
         self._stood: NDArray[Any] | None = None  # poses of still bodies in the last shadow map
-        self._write_surfaces()
+        key = tuple(light.type for light in self._lights), self._sun
+        if key != self._program_key:
+            for program in self._programs.values():
+                program.release()
+            self._programs, self._program_key = {}, key
 
-    def _write_surfaces(self) -> None:
-        """Compile the programs of surfaces for the scene's lights and shadows."""
-        for program in self._surfaces.values():
-            program.release()
-        textures = {bool(drawable.part.appearance.texture) for drawable in self._drawables}
-        types = [light.type for light in self._lights]
-        self._surfaces = {
-            (textured, moving): self._context.program(
-                vertex_shader=SURFACE_VERTEX,
-                fragment_shader=surface_fragment(types, self._sun, moving, textured))
-            for textured in textures for moving in (False, True)
-        }
-        for drawable in self._drawables:
-            textured = bool(drawable.part.appearance.texture)
-            drawable.set_surfaces([self._surfaces[textured, moving] for moving in (False, True)])
+    def _program(self, variant: ShaderVariant, frame: '_View') -> moderngl.Program:
+        """Return the program of surfaces, compiled when first used, set for a picture."""
+        program = self._programs.get(variant)
+        if program is None:
+            types = [light.type for light in self._lights]
+            program = self._programs[variant] = self._context.program(
+                *surface_shaders(types, self._sun, variant))
+        if variant not in frame.prepared:
+            frame.prepared.add(variant)
+            self._set_frame(program, frame)
+        return program
 
     def _draw_shadows(self, shadows: Shadows, frame: '_View', poses: NDArray[Any]) -> None:
         stands = poses[self._static_bodies]
@@ -104,12 +105,13 @@ class Renderer:
             shadows.forget()
         casters = [one for one in self._drawables if one.casts_shadow]
         low = min(one.low for one in self._drawables)
-        light = shadows.direction
-        shadows.draw(
-            frame.eye, frame.lens, [one for one in casters if one.part.still],
-            [one for one in casters
-             if not one.part.still and frame.may_see_shadow(one, light, low)])
-        frame.shadows_move = shadows.move
+        still, moving = (
+            [one for one in casters if one.part.still == is_still] for is_still in (True, False))
+        seen = [Sweeps(some, shadows.direction, low).seen(frame.planes)
+                for some in (still, moving)]
+        near = shadows.draw(frame.eye, frame.lens, still, seen[1])
+        frame.shadows = {name: Sweeps(some, shadows.direction, low)
+                         for name, some in (('still', seen[0]), ('moving', near)) if some}
 
     def _drop(self, kept: dict[str, Any], used: set[str]) -> None:
         for key in [key for key in kept if key not in used]:
@@ -132,9 +134,6 @@ class Renderer:
         target = self._target(lens, 'colour', samples)
         target.use()
         self._context.clear(*self._scene.background, 1.0, depth=1.0)
-        for (_, moving), program in self._surfaces.items():
-            if moving == frame.shadows_move:
-                self._set_frame(program, frame)
         self._draw_surfaces(frame)
         return target.read()
 
@@ -191,17 +190,38 @@ class Renderer:
         ordered = sorted(frame.visible, key=frame.distance)
         for drawable in ordered:
             if not drawable.transparent:
-                self._cull(drawable)
-                drawable.draw(frame.shadows_move)
+                self._draw_surface(drawable, frame)
         seen_through = [one for one in reversed(ordered) if one.transparent]
         if seen_through:
             context.enable(moderngl.BLEND)
             context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
             context.fbo.depth_mask = False
             for drawable in seen_through:
-                self._cull(drawable)
-                drawable.draw(frame.shadows_move)
+                self._draw_surface(drawable, frame)
             context.fbo.depth_mask = True
+
+    def _draw_surface(self, drawable: '_Drawable', frame: '_View') -> None:
+        """Draw a surface; reading a shadow map costs time, so only where shadows may fall."""
+        self._cull(drawable)
+        maps = tuple(name for name, sweeps in frame.shadows.items()
+                     if sweeps.reach(drawable.middle, drawable.radius))
+        plane = drawable.plane
+        if plane is not None:
+            # Rectangles with shadows first: depths keep what was drawn there.
+            size = frame.lens.width, frame.lens.height
+            while maps:
+                for rectangle in frame.shadows[maps[-1]].rectangles(plane, frame.view, size):
+                    self._context.scissor = rectangle
+                    self._draw_with(maps, drawable, frame)
+                maps = maps[:-1]
+            self._context.scissor = None
+        self._draw_with(maps, drawable, frame)
+
+    def _draw_with(self, maps: tuple[str, ...], drawable: '_Drawable', frame: '_View') -> None:
+        appearance = drawable.part.appearance
+        shine = max(appearance.specular) * sum(max(light.specular) for light in self._lights)
+        variant = ShaderVariant(bool(appearance.texture), shine > _DULL, maps)
+        drawable.draw(variant, self._program(variant, frame))
 
     def _cull(self, drawable: '_Drawable') -> None:
         if drawable.part.appearance.both_sides:
@@ -215,37 +235,25 @@ class _View:
     """View, lens and poses of one picture."""
 
     visible: list['_Drawable']
-    shadows_move = False
 
     def __init__(
         self, lens: Lens, eye: NDArray[Any], view: NDArray[Any], bodies: NDArray[Any]
     ) -> None:
         self.lens, self.eye, self.view, self.bodies = lens, eye, view, bodies
         rows = view[3] + np.array([view[0], -view[0], view[1], -view[1], view[2]])
-        self._planes = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
+        self.planes = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
+        self.shadows: dict[str, Sweeps] = {}  # by map
+        self.prepared: set[ShaderVariant] = set()  # whose programs are set for this picture
 
     def may_see(self, drawable: '_Drawable') -> bool:
         """Tell whether a drawable's bounding sphere reaches into the view frustum."""
-        return bool((self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
+        return bool((self.planes[:, :3] @ drawable.middle + self.planes[:, 3]
                      > -drawable.radius).all())
-
-    def may_see_shadow(self, drawable: '_Drawable', light: NDArray[Any], low: float) -> bool:
-        """Tell whether a drawable's shadow reaches into the view frustum.
-
-        Args:
-            light: unit vector of its direction.
-            low: height below which there is nothing [m].
-        """
-        fall = drawable.middle[2] + drawable.radius - low
-        length = _MAX_SHADOW_DISTANCE
-        if light[2] < 0.0:
-            length = min(length, fall / -light[2])
-        begin = self._planes[:, :3] @ drawable.middle + self._planes[:, 3]
-        end = begin + length * (self._planes[:, :3] @ light)
-        return bool((np.maximum(begin, end) > -drawable.radius).all())
 
     def distance(self, drawable: '_Drawable') -> float:
         """Return the distance of a drawable along the optical axis [m], for sorting."""
+        if drawable.plane is not None:
+            return np.inf  # behind all that stands on it
         way = drawable.middle - self.eye[:3, 3]
         return float(way @ self.eye[:3, 0]) - (0.0 if drawable.transparent else drawable.radius)
 
@@ -284,18 +292,8 @@ class _Drawable:
             for program in (placed.depth, placed.shadow))
         self._image = image
         self._context, self._buffer = context, buffer
-        self._surfaces: list[moderngl.VertexArray] = []
+        self._surfaces: dict[ShaderVariant, tuple[moderngl.VertexArray, Any]] = {}  # with uniforms
         self._normals = np.linalg.inv(self._matrix[:3, :3]).T  # transform of normals
-
-    def set_surfaces(self, programs: Sequence[moderngl.Program]) -> None:
-        """Set the programs: without and with moving shadows."""
-        for program in programs:
-            used = [name for name in _LAYOUT if name in program]
-            layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
-                              for name, size in _LAYOUT.items())
-            self._surfaces.append(
-                self._context.vertex_array(program, [(self._buffer, layout, *used)]))
-        self._uniforms = [_uniforms(program, self.part.appearance) for program in programs]
 
     def place(self, frame: _View) -> None:
         """Update the placement for a picture."""
@@ -305,19 +303,41 @@ class _Drawable:
         self.middle = placement[:3, :3] @ self._middle + placement[:3, 3]
         self.low = float(self.middle[2] - np.abs(placement[2, :3]) @ self._half)  # [m]
         self._placement = _gl(placement)
+        self._axes = placement[:3, :3]
 
-    def draw(self, shadows_move: bool) -> None:
+    @property
+    def plane(self) -> tuple[NDArray[Any], NDArray[Any]] | None:
+        """Return a point and the normal, if it is ground: flat, opaque and without a shadow."""
+        flat = int(np.argmin(self._half))
+        if self.part.casts_shadow or self.transparent or self._half[flat] > 0.0:
+            return None
+        return self.middle, self._axes[:, flat] / np.linalg.norm(self._axes[:, flat])
+
+    @property
+    def corners(self) -> NDArray[Any]:
+        """Return those of a box around it, with room for blurred shadows (8, 3) [m]."""
+        lengths = np.linalg.norm(self._axes, axis=0)
+        half = self._half + _BLUR / lengths
+        return np.asarray(self.middle + (_CORNERS * half) @ self._axes.T)
+
+    def draw(self, variant: ShaderVariant, program: moderngl.Program) -> None:
         """Draw the surface in its colours."""
-        surface = self._surfaces[shadows_move]
-        program = surface.program
+        if variant not in self._surfaces:
+            used = [name for name in _LAYOUT if name in program]
+            layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
+                              for name, size in _LAYOUT.items())
+            self._surfaces[variant] = (
+                self._context.vertex_array(program, [(self._buffer, layout, *used)]),
+                _uniforms(program, self.part.appearance))
+        array, uniforms = self._surfaces[variant]
         uniform(program, 'placement').write(self._placement)
         if 'normal_placement' in program:
             uniform(program, 'normal_placement').write(_gl(self._turn @ self._normals))
-        for place, value in self._uniforms[shadows_move]:
+        for place, value in uniforms:
             place.write(value)
         if self._image is not None:
             self._image.use(0)
-        surface.render()
+        array.render()
 
     def draw_depth(self) -> None:
         """Draw its depth."""
@@ -331,7 +351,7 @@ class _Drawable:
 
     def release(self) -> None:
         """Free its resources on the GPU."""
-        for array in (*self._surfaces, self._depth, self._shadow):
+        for array in (*(array for array, _ in self._surfaces.values()), self._depth, self._shadow):
             array.release()
 
 

@@ -6,25 +6,42 @@ The contribution of a light is attenuated by distance and, for the sun, by shado
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from .values import DIRECTIONAL, POINT, SPOT
 
-SURFACE_VERTEX = """
+_SURFACE_VERTEX = """
 #version 330
 uniform mat4 placement;
 uniform mat3 normal_placement;
 uniform mat4 view;
+uniform vec3 light_direction[LIGHTS];
+uniform mat4 still_view;
+uniform float still_texel;              // its width in the world
+uniform mat4 moving_view;
+uniform float moving_texel;
 in vec3 position;
 in vec3 normal;
 in vec2 texcoord;
 out vec3 world;
 out vec3 world_normal;
 out vec2 uv;
+out vec3 still_point;
+out vec3 moving_point;
+
+vec3 map_point(mat4 map_view, float texel) {
+    // Off the surface, the more so the more it is slanted, or it would be in its own shadow.
+    vec3 turned = world_normal / max(length(world_normal), 1e-9);
+    float slant = 1.0 + dot(turned, light_direction[SUN]);
+    return 0.5 * (map_view * vec4(world + turned * texel * (0.7 + 2.0 * slant), 1.0)).xyz + 0.5;
+}
+
 void main() {
     vec4 placed = placement * vec4(position, 1.0);
     world = placed.xyz;
     world_normal = normal_placement * normal;
     uv = texcoord;
+    POINTS
     gl_Position = view * placed;
 }
 """
@@ -45,32 +62,23 @@ uniform vec3 light_specular[LIGHTS];
 uniform vec4 light_attenuation[LIGHTS]; // constant, linear, quadratic; range
 uniform vec3 light_spot[LIGHTS];        // cosine of inner and outer half cone; falloff
 uniform sampler2DShadow still_shadows;
-uniform mat4 still_view;
-uniform float still_texel;              // its width in the world
 uniform sampler2DShadow moving_shadows;
-uniform mat4 moving_view;
-uniform float moving_texel;
 uniform sampler2D image;
 in vec3 world;
 in vec3 world_normal;
 in vec2 uv;
+in vec3 still_point;
+in vec3 moving_point;
 out vec4 colour;
 vec3 normal;
 vec3 towards_eye;
 vec3 reflected;
 vec3 shine;
 
-float share_of_light(sampler2DShadow map, mat4 map_view, float texel, float slant) {
-    // Off the surface, the more so the more it is slanted, or it would be in its own shadow.
-    vec4 off = vec4(world + normal * texel * (0.7 + 2.0 * slant), 1.0);
-    vec3 point = 0.5 * (map_view * off).xyz + 0.5;
+float share_of_light(sampler2DShadow map, vec3 point) {
     float share = texture(map, point);  // of the four texels around the point
-    return any(greaterThan(abs(point - 0.5), vec3(0.5))) ? 1.0 : share;
-}
-
-float sunshine(vec3 towards_light) {
-    float slant = 1.0 - dot(normal, towards_light);
-    return STILL_SHADOWS * MOVING_SHADOWS;
+    vec3 off = abs(point - 0.5);
+    return max(max(off.x, off.y), off.z) > 0.5 ? 1.0 : share;
 }
 
 float strength_at(float distance, vec4 a) {
@@ -86,9 +94,7 @@ void shine_on(int i, vec3 towards_light, float strength) {
     float facing = dot(normal, towards_light);
     float share = facing > 0.0 ? strength : 0.0;
     reflected += share * facing * light_diffuse[i] * diffuse.rgb;
-    float glance = max(dot(normal, normalize(towards_light + towards_eye)), 0.0);
-    shine += share * (specular.a > 0.0 ? pow(glance, specular.a) : 1.0)
-        * light_specular[i] * specular.rgb;
+    GLOSS
 }
 
 void main() {
@@ -119,30 +125,46 @@ _SHINE = {
 }
 
 
-def surface_fragment(types: Sequence[int], sun: int | None, moves: bool, textured: bool) -> str:
-    """Return the shader of surfaces.
+_GLOSS = """
+    float glance = max(dot(normal, normalize(towards_light + towards_eye)), 0.0);
+    shine += share * (specular.a > 0.0 ? pow(glance, specular.a) : 1.0)
+        * light_specular[i] * specular.rgb;"""
+
+
+class ShaderVariant(NamedTuple):
+    """What a program of surfaces computes."""
+
+    textured: bool
+    glossy: bool
+    maps: tuple[str, ...]  # shadow maps that are read: 'still', 'moving'
+
+
+def surface_shaders(
+    types: Sequence[int], sun: int | None, variant: ShaderVariant
+) -> tuple[str, str]:
+    """Return the vertex and fragment shaders of surfaces.
 
     Args:
         types: of the lights.
-        sun: index of the light that casts shadows.
-        moves: whether there are moving shadows.
-        textured: whether surfaces have images.
+        sun: index of the light that casts shadows; without one `variant` has no maps.
+        variant: what they compute.
     """
-    shine = ''.join(
-        _SHINE[kind].format(
-            i=i, sunshine=f'sunshine(-light_direction[{i}])' if i == sun else '1.0')
-        for i, kind in enumerate(types))
-    share = 'share_of_light({0}_shadows, {0}_view, {0}_texel, slant)'
+    sunshine = ' * '.join(
+        f'share_of_light({name}_shadows, {name}_point)' for name in variant.maps) or '1.0'
     words = {
-        'STILL_SHADOWS': share.format('still') if sun is not None else '1.0',
-        'MOVING_SHADOWS': share.format('moving') if sun is not None and moves else '1.0',
-        'SHINE': shine, 'IMAGE': 'texture(image, uv)' if textured else '1.0',
-        'LIGHTS': str(max(1, len(types))),
+        'SHINE': ''.join(
+            _SHINE[kind].format(i=i, sunshine=sunshine if i == sun else '1.0')
+            for i, kind in enumerate(types)),
+        'POINTS': ' '.join(
+            f'{name}_point = map_point({name}_view, {name}_texel);' for name in variant.maps),
+        'GLOSS': _GLOSS if variant.glossy else '',
+        'IMAGE': 'texture(image, uv)' if variant.textured else '1.0',
+        'LIGHTS': str(max(1, len(types))), 'SUN': str(sun or 0),
     }
-    text = _SURFACE_FRAGMENT
+    vertex, fragment = _SURFACE_VERTEX, _SURFACE_FRAGMENT
     for word, meaning in words.items():
-        text = text.replace(word, meaning)
-    return text
+        vertex, fragment = vertex.replace(word, meaning), fragment.replace(word, meaning)
+    return vertex, fragment
 
 
 DEPTH_FRAGMENT = """

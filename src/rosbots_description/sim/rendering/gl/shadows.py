@@ -16,10 +16,16 @@ from numpy.typing import NDArray
 from .cameras import frustum_sphere, light_axes, shadow_view
 from .values import Lens
 
-STILL_SIZE, MOVING_SIZE = 2048, 1024  # texels along an edge
+STILL_SIZE = 2048  # texels along an edge
+MOVING_SIZES = 64, 128, 256, 512, 1024
+_FINE = 0.003  # [m] texel of a map of moving bodies; smaller ones are not worth their time
 _ROOM = 1.25  # size of the map of still bodies, relative to the view
 _CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # relative edge of the cells that share a map
 _MAX_MAPS = 4  # of still bodies, for cameras of different views
+_MAX_SHADOW_DISTANCE = 30.0  # [m] from its caster
+_CLOSE = 0.01  # [m] along the optical axis
+_GRAZING = 1e-3  # sine of an angle between light and plane
+_MOST_RECTANGLES = 16
 
 
 def uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
@@ -33,8 +39,74 @@ class Caster(Protocol):
     middle: NDArray[Any]
     radius: float
 
+    @property
+    def corners(self) -> NDArray[Any]:
+        """Return those of a box around it and its blurred edges (8, 3) [m]."""
+
     def draw_shadow(self) -> None:
         """Draw it into the shadow map."""
+
+
+class Sweeps:
+    """Where the shadows of casters fall: their bounding spheres, swept along the light."""
+
+    def __init__(self, casters: Sequence[Caster], light: NDArray[Any], low: float) -> None:
+        """Take casters, the light's direction, and the height below which there is nothing [m]."""
+        self.casters = casters
+        self._middles = np.array([one.middle for one in casters]).reshape(-1, 3)
+        self._radii = np.array([one.radius for one in casters])
+        lengths = np.full(len(casters), _MAX_SHADOW_DISTANCE)
+        if light[2] < 0.0:
+            lengths = np.minimum(lengths, (self._middles[:, 2] + self._radii - low) / -light[2])
+        self._lengths, self._light = lengths, light
+
+    def seen(self, planes: NDArray[Any]) -> list[Caster]:
+        """Return the casters whose shadows reach into a view frustum of planes (n, 4)."""
+        begin = self._middles @ planes[:, :3].T + planes[:, 3]
+        end = begin + self._lengths[:, None] * (planes[:, :3] @ self._light)
+        inside = (np.maximum(begin, end) > -self._radii[:, None]).all(axis=1)
+        return [one for one, is_seen in zip(self.casters, inside, strict=True) if is_seen]
+
+    def reach(self, middle: NDArray[Any], radius: float) -> bool:
+        """Tell whether a shadow may fall into a sphere."""
+        way = middle - self._middles
+        along = np.clip(way @ self._light, 0.0, self._lengths)
+        gaps = np.linalg.norm(way - along[:, None] * self._light, axis=1)
+        return bool((gaps < self._radii + radius).any())
+
+    def rectangles(
+        self, plane: tuple[NDArray[Any], NDArray[Any]], view: NDArray[Any], size: tuple[int, int]
+    ) -> list[tuple[int, int, int, int]]:
+        """Return parts of a picture that hold all shadows on a plane: x, y, width, height [pixels].
+
+        Args:
+            plane: a point and the normal.
+            view: matrix (4, 4) from the world to the picture.
+            size: of the picture.
+        """
+        point, normal = plane
+        slant = float(self._light @ normal)
+        if abs(slant) < _GRAZING or len(self.casters) > _MOST_RECTANGLES:
+            return [(0, 0, *size)]
+        found = []
+        for corners in (one.corners for one in self.casters):
+            way = ((point - corners) @ normal) / slant
+            shadow = (corners + way[:, None] * self._light) @ view[:, :3].T + view[:, 3]
+            # Where an edge from one corner to another goes behind the camera, it ends there.
+            depths = shadow[:, 3]
+            before = depths > _CLOSE
+            begin, end = np.nonzero(before[:, None] & ~before)
+            share = (depths[begin] - _CLOSE) / (depths[begin] - depths[end])
+            seen = np.concatenate([
+                shadow[before],
+                shadow[begin] + share[:, None] * (shadow[end] - shadow[begin])])
+            if len(seen):
+                pixels = (seen[:, :2] / seen[:, 3:] + 1.0) / 2.0 * size
+                low = np.clip(np.floor(pixels.min(axis=0)), 0, size).astype(int)
+                high = np.clip(np.ceil(pixels.max(axis=0)), 0, size).astype(int)
+                if (high > low).all():
+                    found.append((*low.tolist(), *(high - low).tolist()))
+        return found
 
 
 class Shadows:
@@ -47,14 +119,13 @@ class Shadows:
         self._program = program
         self.direction = direction
         self._axes = light_axes(direction)
-        self._moving = _Map(context, MOVING_SIZE)
+        self._moving: dict[int, _Map] = {}  # by size
         self._still: dict[float, _Map] = {}  # by the radius of the view's bounding sphere
-        self.move = False  # whether a moving shadow may be visible
-        self._used: tuple[_Map, _Map] = self._moving, self._moving
+        self._used: dict[str, _Map] = {}
 
     def release(self) -> None:
         """Free the maps."""
-        for one in (self._moving, *self._still.values()):
+        for one in (*self._moving.values(), *self._still.values()):
             one.release()
 
     def forget(self) -> None:
@@ -64,8 +135,8 @@ class Shadows:
 
     def draw(
         self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
-    ) -> None:
-        """Update the maps for a camera's picture."""
+    ) -> list[Caster]:
+        """Update the maps for a camera's picture; return the moving casters that matter to it."""
         middle, radius = frustum_sphere(eye, lens)
         if radius not in self._still:
             if len(self._still) == _MAX_MAPS:
@@ -79,14 +150,20 @@ class Shadows:
                 self._program, self._axes, cell * _CELL * radius, radius * _ROOM, still)
         near = [one for one in moving
                 if np.linalg.norm(one.middle - middle) < radius + one.radius]
-        self.move = bool(near)
+        self._used = {'still': still_map}
         if near:
-            self._moving.draw(self._program, self._axes, *_bounding_sphere(near), near)
-        self._used = still_map, self._moving
+            centre, reach = _bounding_sphere(near)
+            size = next((size for size in MOVING_SIZES if 2.0 * reach < size * _FINE),
+                        MOVING_SIZES[-1])
+            if size not in self._moving:
+                self._moving[size] = _Map(self._context, size)
+            self._moving[size].draw(self._program, self._axes, centre, reach, near)
+            self._used['moving'] = self._moving[size]
+        return near
 
     def use(self, program: moderngl.Program) -> None:
         """Bind the maps to a program."""
-        for unit, (name, one) in enumerate(zip(('still', 'moving'), self._used, strict=True), 1):
+        for unit, (name, one) in enumerate(self._used.items(), 1):
             if f'{name}_shadows' in program:
                 one.texture.use(unit)
                 program[f'{name}_shadows'] = unit
