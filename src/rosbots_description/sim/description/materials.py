@@ -111,7 +111,7 @@ def gazebo_material(script: str) -> Material | None:
 
 
 def material_of_colours(
-    script: str = '',
+    base: Material,
     ambient: Colour | None = None,
     diffuse: Colour | None = None,
     specular: Colour | None = None,
@@ -119,12 +119,11 @@ def material_of_colours(
 ) -> Material:
     """Return a script's material with the colours that a description gives instead of its own.
 
-    Without a known script it is white where no colour is given, as in Gazebo.
+    Gazebo shows `Material()`, white, where there is neither.
     """
-    base = gazebo_material(script) or Material(script=script)
     own = base.reflection
     shown = diffuse or ambient
-    return Material(shown or base.rgba, script, Reflection(
+    return Material(shown or base.rgba, base.script, Reflection(
         own.ambient if ambient is None else ambient[:3],
         own.diffuse if diffuse is None else diffuse[:3],
         own.specular if specular is None else specular[:3],
@@ -132,4 +131,4 @@ def material_of_colours(
         own.emissive if emissive is None else emissive[:3],
         own.lit,
         own.both_sides,
-    ))
+    ), base.image)

@@ -116,12 +116,14 @@ class Material:
     """How a visual looks.
 
     Cameras see the reflection and the alpha of `rgba` (red, green, blue, alpha in 0..1); windows
-    that know no reflection show `rgba`. `script` is Gazebo's name for it.
+    that know no reflection show `rgba`. `script` is Gazebo's name for it, `image` the path of a
+    texture, which only cameras see.
     """
 
     rgba: Colour = (0.7, 0.7, 0.7, 1.0)
     script: str = ''
     reflection: Reflection = Reflection()
+    image: str = ''
 
     @classmethod
     def plain(cls, rgba: Colour) -> 'Material':

@@ -90,7 +90,7 @@ class SceneMirror:
 def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Appearance]]:
     """Yield the surfaces of a visual: key and triangles, size, look."""
     material = visual.material or Material()
-    appearance = _appearance(material.reflection, material.rgba[3])
+    appearance = _appearance(material.reflection, material.rgba[3])._replace(texture=material.image)
     match visual.geometry:
         case Box(size):
             yield 'box', unit_box, size, appearance

@@ -554,3 +554,28 @@ def test_texture_has_the_right_orientation(tmp_path):
     # The side that faces away from the sun has the scene's ambient light, 0.4 of 255; there is some
     # of the pixels beside in it.
     assert seen[upper, right, 0] == pytest.approx(102, abs=20)
+
+
+def test_an_image_of_a_script_lies_on_the_ground_with_its_top_along_y(tmp_path):
+    image = np.zeros((2, 2, 3), 'u1')
+    image[0, 0], image[0, 1], image[1, 0] = (255, 0, 0), (0, 255, 0), (0, 0, 255)  # top row first
+    Image.fromarray(image).save(tmp_path / 'track.png')
+    (tmp_path / 'track.material').write_text(
+        'material track\n{\n technique\n {\n  pass\n  {\n   texture_unit\n   {\n    '
+        'texture track.png\n   }\n  }\n }\n}\n')
+    with closing(World.empty()) as world:
+        world.spawn(
+            '<sdf version="1.6"><model name="t"><static>1</static><pose>0 0 .01 0 0 0</pose><link '
+            'name="l"><visual name="v"><geometry><plane><normal>0 0 1</normal><size>2 2</size>'
+            f'</plane></geometry><material><script><uri>file://{tmp_path}</uri><name>track</name>'
+            '</script></material></visual></link></model></sdf>', 't')
+        eye = world.spawn(
+            '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 3 0 1.5708 0</pose>'
+            '<link name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>',
+            'm')
+        seen = eye.sensors[0].read().pixels.astype(int)
+    # The picture's top is +x and its left is +y.
+    x_left_y_top, x_right_y_top, x_left_y_bottom = seen[160, 120], seen[80, 120], seen[160, 200]
+    assert [int(one.argmax()) for one in (x_left_y_top, x_right_y_top, x_left_y_bottom)] == [
+        0, 1, 2]
+    assert seen[80, 200].max() < 60

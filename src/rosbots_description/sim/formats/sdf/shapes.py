@@ -22,6 +22,7 @@ from ...description import (
 from ...meshes import check_mesh, submesh_file
 from ..xml import ENDLESS_FRICTION, is_endless, scalar, tag_of
 from .document import SdfDocument
+from .material_scripts import script_material
 from .values import (
     boolean_of,
     colour_of,
@@ -213,11 +214,13 @@ def _material(document: SdfDocument, visual: etree._Element) -> Material | None:
     colours = {tag: colour_of(element, tag) for tag in _COLOURS}
     if not script and not any(colours.values()):
         return None
-    if gazebo_material(script) is None and not (colours['diffuse'] or colours['ambient']):
+    base = gazebo_material(script) or script_material(document, element, script)
+    if base is None and not (colours['diffuse'] or colours['ambient']):
         document.notes.warn(
             element,
-            f"material '{script}' is not one of Gazebo's plain ones; grey is shown; add <diffuse>",
+            f"material '{script}' is neither one of Gazebo's nor in a script that <uri> names; "
+            'grey is shown; add <diffuse>',
         )
-    material = material_of_colours(script, **colours)
+    material = material_of_colours(base or Material(script=script), **colours)
     opacity = min(1.0, max(0.0, 1.0 - number_of(visual, 'transparency', 0.0)))
     return replace(material, rgba=(*material.rgba[:3], material.rgba[3] * opacity))

@@ -357,8 +357,7 @@ def _read_visual(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
             red, green, blue, alpha = scalar_numbers(colour, 4)
             colours[tag] = (red, green, blue, alpha)
     if colours:
-        link.material = material_of_colours(
-            link.material.script if link.material else '', **colours)
+        link.material = material_of_colours(link.material or Material(), **colours)
 
 
 _JOINT_TAGS = {*_SOLVER_TAGS, *_SPRING_TAGS, 'disableFixedJointLumping', 'preserveFixedJoint'}
