@@ -176,6 +176,29 @@ def test_simulation_passes_its_arguments_to_the_simulator(load):
     assert config.params['/use_sim_time'].value is False
 
 
+EXAMPLES = ['go_to_goal', 'line_follower', 'map_while_driving', 'wander']
+
+
+@pytest.mark.parametrize('name', EXAMPLES)
+def test_an_example_node_gets_the_parameters_that_it_reads(load, name):
+    script = (ROOT / 'scripts' / f'{name}.py').read_text(encoding='utf-8')
+    config = load(f'{name}.launch', 'simulation:=false')
+    given = {param.removeprefix(f'/{name}/'): value.value
+             for param, value in config.params.items() if param.startswith(f'/{name}/')}
+    assert given == {param: yaml.safe_load(default) for param, default in re.findall(
+        r"get_param\('~(\w+)', ([^)]*)\)", script)}
+    documented = script.split('Parameters:')[1].split('"""')[0]
+    assert set(re.findall(r'~(\w+)', documented)) == set(given)
+
+
+@pytest.mark.parametrize('name', EXAMPLES)
+def test_an_example_runs_beside_a_simulator_and_drives_the_robot(load, name):
+    example = load(f'{name}.launch', 'simulation:=false', 'rviz:=false')
+    drivers = [node for node in example.nodes if node.name != 'map_while_driving']
+    assert {node.package for node in example.nodes} == {'rosbots_description'}
+    assert [tuple(node.remap_args[0]) for node in drivers] == [('cmd_vel', '/part2_cmr/cmd_vel')]
+
+
 @pytest.mark.parametrize('file', ['empty_world', 'elevator_world'])
 @pytest.mark.parametrize(('world', 'words'), [
     ("/home/me/Mein Roboter ä/o'clock #1.world", ["/home/me/Mein Roboter ä/o'clock #1.world"]),
