@@ -3,7 +3,7 @@
 
 The windows are opened on a virtual display (Xvfb), which stores its pixels in a file; the
 demo draws its own two. The default is all of them, into doc/images; `speed.png` is drawn by
-`./rosbots bench`.
+`./rosbots bench`, and `map.png` is RViz after a minute of map_while_driving.launch.
 """
 
 import os
