@@ -4,6 +4,7 @@ As in Gazebo, a point lies midway between its neighbouring rays, half a ray besi
 direction, and a ray without a hit gives a point at the maximum range.
 """
 
+import logging
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +29,9 @@ class BlockLaserPlugin(SensorPlugin[Scan]):
 
     sensor_class = RaySensor
     sensor: RaySensor
-    prefix = 'Block laser plugin (ns = {}) '
+    prefix = 'Block laser plugin '
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags; two of them are ignored, as upstream."""

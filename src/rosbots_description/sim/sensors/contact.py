@@ -123,7 +123,9 @@ class BumperPlugin(SensorPlugin[tuple[ContactPair, ...]]):
     """Publishes contacts, empty readings included. Output: `contacts`."""
 
     sensor_class = ContactSensor
-    prefix = 'Bumper plugin (ns = {}) '
+    prefix = 'bumper plugin '
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags; <updateRate> is ignored, as upstream."""

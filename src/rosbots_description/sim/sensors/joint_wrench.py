@@ -4,6 +4,7 @@ It publishes the wrench of the child on the parent, in the axes of the child and
 origin. Gazebo needs <provideFeedback>; here a joint is measured while the output has readers.
 """
 
+import logging
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -27,6 +28,7 @@ class JointWrenchPlugin(PeriodicPlugin):
     prefix = 'ft_sensor plugin '
     strictly_after = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
     _measured: object = None  # the body whose joint the engine measures
 
     def load(self) -> None:

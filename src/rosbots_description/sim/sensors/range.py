@@ -1,5 +1,6 @@
 """Range finders: the plugin libgazebo_ros_range.so of gazebo_ros_pkgs 2.9.2."""
 
+import logging
 from typing import NamedTuple
 
 from ..plugin_registry import register_in_sensor
@@ -24,7 +25,9 @@ class RangePlugin(SensorPlugin[Scan]):
 
     sensor_class = RaySensor
     sensor: RaySensor
-    prefix = 'range plugin (ns = {}) '
+    prefix = 'Range plugin '
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags."""

@@ -1,5 +1,6 @@
 """The plugins of the recorded robots have the topics and services that they had in Gazebo."""
 
+import logging
 from contextlib import closing
 from types import SimpleNamespace
 
@@ -186,3 +187,22 @@ def test_two_robots_of_the_same_names_share_topics_and_the_first_has_the_service
     world.run(100)
     sent = len(wire.publishers[topic].sent)
     assert sent == 2 * len({message.header.stamp for message in wire.publishers[topic].sent}) > 0
+
+
+@pytest.mark.parametrize(('robot', 'removed', 'message'), [
+    ('bumper', '<frameName>base_link</frameName>', 'bumper plugin missing <frameName>, defaults to '
+     'world'),
+    ('range', '<frameName>laser_link</frameName>', 'Range plugin missing <frameName>, defaults to '
+     '/world'),
+    ('laser_block', '<frameName>laser_link</frameName>', 'Block laser plugin missing <frameName>, '
+     'defaults to /world'),
+    ('arm_ft', '<updateRate>100.0</updateRate>', 'ft_sensor plugin missing <updateRate>, defaults '
+     'to 0.0'),
+])
+def test_defaults_are_logged_as_information_not_as_warnings(
+        world, wire, caplog, robot, removed, message):
+    caplog.set_level(logging.INFO, 'rosbots_description.sim.plugins.parameters')
+    spawn(world, wire, robot, '/', removed)
+    levels = {record.getMessage(): record.levelname for record in caplog.records}
+    assert levels[message] == 'INFO'
+    assert 'WARNING' not in levels.values()
