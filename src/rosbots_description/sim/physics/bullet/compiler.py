@@ -21,12 +21,7 @@ from .friction_axes import friction_scales
 from .friction_pairs import Side
 from .friction_rolling import rolling_arm
 from .generated_urdf import MeshFile, Tree, describe_tree, kinematic_trees
-from .shape_groups import (
-    Groups,
-    surface_groups,
-    with_occluded_first,
-    with_split_edges,
-)
+from .shape_groups import Groups, surface_groups, with_split_edges
 from .size_limits import MAX_JOINTS, excess_of_joints, excess_of_parts
 
 _MASSLESS = Inertial(0.0)
@@ -114,26 +109,13 @@ def _require(spec: ModelSpec, excess: str | None) -> None:
         raise ModelError(f"{spec.location or f'model {spec.name!r}'}: {excess}")
 
 
-def grouped(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> tuple[list[Groups], bool]:
-    """Return the groups of a tree's links, with occluded shapes of the root in a first group.
-
-    The second value tells whether that group exists. Slow results are cached.
-    """
-    occluded_first = None
-    if len(tree.links) + sum(len(of_link) - 1 for of_link in groups) <= MAX_JOINTS:
-        occluded_first = with_occluded_first(tree, groups[0], mesh_file)
-    if occluded_first:
-        inner, *outer = occluded_first
-        return [[inner, *with_split_edges(tree, outer)], *groups[1:]], True
-    return [with_split_edges(tree, groups[0]), *groups[1:]], False
-
-
 def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> CompiledTree:
     inertials = [link.inertial or _MASSLESS for link in tree.links]
     moments, axes = zip(*map(principal_axes, inertials), strict=True)
     coms = tuple(Pose(inertial.pose.position, orientation)
                  for inertial, orientation in zip(inertials, axes, strict=True))
-    found = contact_parts(tree, *grouped(tree, groups, mesh_file), MAX_JOINTS + 1)
+    split = [with_split_edges(tree, groups[0]), *groups[1:]]
+    found = contact_parts(tree, split, MAX_JOINTS + 1)
     # Each part of a static tree is a body of its own.
     bodies = [[[part]] for part in (*found[0], *slab(tree))] if tree.is_static else [found]
     return CompiledTree(tree, moments, coms, tuple(

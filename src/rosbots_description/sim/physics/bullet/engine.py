@@ -31,6 +31,7 @@ _MAX_BATCH = 20  # steps in one call, which is faster than a call for each
 # Convergence threshold of the solver: squared change of velocity [m^2/s^2] in an iteration. With
 # PyBullet's default, 1e-7, a robot parked on a slope creeps at 0.01 mm/s.
 _CONVERGED = 1e-8
+_TOUCHES = 1e-6  # [m] depth up to which models touch but do not overlap
 # URDF and meshes of removed bodies [bytes], some 45 robots of the article. PyBullet leaks two or
 # three times as much. A rebuild of the engine takes 5 ms for each robot in the world.
 MAX_LEAKED = 1_500_000
@@ -222,10 +223,11 @@ class Engine(BodyStates):
 
     def overlap(self, one: Body, other: Body) -> float:
         """Return the penetration depth of two models [m]; 0 if they do not overlap."""
-        return max((
+        depth = max((
             -point[8] for first in one.bodies for second in other.bodies
             for point in pybullet.getClosestPoints(first, second, 0.0, physicsClientId=self._client)
         ), default=0.0)
+        return depth if depth > _TOUCHES else 0.0
 
     def can_slip(self, body: Body, link: str, axis: Vector) -> bool:
         """Tell whether a link can slip along a unit vector of its frame."""

@@ -23,20 +23,18 @@ class Kind(IntEnum):
     """What a surface belongs to."""
 
     MOVING = 0
-    OCCLUDED = 1  # occluded by other shapes, out of reach of any plane
-    BOXES = 2  # a moving body that consists of boxes
-    STATIC = 3
-    PLANE = 4
-    SLAB = 5  # replaces a plane in contacts with boxes
+    ON_SLAB = 1  # moving, meets slabs instead of planes
+    STATIC = 2
+    PLANE = 3
+    SLAB = 4
 
 
 _MEETS = {
-    Kind.MOVING: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES, Kind.STATIC, Kind.PLANE),
-    Kind.OCCLUDED: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES, Kind.STATIC),
-    Kind.BOXES: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES, Kind.STATIC, Kind.SLAB),
-    Kind.STATIC: (Kind.MOVING, Kind.OCCLUDED, Kind.BOXES),
+    Kind.MOVING: (Kind.MOVING, Kind.ON_SLAB, Kind.STATIC, Kind.PLANE),
+    Kind.ON_SLAB: (Kind.MOVING, Kind.ON_SLAB, Kind.STATIC, Kind.SLAB),
+    Kind.STATIC: (Kind.MOVING, Kind.ON_SLAB),
     Kind.PLANE: (Kind.MOVING,),
-    Kind.SLAB: (Kind.BOXES,),
+    Kind.SLAB: (Kind.ON_SLAB,),
 }
 
 

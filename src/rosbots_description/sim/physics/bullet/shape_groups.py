@@ -6,16 +6,13 @@ A link of PyBullet has a single friction coefficient and a single set of frictio
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import compress
-from operator import not_
 from typing import Any
 
 from ...core import ALONG, UP, Pose, Vector, compose, conjugate, dot, rotate
 from ...description import FIXED, REVOLUTE, Collision, Cylinder, JointSpec, LinkSpec, Plane
 from .contact_stiffness import restitution
 from .friction_axes import directions
-from .generated_urdf import MeshFile, Tree
-from .occluded_shapes import occluded_shapes
+from .generated_urdf import Tree
 from .split_edge_contacts import split_edges
 
 Groups = list[tuple[Collision, ...]]  # of a link: on itself, then on its auxiliary links
@@ -28,8 +25,6 @@ _CREST = 0.002
 # that from the floor, PyBullet would generate needless contacts.
 _CROWN = 0.022
 
-# A shape above a plane costs 1.7 % of a step of the article's robot, an auxiliary link 5 %.
-_WORTH_A_LINK = 6
 _LEVEL = 5e-6  # [m] height difference of a wheel's ends below which both touch a floor
 
 
@@ -40,24 +35,9 @@ def surface_groups(tree: Tree, i: int) -> Groups:
     return _by_surface(shapes) or [()]
 
 
-def with_occluded_first(tree: Tree, groups: Groups, mesh_file: MeshFile) -> Groups | None:
-    """Return a robot root's groups with its occluded shapes first, which skip tests with planes.
-
-    The other shapes are on auxiliary links. None if that would not save time.
-    """
-    if not _drives(tree):
-        return None
-    first, *others = groups
-    occluded = occluded_shapes(first, mesh_file) if first else ()
-    if sum(occluded) < _WORTH_A_LINK:
-        return None
-    halves = [tuple(compress(first, half)) for half in (occluded, map(not_, occluded))]
-    return [*halves, *others]
-
-
 def with_split_edges(tree: Tree, groups: Groups) -> Groups:
     """Return the groups of a root; if it carries wheels, with split edge contacts."""
-    axle = _axle(tree) if _drives(tree) else None
+    axle = _axle(tree) if is_mobile(tree) else None
     if axle is None:
         return groups
     up = rotate(conjugate(tree.links[0].pose.orientation), UP)
@@ -68,6 +48,13 @@ def is_floor(tree: Tree) -> bool:
     """Tell whether a tree is static and consists of planes only."""
     shapes = [collision.geometry for collision in tree.links[0].collisions]
     return tree.is_static and bool(shapes) and all(isinstance(shape, Plane) for shape in shapes)
+
+
+def is_mobile(tree: Tree) -> bool:
+    """Tell whether a tree can be a mobile robot: its root is free and has movable joints."""
+    if tree.fixed_base or any(link.self_collide for link in tree.links):
+        return False
+    return any(joint is not None and joint.type != FIXED for joint in tree.joints)
 
 
 def crowned(
@@ -114,13 +101,6 @@ def touching_end(wheel: Cylinder, axis: Vector) -> float:
     if abs(tilt) * wheel.length <= _LEVEL:
         return 0.0
     return -math.copysign(wheel.length / 2.0, tilt)
-
-
-def _drives(tree: Tree) -> bool:
-    """Tell whether a tree can be a mobile robot: its root is free and has movable joints."""
-    if tree.fixed_base or any(link.self_collide for link in tree.links):
-        return False
-    return any(joint is not None and joint.type != FIXED for joint in tree.joints)
 
 
 def _axle(tree: Tree) -> Vector | None:

@@ -35,6 +35,7 @@ from rosbots_description.sim.core.transforms import (
     yaw_of,
 )
 from rosbots_description.sim.description.model_spec import Cylinder, Element
+from rosbots_description.sim.physics.bullet.body import Place
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.runtime.outputs import FrameTransform, JointStates, Odometry
 
@@ -274,19 +275,19 @@ class Touch(NamedTuple):
 def touches(world, model):
     """Yield all contacts of a robot with a static floor."""
     client = world.engine._client
-    for link, places in model.body.surfaces.items():
-        pose, (linear, angular) = world.engine.link_state(model.body, link)
-        origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # at contact
-        for place in places:
-            for point in pybullet.getContactPoints(
-                place.body, linkIndexA=place.link, physicsClientId=client
-            ):
-                sides = place, (point[2], point[4])
-                mu = math.prod(pybullet.getDynamicsInfo(*side, client)[1] for side in sides)
-                slip = add(linear, cross(angular, subtract(point[5], origin)))
-                one, two = point[10], point[12]
-                yield Touch(mu * point[9], max(abs(one), abs(two)),
-                            one * dot(point[11], slip) + two * dot(point[13], slip))
+    owners = {place: link for link, places in model.body.surfaces.items() for place in places}
+    # Queried for one body, PyBullet would swap the sides of a point, but not friction.
+    for point in pybullet.getContactPoints(physicsClientId=client):
+        sides = [Place(point[1], point[3]), Place(point[2], point[4])]
+        own, at, sign = (sides[0], point[5], 1.0) if sides[0] in owners else (
+            sides[1], point[6], -1.0)
+        pose, (linear, angular) = world.engine.link_state(model.body, owners[own])
+        origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # when it touched
+        mu = math.prod(pybullet.getDynamicsInfo(*side, client)[1] for side in sides)
+        slip = add(linear, cross(angular, subtract(at, origin)))
+        one, two = sign * point[10], sign * point[12]
+        yield Touch(mu * point[9], max(abs(one), abs(two)),
+                    one * dot(point[11], slip) + two * dot(point[13], slip))
 
 
 @pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])

@@ -16,11 +16,9 @@ from rosbots_description.sim.description.model_spec import (
     LinkSpec,
     Mesh,
     Sphere,
-    Surface,
 )
-from rosbots_description.sim.physics.bullet.compiler import grouped
 from rosbots_description.sim.physics.bullet.generated_urdf import Tree
-from rosbots_description.sim.physics.bullet.shape_groups import surface_groups
+from rosbots_description.sim.physics.bullet.shape_groups import surface_groups, with_split_edges
 from rosbots_description.sim.physics.bullet.split_edge_contacts import split_edges
 
 AXLE, UP, DOWN = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
@@ -76,33 +74,14 @@ def kinds(group):
     return [type(shape.geometry) for shape in group]
 
 
-def no_file(_mesh):
-    raise AssertionError
-
-
-def groups_of(tree):
-    return [surface_groups(tree, i) for i in range(len(tree.links))]
+def body_groups(tree):
+    return with_split_edges(tree, surface_groups(tree, 0))
 
 
 def test_body_with_a_wheel_has_split_edge_contacts():
     tree = Tree([BODY, WHEEL], [None, JOINT], fixed_base=False)
-    (body, wheel), occluded_first = grouped(tree, groups_of(tree), no_file)
-    assert not occluded_first
-    assert [kinds(group) for group in body] == [[Box, Box, Sphere]]
-    assert [kinds(group) for group in wheel] == [[Cylinder] * 4]  # crests and shoulders
-
-
-def test_occluded_shape_is_not_doubled():
-    smooth = Collision('skid', Sphere(0.05), Pose((-0.2, 0.0, -0.1)), surface=Surface(mu=0.1))
-    plates = tuple(Collision(f'plate{z}', Box((0.5, 0.3, 0.01)), Pose((0.0, 0.0, z)))
-                   for z in (0.0, 0.2))
-    posts = tuple(Collision(f'post{i}', Box((0.02, 0.02, 0.18)), Pose((0.05 * i, 0.0, 0.1)))
-                  for i in range(-3, 3))
-    body = LinkSpec('body', IDENTITY, MASS, (*plates, *posts, smooth))
-    tree = Tree([body, WHEEL], [None, JOINT], fixed_base=False)
-    (groups, _), occluded_first = grouped(tree, groups_of(tree), no_file)
-    assert occluded_first
-    assert [kinds(group) for group in groups] == [[Box] * 6, [Box] * 4, [Sphere]]
+    assert [kinds(group) for group in body_groups(tree)] == [[Box, Box, Sphere]]
+    assert [kinds(group) for group in surface_groups(tree, 1)] == [[Cylinder] * 4]  # its profile
 
 
 @pytest.mark.parametrize('tree', [
@@ -113,4 +92,4 @@ def test_occluded_shape_is_not_doubled():
           JointSpec('axle', REVOLUTE, 'arm', 'wheel')], fixed_base=False),
 ])
 def test_body_without_a_wheel_is_unchanged(tree):
-    assert grouped(tree, groups_of(tree), no_file)[0][0] == [BODY.collisions]
+    assert body_groups(tree) == [BODY.collisions]
