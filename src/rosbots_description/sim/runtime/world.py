@@ -121,13 +121,8 @@ class World:
         end = min(begin + steps, last)
         schedule.publish_ahead(end)
         while clock.steps < end:
-            quiet = min(schedule.next_due() - 1, end) - clock.steps
-            if quiet > 0:
-                clock.steps += quiet
-                engine.step(quiet)
-            else:
-                clock.steps += 1
-                clock.steps += schedule.run(clock.steps, end, engine.step) - 1
+            clock.steps += 1
+            clock.steps += schedule.run(clock.steps, end, engine.step) - 1
         if begin + steps > last:
             self.paused = True
             logger.error('the simulation is paused at %d s: stamps of 32 bits end there. '

@@ -4,7 +4,6 @@ Converts conventions: PyBullet's poses are of the centre of mass, ours of the li
 Quaternions are (x, y, z, w) in both.
 """
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -60,9 +59,8 @@ class BodyStates:
     def has_diverged(self, body: Body) -> bool:
         """Tell whether any coordinate or velocity of a model is not finite or out of range."""
         # Static models too: a hit at infinite speed gives them a velocity of NaN.
-        return not all(
-            math.isfinite(number) and abs(number) < MAX_COORDINATE
-            for number in self._coordinates(body))
+        most = MAX_COORDINATE
+        return not all(-most < number < most for number in self._coordinates(body))
 
     def _coordinates(self, body: Body) -> Iterator[float]:
         """Yield all coordinates and velocities of the roots and joints of a model."""

@@ -27,7 +27,8 @@ from .springs import Springs
 from .stop_reaction import is_at_stop, links_beyond, with_stop
 from .tuning import Tuning
 
-_MAX_BATCH = 20  # steps in one call, which is faster than a call for each
+_MAX_BATCH = 20  # steps in one call, which is faster than a call for each, but for a few steps
+_MIN_BATCH = 7
 # Convergence threshold of the solver: squared change of velocity [m^2/s^2] in an iteration. With
 # PyBullet's default, 1e-7, a robot parked on a slope creeps at 0.01 mm/s.
 _CONVERGED = 1e-8
@@ -147,9 +148,9 @@ class Engine(BodyStates):
             self._step_uniform(1)
             steps -= 1
         self._applied_forces.clear()
-        one_by_one = is_sprung or self._springs.has_dampers or self._weightless
+        one_by_one = is_sprung or self._springs.damped or self._weightless
         if not (fast or one_by_one or self._slipping.links):
-            while steps > 1:
+            while steps >= _MIN_BATCH:
                 batch = self._batches[min(steps, _MAX_BATCH)]
                 self._step_batch(batch)
                 steps -= batch

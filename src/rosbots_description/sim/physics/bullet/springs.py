@@ -27,15 +27,12 @@ class Springs:
         self._bodies: dict[int, Masses] = {}
         # By body: its joints with springs, their stiffness and reference.
         self._springs: dict[int, tuple[list[int], list[float], list[float]]] = {}
+        # Bodies with damped joints, whose velocities PyBullet samples once per call.
+        self.damped: set[int] = set()
 
     def __bool__(self) -> bool:
         """Tell whether there are any springs."""
         return bool(self._springs)
-
-    @property
-    def has_dampers(self) -> bool:
-        """Whether joints are damped: PyBullet samples their velocities once per call."""
-        return any(any(masses.damping) for masses in self._bodies.values())
 
     def set_step_size(self, step_size: float) -> None:
         """Set the step size [s], which limits stiffness and damping."""
@@ -48,6 +45,8 @@ class Springs:
             if not any(masses.stiffness) and not any(masses.damping):
                 continue
             self._bodies[number] = masses
+            if any(masses.damping):
+                self.damped.add(number)
             stiffness = followed_stiffness(masses, self._step_size)
             sprung = [i for i, value in enumerate(stiffness) if value]
             if sprung:
@@ -67,6 +66,7 @@ class Springs:
         for number in numbers:
             self._bodies.pop(number, None)
             self._springs.pop(number, None)
+            self.damped.discard(number)
 
     def clear(self) -> None:
         """Remove all bodies."""

@@ -72,17 +72,17 @@ class DiffDrive(WheeledDrive):
         """Set the wheels' speeds."""
         x, _, yaw_rate = self.target
         half, radius = yaw_rate * self.wheel_separation / 2.0, self.wheel_diameter / 2.0
+        left, right = self.wheels
         target = [x - half, x + half]
         limit = self.wheel_acceleration * elapsed
         if limit > 0.0:
-            missing = [goal - wheel.velocity * radius
-                       for goal, wheel in zip(target, self.wheels, strict=True)]
-            if min(map(abs, missing)) >= RAMP_REACHED:
+            missing = target[0] - left.velocity * radius, target[1] - right.velocity * radius
+            if min(abs(missing[0]), abs(missing[1])) >= RAMP_REACHED:
                 for i in (0, 1):
                     self._setpoint[i] += max(-limit, min(limit, missing[i]))
                 target = self._setpoint
-        for wheel, speed in zip(self.wheels, target, strict=True):
-            wheel.set_motor(speed / radius, self.wheel_torque)
+        left.set_motor(target[0] / radius, self.wheel_torque)
+        right.set_motor(target[1] / radius, self.wheel_torque)
 
     def encoder_odometry(self) -> Odometry:
         """Return the encoder odometry, by upstream's formula: the speed is never negative."""
