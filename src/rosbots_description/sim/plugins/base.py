@@ -170,8 +170,13 @@ class PeriodicPlugin(ModelPlugin):
         self.reset()
 
     def begin_period(self) -> None:
-        """Start a period now."""
-        self._last_ns = self.world.clock.now_ns
+        """Start a period at the last multiple of it, so that equal rates are due in equal steps.
+
+        Upstream's periods start when the plugin was loaded.
+        """
+        now_ns = self.world.clock.now_ns
+        keeps = self._period_ns and self.keeps_rate
+        self._last_ns = now_ns - now_ns % self._period_ns if keeps else now_ns
         self._reports = False
         self._set_due()
 

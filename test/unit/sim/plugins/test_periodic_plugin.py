@@ -85,6 +85,15 @@ def test_timing_is_that_of_gazebos_four_rules(cls, rate, steps):
     assert seen(make(cls, rate), 110)[:3] == steps[:3]
 
 
+@pytest.mark.parametrize(('cls', 'steps'), [
+    (Watcher, [11, 21, 31]), (Exact, [10, 20, 30]), (Rounded, [17, 27, 37]),
+])
+def test_plugin_loaded_later_runs_in_the_steps_of_the_others(cls, steps):
+    model = fake_model()
+    model.world.run(7)
+    assert seen(make_drive(cls, model, rate='100'), 30) == steps
+
+
 def test_mean_rate_is_exact_over_a_minute():
     assert len(seen(make(Exact, '30'), 60_000)) == 1800
 
