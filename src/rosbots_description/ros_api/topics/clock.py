@@ -20,9 +20,7 @@ from .topic import Topic
 
 logger = logging.getLogger(__name__)
 
-# Serialized /clock message; `size` is the length prefix [bytes].
-_CLOCK = np.dtype([('size', '<u4'), ('secs', '<u4'), ('nsecs', '<u4')])
-_CLOCK_SIZE = 8
+_CLOCK_SIZE = 8  # [bytes] of a serialized message: seconds and nanoseconds
 
 
 class ClockTopic(Topic, PreRunPublisher):
@@ -40,9 +38,10 @@ class ClockTopic(Topic, PreRunPublisher):
             due = np.fromiter(self._due_until(last), np.int64)
         # vectorised: a loop takes 1 us for each
         times = clock.ns_at(0) + due * clock.step_ns
-        messages = np.empty(len(times), _CLOCK)
-        messages['size'] = _CLOCK_SIZE
-        messages['secs'], messages['nsecs'] = np.divmod(times, NANOSECONDS)
+        messages = np.empty((len(times), 3), '<u4')
+        messages[:, 0] = _CLOCK_SIZE
+        messages[:, 1] = secs = times // NANOSECONDS
+        messages[:, 2] = times - secs * NANOSECONDS
         publish_serialized(self._publisher, messages.tobytes())
         self._last_ns = int(times[-1])
         self.due = self._first_after(int(due[-1]))
