@@ -41,7 +41,6 @@ def advertise_view(server: Server) -> None:
     publisher = rospy.Publisher('~view/image_raw', Image, queue_size=1)
     capture = ImageCapture(server.world)
     viewpoint = Viewpoint()
-    viewpoint.read()
 
     def request() -> None:
         if publisher.get_num_connections() == 0:
