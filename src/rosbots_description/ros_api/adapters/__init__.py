@@ -6,7 +6,7 @@ from . import (  # noqa: F401
     drives,
     force,
     imus,
-    lasers,
+    ray_sensors,
     state,
     wheel_slip,
     wrenches,

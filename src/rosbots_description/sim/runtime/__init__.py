@@ -5,10 +5,10 @@ from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin import Plugin
 from .population import populate
+from .saved_state import SavedState
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .sensor import SensorLife
 from .world import WORLD_FRAMES, Entity, World
-from .world_state import SavedState
 
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'CollisionFrame', 'Entity', 'FrameTransform', 'Hook', 'Joint',

@@ -4,8 +4,8 @@ import logging
 
 from ..core import SimError
 from ..description import WorldSpec
-from .saved_state import apply_state
 from .world import World
+from .world_file_state import apply_state
 
 logger = logging.getLogger(__name__)
 

@@ -1,49 +1,80 @@
-"""Apply the <state> of a saved world: derive joint positions from link poses."""
+"""The complete state of a world at one time, which can be restored any number of times."""
 
-import math
-from collections.abc import Mapping
+import copy
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
-from ..core import IDENTITY, Pose, compose, relative
-from ..description import FIXED, PRISMATIC, WORLD, JointSpec, ModelSpec, ModelState
-from .model import Model
+from ..core import SimError
+from .model_part import ModelPart
+from .outputs import Output
+from .scheduler import Hook
 
-
-def apply_state(model: Model, state: ModelState) -> None:
-    """Set a model's root poses and joint positions from a saved world.
-
-    A reset still returns it to its spawn pose, as in Gazebo.
-    """
-    if state.pose is not None:
-        model.set_pose(state.pose)
-    roots = {name: state.links[name] for name in model.body.roots if name in state.links}
-    if roots:
-        model.engine.set_root_poses(model.body, roots)
-    for name, position in joint_positions(model.spec, state).items():
-        if name in model.joints:
-            model.joints[name].set_position(position)
+if TYPE_CHECKING:
+    from .world import World
 
 
-def joint_positions(spec: ModelSpec, state: ModelState) -> dict[str, float]:
-    """Return the positions [rad or m] of the joints between links with known poses."""
-    placed: Mapping[str, Pose] = state.links
-    if state.pose is not None:
-        placed = {WORLD: state.pose, **state.links}
-    zero = {WORLD: IDENTITY, **{link.name: link.pose for link in spec.links}}
-    return {
-        joint.name: _position(joint, zero, placed)
-        for joint in spec.joints
-        if joint.type != FIXED and joint.parent in placed and joint.child in placed
-    }
+class SavedState:
+    """What a world was at one moment: motion, time, forces, what plugins and sensors remember."""
+
+    def __init__(self, world: 'World', hooks: Sequence[Hook]) -> None:
+        """Save the state of a world between two runs, and that of its own hooks."""
+        self._world = world
+        self._models = tuple(world.models.values())
+        self._clock = dict(vars(world.clock))
+        self._physics, self._lights, self._paused = world.physics, dict(world.lights), world.paused
+        self._snapshot = world.engine.snapshot()
+        self._shared = tuple(self._find_shared())
+        self._hooks = [(hook, self._copied(vars(hook))) for hook in hooks]
+        self._newest = [(output, output.latched) for output in self._outputs()]
+
+    def restore(self, world: 'World') -> None:
+        """Restore this state.
+
+        Raises:
+            SimError: it is of another world, or the world has other models now.
+        """
+        if world is not self._world:
+            raise SimError('the state was saved in another world; restore it there')
+        models = tuple(world.models.values())
+        if [*map(id, models)] != [*map(id, self._models)]:
+            raise SimError(
+                f'the state was saved with the models {_listed(self._models)}, and now there are '
+                f'{_listed(models)}; save another one after models have come or gone')
+        world.engine.restore(self._snapshot)
+        vars(world.clock).update(self._clock)
+        world.physics, world.paused = self._physics, self._paused
+        world.lights.clear()
+        world.lights.update(self._lights)
+        for hook, state in self._hooks:
+            vars(hook).clear()
+            vars(hook).update(self._copied(state))
+        for output, reading in self._newest:
+            output.latched = reading
+        for part in self._parts():
+            part.count_readers()  # the current ones
+
+    def _parts(self) -> Iterator[ModelPart]:
+        for model in self._models:
+            yield from model.parts
+
+    def _outputs(self) -> Iterator[Output[Any]]:
+        for part in self._parts():
+            yield from (one for one in part.shared() if isinstance(one, Output))
+
+    def _copied(self, state: dict[str, Any]) -> dict[str, Any]:
+        """Return a deep copy of a hook's own state; shared objects are not copied."""
+        return copy.deepcopy(state, {id(one): one for one in self._shared})
+
+    def _find_shared(self) -> Iterator[object]:
+        """Yield the shared objects that are reachable from hooks."""
+        world = self._world
+        yield from (world, world.clock, world.schedule, world.engine)
+        for model in self._models:
+            yield from (model, model.spec, model.body, *model.links.values())
+            yield from model.joints.values()
+        for part in self._parts():
+            yield from (part, *part.shared())
 
 
-def _position(joint: JointSpec, zero: Mapping[str, Pose], placed: Mapping[str, Pose]) -> float:
-    """Return the joint position [rad or m], relative to the pose at position zero."""
-    at_zero = relative(compose(zero[joint.child], joint.pose), zero[joint.parent])
-    now = relative(compose(placed[joint.child], joint.pose), placed[joint.parent])
-    moved = relative(now, at_zero)
-    axis = joint.axis
-    if joint.type == PRISMATIC:
-        return sum(a * b for a, b in zip(axis, moved.position, strict=True))
-    x, y, z, w = moved.orientation
-    half = math.atan2(axis[0] * x + axis[1] * y + axis[2] * z, w)
-    return math.remainder(2.0 * half, 2.0 * math.pi)
+def _listed(models: Sequence[Any]) -> str:
+    return ', '.join(model.name for model in models) or 'none'

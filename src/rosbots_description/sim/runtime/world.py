@@ -43,8 +43,8 @@ from .model import CollisionFrame, Joint, Link, Model
 from .model_part import ModelPart
 from .nested_model import NestedModel, nested_models
 from .plugin import Plugin
+from .saved_state import SavedState
 from .scheduler import Schedule
-from .world_state import SavedState
 
 logger = logging.getLogger(__name__)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.sensing import RECORDED, ROBOTS, recorded_scene, recordings
 
-from rosbots_description.ros_api.adapters.lasers import range_message
+from rosbots_description.ros_api.adapters.ray_sensors import range_message
 from rosbots_description.sim.public.world import World
 
 RECORDINGS = recordings('ray_plugins')

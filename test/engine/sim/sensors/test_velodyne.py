@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sensor_msgs.point_cloud2 import read_points
 
-from rosbots_description.ros_api.adapters.lasers import ring_cloud_message
+from rosbots_description.ros_api.adapters.ray_sensors import ring_cloud_message
 from rosbots_description.sim.public.world import World
 
 ROBOT = '''<sdf version="1.6"><model name="car"><static>1</static><link name="l">

@@ -27,7 +27,7 @@ class SlippingLinks:
 
         Args:
             scale_friction: sets the friction scales of a part along its axes.
-            reach: ratio of friction to mu N possible in a direction.
+            friction_ratio: ratio of friction to mu N possible in a direction.
         """
         self._client, self._scale_friction = client, scale_friction
         self._friction_ratio = friction_ratio

@@ -38,7 +38,7 @@ def slip_scales(
         axle: unit vector in the world.
         slips: compliance along the axle and ahead [m/s per N].
         step_size: [s].
-        reach: ratio of friction to mu N possible in a direction.
+        friction_ratio: ratio of friction to mu N possible in a direction.
     """
     contacts = [contact for contact in contacts if contact.load > 0.0 and contact.limit > 0.0]
     if not contacts:

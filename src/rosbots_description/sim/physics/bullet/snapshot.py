@@ -28,7 +28,7 @@ Joints = Sequence[tuple[int, int]]  # by PyBullet's body and index
 
 
 class BulletSnapshot:
-    """State of a PyBullet world, and notes of further state; bodies are compared by identity."""
+    """State of a PyBullet world and more of the engine; bodies are compared by identity."""
 
     def __init__(
         self, state: int, bodies: Sequence[Any], idle: Joints, engine_state: tuple[Any, ...]
@@ -62,7 +62,7 @@ class Snapshots:
             bodies: those that must exist when it is restored.
             moving: PyBullet's numbers of the moving bodies.
             idle: joints whose motors are off.
-            note: returns the state that PyBullet does not save.
+            save_state: returns the state of the engine that PyBullet does not save.
         """
         client = self._client
         pybullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
@@ -76,7 +76,7 @@ class Snapshots:
     def restore(
         self, snapshot: BulletSnapshot, bodies: Sequence[Any], moving: Sequence[int]
     ) -> tuple[Any, ...]:
-        """Restore PyBullet's part of a snapshot, and return the notes.
+        """Restore PyBullet's part of a snapshot, and return the engine's own.
 
         Raises:
             SimError: the bodies are not those of the snapshot.

@@ -11,7 +11,8 @@ from ...core import Pose, Twist
 from ...plugin_registry import register
 from ...runtime import FrameTransform, JointStates, Odometry
 from ..wheel_geometry import drives_towards_x, radius_of, same_direction, track_of
-from .base import Encoders, WheeledDrive, reads_encoders
+from .base import WheeledDrive, reads_encoders
+from .odometry import Encoders
 
 logger = logging.getLogger(__name__)
 

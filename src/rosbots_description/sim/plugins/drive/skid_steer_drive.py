@@ -6,7 +6,8 @@ Behaviour, defaults and timing are those of libgazebo_ros_skid_steer_drive.so in
 
 from ...plugin_registry import register
 from ..parameters import says_defaults_to
-from .base import Drive, world_odometry
+from .base import Drive
+from .odometry import world_odometry
 
 JOINTS = ('leftFront', 'rightFront', 'leftRear', 'rightRear')
 DEFAULTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_rear_joint')

@@ -15,7 +15,8 @@ from collections.abc import Iterable
 from ...core import PluginError, Pose, Twist
 from ...plugin_registry import register
 from ...runtime import FrameTransform, JointStates, Odometry
-from .base import Encoders, WheeledDrive, reads_encoders
+from .base import WheeledDrive, reads_encoders
+from .odometry import Encoders
 
 STRAIGHT_ACROSS = math.pi / 2.0  # [rad] to which steering is limited
 

@@ -1,6 +1,5 @@
 """Camera effects: distortion, noise and pixel encoding."""
 
-import io
 from typing import Any
 
 import numpy as np
@@ -8,8 +7,6 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from .values import BAYER, BGR, GREY8, GREY16, RGB16, Lens
-
-JPEG_QUALITY = 80  # as image_transport's default
 
 
 class ImagePipeline:
@@ -42,17 +39,6 @@ class ImagePipeline:
         if lens.encoding in BAYER:
             return _mosaic(pixels, BAYER[lens.encoding])
         return _packed(pixels, 'RGB')
-
-
-def jpeg_file(picture: NDArray[Any], encoding: str) -> bytes:
-    """Return a picture in its encoding as a JPEG file, grey or in colours, of 8 bits."""
-    if picture.dtype != np.uint8:
-        picture = (picture >> 8).astype('u1')
-    if encoding == BGR:
-        picture = picture[:, :, ::-1]
-    file = io.BytesIO()
-    Image.fromarray(picture).save(file, 'JPEG', quality=JPEG_QUALITY)
-    return file.getvalue()
 
 
 def _packed(pixels: NDArray[Any], order: str) -> NDArray[Any]:

@@ -13,7 +13,8 @@ import numpy as np
 from PIL import Image
 
 from .context import NoContextError, open_context
-from .image_pipeline import ImagePipeline, jpeg_file
+from .image_pipeline import ImagePipeline
+from .jpeg import jpeg_file
 from .renderer import Renderer
 from .values import Appearance, Colour, Lens, Light, Scene, ScenePart, Wants
 

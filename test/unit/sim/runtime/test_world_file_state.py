@@ -11,7 +11,7 @@ from rosbots_description.sim.description import (
     ModelSpec,
     ModelState,
 )
-from rosbots_description.sim.runtime.saved_state import joint_positions
+from rosbots_description.sim.runtime.world_file_state import joint_positions
 
 
 @pytest.mark.parametrize('kind, axis, moved, position', [
