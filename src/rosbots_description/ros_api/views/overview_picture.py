@@ -41,6 +41,8 @@ def advertise_view(server: Server) -> None:
     publisher = rospy.Publisher('~view/image_raw', Image, queue_size=1)
     capture = ImageCapture(server.world)
     viewpoint = Viewpoint()
+    viewpoint.read()  # names invalid values at the start
+    viewpoint.rest()  # they are read again for the first subscriber
 
     def request() -> None:
         if publisher.get_num_connections() == 0:
