@@ -9,6 +9,7 @@ import pytest
 import rospy
 from support import ROOT
 
+from rosbots_description.cli.gz import NOT_HERE, parser
 from rosbots_description.ros_api.node import node
 from rosbots_description.ros_api.node.packages import find_model, find_package
 from rosbots_description.ros_api.node.world_loading import read_world
@@ -86,7 +87,7 @@ def registered():
 @pytest.mark.parametrize(
     'section',
     ['Services', 'Topics', 'Parameters', 'Arguments of empty_world.launch', 'Plugins',
-     'Launch files and programs', 'Paths and packages'],
+     'Launch files and programs', 'Commands of gz', 'Paths and packages'],
 )
 def test_each_name_has_one_row_with_a_known_state(section):
     counts = Counter(name for name, _, _ in rows(section))
@@ -122,3 +123,11 @@ def test_every_launch_file_and_program_of_gazebo_ros_has_a_row():
     folder = EMPTY_WORLD.parents[1]
     files = {path.name for path in [*folder.glob('launch/*.launch'), *folder.glob('scripts/*')]}
     assert files == set(table('Launch files and programs'))
+
+
+def test_every_command_of_gz_has_a_row():
+    rows = table('Commands of gz')
+    commands = parser()._subparsers._group_actions[0].choices
+    assert {f'gz {name}' for name in NOT_HERE} == {
+        name for name, state in rows.items() if state == MISSING}
+    assert {f'gz {name}' for name in commands} == offered('Commands of gz')

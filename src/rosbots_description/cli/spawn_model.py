@@ -3,23 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import math
-import re
 import sys
 from collections.abc import Sequence
-from decimal import Decimal
 
-_NEGATIVE_WITH_EXPONENT = re.compile(r'-(\d+\.?\d*|\.\d+)[eE][-+]?\d+')
-
-
-def _finite(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f'{text!r} is not a finite number')
-    return value
+from .number_arguments import finite, without_exponents
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -47,7 +34,7 @@ def _parser() -> argparse.ArgumentParser:
     for flag, meaning in (('x', 'position along x [m]'), ('y', 'position along y [m]'),
                           ('z', 'position along z [m]'), ('R', 'roll [rad]'),
                           ('P', 'pitch [rad]'), ('Y', 'yaw [rad]')):
-        parser.add_argument(f'-{flag}', metavar='NUMBER', type=_finite, default=0.0,
+        parser.add_argument(f'-{flag}', metavar='NUMBER', type=finite, default=0.0,
                             help=f'{meaning}; default: 0')
     parser.add_argument('-J', dest='joints', metavar=('JOINT', 'POSITION'), nargs=2,
                         action='append', default=[],
@@ -67,11 +54,8 @@ def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     Raises:
         SystemExit: code 2 with usage on stderr for invalid flags, code 0 for -h.
     """
-    def plain(text: str) -> str:
-        # argparse parses -1e-3 as a flag, but -0.001 as a number.
-        return format(Decimal(text), 'f') if _NEGATIVE_WITH_EXPONENT.fullmatch(text) else text
-
-    return _parser().parse_args([plain(text) for text in arguments if ':=' not in text])
+    own = [text for text in arguments if ':=' not in text]
+    return _parser().parse_args(without_exponents(own))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

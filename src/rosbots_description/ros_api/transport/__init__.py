@@ -12,6 +12,7 @@ from .master import (
     node_address,
     require_address,
     subscribers,
+    topics_of,
     write_parameters,
 )
 from .name_conflict import node_name, replacing_node, require_free, running_node
@@ -69,6 +70,7 @@ __all__ = [
     'subscriber_names',
     'subscribers',
     'topic_name',
+    'topics_of',
     'wait_for_answers',
     'watch_master',
     'write_parameters',

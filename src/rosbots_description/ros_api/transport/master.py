@@ -96,6 +96,19 @@ def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
     return _nodes(readers, topic), _nodes(publishers, publishing)
 
 
+def topics_of(node: str) -> list[str]:
+    """Return the topics that a node publishes or subscribes to, sorted.
+
+    Args:
+        node: its global name.
+
+    Raises:
+        Exception: one of `NO_MASTER`.
+    """
+    published, subscribed, _ = rosgraph.Master(rospy.get_name()).getSystemState()
+    return sorted({topic for topic, nodes in published + subscribed if node in nodes})
+
+
 def _nodes(topics: Iterable[tuple[str, list[str]]], wanted: str) -> set[str]:
     return {node for topic, nodes in topics if topic == wanted for node in nodes}
 

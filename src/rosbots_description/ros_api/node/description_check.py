@@ -1,0 +1,42 @@
+"""Check a description file as the simulator reads it; needs neither a ROS master nor a node."""
+
+from lxml import etree
+
+from ...sim.core import ModelError
+from ...sim.formats import load_sdf, load_urdf, open_world
+from ...sim.resources import MAX_XML_BYTES, parse_xml, read_file, root_tag
+from .packages import find_model, find_package
+
+_NAME = 'model'  # of what is checked; the one in the file has no effect
+
+
+def check_description(path: str) -> tuple[str, ...]:
+    """Return what is wrong with a world, an SDF model or a URDF; warnings are logged.
+
+    Raises:
+        ModelError: it cannot be read, or is none of these.
+    """
+    text = read_file(path, MAX_XML_BYTES)
+    if root_tag(text) == 'robot':
+        load_urdf(
+            text, _NAME, source=path, find_package=find_package, find_model=find_model)
+    elif parse_xml(text, path).find('world') is not None:
+        return open_world(path, find_model=find_model, find_package=find_package).faults
+    else:
+        load_sdf(text, _NAME, source=path, find_model=find_model, find_package=find_package)
+    return ()
+
+
+def sdf_text(path: str) -> str:
+    """Return the text of an SDF file.
+
+    Raises:
+        ModelError: it cannot be read, or is a URDF, which is simulated without being converted.
+    """
+    text = read_file(path, MAX_XML_BYTES)
+    if root_tag(text) == 'robot':
+        raise ModelError(f"'{path}' is URDF; it is simulated as it is, and not converted to SDF")
+    root = parse_xml(text, path)
+    if root.tag not in ('sdf', 'gazebo'):
+        raise ModelError(f"'{path}' is not SDF: its first element is <{root.tag}>")
+    return etree.tostring(root, encoding='unicode')

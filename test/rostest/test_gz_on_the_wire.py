@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""The command gz, as people type it, acts on the running simulator."""
+
+import re
+import subprocess
+import sys
+
+import rospy
+import rostest
+from gazebo_msgs.srv import GetPhysicsProperties
+from simulator import DEADLINE, GROUND, SimulatorTest, proxy
+
+MODEL = """<sdf version="1.6"><model name="any"><link name="body">
+  <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+</link></model></sdf>"""
+
+
+def gz(*arguments, code=0, **options):
+    """Return what a command prints, on the stream that fits its exit code."""
+    ended = subprocess.run(['gz', *arguments], capture_output=True, text=True,
+                           timeout=3 * DEADLINE, check=False, **options)
+    if ended.returncode != code:
+        raise AssertionError(f'gz {arguments} ended with {ended.returncode}: {ended.stderr}')
+    return ended.stderr if code else ended.stdout
+
+
+class GzTest(SimulatorTest):
+
+    def test_a_model_is_spawned_moved_shown_and_deleted(self):
+        self.pause()
+        gz('model', '-s', '-m', 'crate', '-z', '0.5', input=MODEL)
+        self.assertEqual(gz('model', '-l').split(), [GROUND, 'crate'])
+        gz('model', '-m', 'crate', '-x', '-2e0', '-z', '1.5', '-Y', '0.25')
+        self.assertEqual(gz('model', '-m', 'crate', '-p'), '-2 0 1.5 0 0 0.25\n')
+        gz('model', '-m', 'crate', '-d')
+        self.assertEqual(gz('model', '-m', 'crate', '-d', code=1),
+                         'gz model: DeleteModel: model does not exist\n')
+
+    def test_the_world_is_stepped_exactly_and_reset(self):
+        gz('world', '-p', '1', '-r')
+        self.assertEqual(self.world().sim_time, 0.0)
+        gz('world', '-s', '-m', '24')
+        self.assertEqual(self.world().sim_time, 0.025)
+        gz('world', '-r', '-p', '0')
+        running = proxy('get_physics_properties', GetPhysicsProperties)
+        self.assertFalse(running().pause)
+
+    def test_stats_and_topics_are_those_of_the_simulator(self):
+        lines = gz('stats', '-d', '0.7').splitlines()
+        self.assertGreaterEqual(len(lines), 1)
+        for line in lines:
+            self.assertRegex(
+                line, r'^Factor\[\d+\.\d\d\] SimTime\[[\d.]+\] RealTime\[[\d.]+\] Paused\[F\]$')
+        times = [float(re.search(r'SimTime\[(.+?)\]', line)[1]) for line in lines]
+        self.assertEqual(times, sorted(times))
+        self.assertLessEqual({'/clock', '/gazebo/model_states'}, set(gz('topic', '-l').split()))
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_gz', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'gz', GzTest, sys.argv)
