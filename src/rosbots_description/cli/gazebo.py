@@ -33,6 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     _on_signals(lambda number, _frame: told.append(number))
     server = subprocess.Popen([sys.executable, folder / 'gzserver', *arguments])
     try:
+        _use_simulated_time()
         client = subprocess.Popen([sys.executable, folder / 'gzclient',
                                    *(word for word in arguments if word == '--verbose')])
         headless = not display_works()  # then the client ends at once, and the server continues
@@ -43,6 +44,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     finally:
         _end(server, signal.SIGINT)
     return server.returncode
+
+
+def _use_simulated_time() -> None:
+    """Set /use_sim_time before the window starts, as empty_world.launch does.
+
+    Otherwise its panel Time would show the wall clock: the server sets it too late for that.
+    """
+    from ..ros_api.transport import use_simulated_time  # slow to import, so while the server starts
+
+    use_simulated_time('/gazebo_gui')
 
 
 def _on_signals(react: Callable[[int, FrameType | None], object]) -> None:

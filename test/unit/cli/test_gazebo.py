@@ -27,6 +27,7 @@ def folder(tmp_path, monkeypatch):
     """Return a folder that replaces that of the executables."""
     monkeypatch.setattr(sys, 'argv', [str(tmp_path / 'gazebo')])
     monkeypatch.setattr(gazebo, 'display_works', lambda: True)
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:9')  # nothing answers there
     return tmp_path
 
 

@@ -13,6 +13,7 @@ from .master import (
     require_address,
     subscribers,
     topics_of,
+    use_simulated_time,
     write_parameters,
 )
 from .name_conflict import node_name, replacing_node, require_free, running_node
@@ -71,6 +72,7 @@ __all__ = [
     'subscribers',
     'topic_name',
     'topics_of',
+    'use_simulated_time',
     'wait_for_answers',
     'watch_master',
     'write_parameters',

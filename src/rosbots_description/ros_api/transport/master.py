@@ -1,5 +1,6 @@
 """Calls to the ROS master, which may be unavailable for a while."""
 
+import contextlib
 import time
 from collections.abc import Callable, Iterable, Mapping
 from http.client import HTTPException
@@ -94,6 +95,15 @@ def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
     publishers, readers, _ = retry_call(
         lambda: rosgraph.Master(rospy.get_name()).getSystemState())
     return _nodes(readers, topic), _nodes(publishers, publishing)
+
+
+def use_simulated_time(caller: str) -> None:
+    """Set /use_sim_time if it is not set and a master answers; this process need not be a node."""
+    # ValueError: the address of the master is not valid.
+    with contextlib.suppress(*NO_MASTER, rosgraph.MasterException, ValueError):
+        master = rosgraph.Master(caller)
+        if not master.hasParam('/use_sim_time'):
+            master.setParam('/use_sim_time', True)
 
 
 def topics_of(node: str) -> list[str]:

@@ -13,6 +13,8 @@ from rosbots_description.ros_api.transport.master import (
     AddressError,
     require_address,
     retry_call,
+    topics_of,
+    use_simulated_time,
     write_parameters,
 )
 
@@ -24,9 +26,12 @@ class FakeMaster(SimpleXMLRPCServer):
         super().__init__(('localhost', 0), logRequests=False)
         self.arrived = 0
         self.parameters, self.services = {}, {}
+        self.state = [], [], []
         self.register_multicall_functions()
         self.register_function(self._set_parameter, 'setParam')
         self.register_function(self._look_up, 'lookupService')
+        self.register_function(lambda _, name: (1, '', name in self.parameters), 'hasParam')
+        self.register_function(lambda _: (1, '', self.state), 'getSystemState')
 
     def _dispatch(self, method, arguments):
         self.arrived += method != 'setParam'
@@ -62,6 +67,25 @@ def test_parameters_are_set_in_one_call(there):
         '/unnamed/gravity_z': -9.8, '/unnamed/sor_pgs_iters': 50,
         '/unnamed/auto_disable_bodies': False}
     assert there.arrived == 1
+
+
+@pytest.mark.parametrize(('before', 'after'), [({}, True), ({'/use_sim_time': False}, False)])
+def test_simulated_time_is_used_unless_the_user_has_decided(there, before, after):
+    there.parameters.update(before)
+    use_simulated_time('/gazebo_gui')
+    assert there.parameters == {'/use_sim_time': after}
+
+
+@pytest.mark.parametrize('address', ['http://localhost:9', 'foo'])
+def test_simulated_time_can_wait_where_no_master_answers(monkeypatch, address):
+    monkeypatch.setenv('ROS_MASTER_URI', address)
+    use_simulated_time('/gazebo_gui')
+
+
+def test_the_topics_of_a_node_are_those_that_it_publishes_or_reads(there):
+    there.state = ([['/clock', ['/gazebo']], ['/odom', ['/other']]],
+                   [['/cmd_vel', ['/gazebo', '/other']]], [])
+    assert topics_of('/gazebo') == ['/clock', '/cmd_vel']
 
 
 @pytest.mark.parametrize('address', ['', 'foo', 'http://', 'http://localhost:99999'])
