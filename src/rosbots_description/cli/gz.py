@@ -105,7 +105,7 @@ def _sdf(add: argparse.ArgumentParser) -> None:
     what = add.add_mutually_exclusive_group(required=True)
     what.add_argument('-k', '--check', metavar='FILE',
                       help='read a world, an SDF model or a URDF as the simulator would')
-    what.add_argument('-p', '--print', metavar='FILE', help='print an SDF file')
+    what.add_argument('-p', '--print', metavar='FILE', help='print an SDF file, or a URDF as SDF')
     for short, name in (('d', 'describe'), ('o', 'doc')):
         what.add_argument(f'-{short}', f'--{name}', action='store_true', help='not supported')
     what.add_argument('-c', '--convert', metavar='FILE', help='not supported')
@@ -182,16 +182,16 @@ def _require_something(options: argparse.ArgumentParser, flags: argparse.Namespa
 
 def _describe(flags: argparse.Namespace) -> int:
     """Check or print a description."""
-    from ..ros_api.node import description_check  # loads all parsers
+    from ..ros_api.node import description_file  # loads all parsers
 
     if flags.check is None and flags.print is None:
         return _fail('sdf', 'of the options only -k and -p are supported; SDF is specified at '
                      'http://sdformat.org/spec')
     try:
         if flags.print is not None:
-            sys.stdout.write(f'{description_check.sdf_text(flags.print)}\n')
+            sys.stdout.write(f'{description_file.sdf_text(flags.print)}\n')
             return DONE
-        faults = description_check.check_description(flags.check)
+        faults = description_file.check_description(flags.check)
     except SimError as error:
         return _fail('sdf', str(error))
     if faults:  # each has been logged

@@ -99,13 +99,16 @@ def test_a_file_that_is_not_there_is_named(capsys):
     assert '/nowhere.sdf' in capsys.readouterr().err
 
 
-def test_an_sdf_is_printed_and_a_urdf_is_not_converted(tmp_path, capsys):
+def test_an_sdf_is_printed_as_it_is_and_a_urdf_is_converted(tmp_path, capsys):
     (tmp_path / 'w').write_text(WORLD.format(MODEL))
     (tmp_path / 'r').write_text(URDF)
     assert gz.main(['sdf', '-p', str(tmp_path / 'w')]) == 0
     assert capsys.readouterr().out == WORLD.format(MODEL) + '\n'
-    assert gz.main(['sdf', '-p', str(tmp_path / 'r')]) == 1
-    assert 'not converted' in capsys.readouterr().err
+    assert gz.main(['sdf', '-p', str(tmp_path / 'r')]) == 0
+    converted = capsys.readouterr().out
+    assert '<model name="r">' in converted
+    (tmp_path / 'r').write_text(converted)
+    assert gz.main(['sdf', '-k', str(tmp_path / 'r')]) == 0
 
 
 def test_gazebos_programs_are_installed_to_the_path():

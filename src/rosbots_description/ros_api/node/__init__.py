@@ -1,3 +1,3 @@
 """The node /gazebo: from its start to its end."""
 
-__all__ = ['description_check', 'node']
+__all__ = ['description_file', 'node']

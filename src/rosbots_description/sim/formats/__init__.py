@@ -1,6 +1,8 @@
-"""Parsers, one folder per format; each error names file and line."""
+"""Parsers, one folder per format, and a writer of SDF; each error names file and line."""
 
-from .sdf import load_sdf, load_sdf_light, open_world
+from .sdf import load_sdf, load_sdf_light, open_world, sdf_of_model
 from .urdf import expand_xacro, load_urdf
 
-__all__ = ['expand_xacro', 'load_sdf', 'load_sdf_light', 'load_urdf', 'open_world']
+__all__ = [
+    'expand_xacro', 'load_sdf', 'load_sdf_light', 'load_urdf', 'open_world', 'sdf_of_model',
+]

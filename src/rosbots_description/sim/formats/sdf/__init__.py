@@ -1,6 +1,7 @@
-"""Parser of SDF: models, lights and worlds."""
+"""Parser and writer of SDF: models, lights and worlds."""
 
 from .sdf import load_sdf, load_sdf_light
 from .world_file import open_world
+from .writer import sdf_of_model
 
-__all__ = ['load_sdf', 'load_sdf_light', 'open_world']
+__all__ = ['load_sdf', 'load_sdf_light', 'open_world', 'sdf_of_model']

@@ -1,9 +1,9 @@
-"""Check a description file as the simulator reads it; needs neither a ROS master nor a node."""
+"""Check a description file as the simulator reads it, or show it as SDF; without a ROS master."""
 
 from lxml import etree
 
 from ...sim.core import ModelError
-from ...sim.formats import load_sdf, load_urdf, open_world
+from ...sim.formats import load_sdf, load_urdf, open_world, sdf_of_model
 from ...sim.resources import MAX_XML_BYTES, parse_xml, read_file, root_tag
 from .packages import find_model, find_package
 
@@ -28,15 +28,17 @@ def check_description(path: str) -> tuple[str, ...]:
 
 
 def sdf_text(path: str) -> str:
-    """Return the text of an SDF file.
+    """Return the text of an SDF file, or a URDF as SDF after fixed joint reduction.
 
     Raises:
-        ModelError: it cannot be read, or is a URDF, which is simulated without being converted.
+        ModelError: it cannot be read, or is neither.
     """
     text = read_file(path, MAX_XML_BYTES)
-    if root_tag(text) == 'robot':
-        raise ModelError(f"'{path}' is URDF; it is simulated as it is, and not converted to SDF")
     root = parse_xml(text, path)
+    if root.tag == 'robot':
+        spec, pose = load_urdf(text, root.get('name') or _NAME, source=path,
+                               find_package=find_package, find_model=find_model)
+        return sdf_of_model(spec, pose)
     if root.tag not in ('sdf', 'gazebo'):
         raise ModelError(f"'{path}' is not SDF: its first element is <{root.tag}>")
     return etree.tostring(root, encoding='unicode')
