@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import select
 import sys
 import time
 from collections import deque
@@ -39,6 +40,7 @@ from ..transport import (
 from .model_source import SourceError, canonical_xml, read_file
 
 DONE, FAILED = 0, 1  # exit codes
+_STDOUT = 1  # the descriptor
 NODE = 'gazebo'  # the simulator, relative to this program's namespace
 PERIOD = 0.2  # of the lines of `gz stats`, as Gazebo's [s, wall]
 SAMPLES = 20  # over which the real-time factor is taken, as in Gazebo
@@ -64,6 +66,8 @@ def run(command: str, flags: argparse.Namespace, ros_arguments: Sequence[str]) -
         _connect(ros_arguments)
         for line in COMMANDS[command](_call, flags):
             sys.stdout.write(f'{line}\n')
+            if not _has_reader(_STDOUT):  # as of gz stats | head
+                break
     except (CommandError, SourceError, SimError) as error:
         sys.stderr.write(f'gz {command}: {error}\n')
         return FAILED
@@ -73,6 +77,13 @@ def run(command: str, flags: argparse.Namespace, ros_arguments: Sequence[str]) -
     finally:
         rospy.signal_shutdown('gz ends')
     return DONE
+
+
+def _has_reader(descriptor: int) -> bool:
+    """Tell whether what is written there can be read: the other end of a pipe may be closed."""
+    watch = select.poll()
+    watch.register(descriptor, 0)
+    return not watch.poll(0)
 
 
 def _connect(ros_arguments: Sequence[str]) -> None:

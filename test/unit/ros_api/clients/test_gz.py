@@ -1,5 +1,6 @@
 """What the commands of gz ask of the simulator, and what they print."""
 
+import os
 from itertools import count
 from types import SimpleNamespace
 
@@ -150,3 +151,11 @@ def test_the_factor_forgets_what_was_long_ago():
 
 def test_the_factor_of_time_that_was_reset_is_zero():
     assert gz.real_time_factor([(9.0, 0.0), (0.2, 0.2)]) == 0.0
+
+
+def test_a_pipe_whose_other_end_is_closed_has_no_reader():
+    read, write = os.pipe()
+    assert gz._has_reader(write)
+    os.close(read)
+    assert not gz._has_reader(write)
+    os.close(write)
