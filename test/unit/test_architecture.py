@@ -49,7 +49,7 @@ ARROWS = {
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',
-    'ros_api/messages': 'sim/core sim/runtime sim/sensors',
+    'ros_api/messages': 'sim/core sim/description sim/runtime sim/sensors',
     'ros_api/server':
         'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
     'ros_api/services':
@@ -65,12 +65,14 @@ ARROWS = {
     'ros_api/views':
         'sim/core sim/description sim/runtime sim/rendering '
         'ros_api/server ros_api/messages ros_api/transport',
-    'ros_api/clients': 'sim/core sim/rendering ros_api/transport ros_api/views',
+    'ros_api/clients':
+        'sim/core sim/description sim/rendering ros_api/messages ros_api/transport ros_api/views',
     'ros_api/node':
         'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
         'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
         'ros_api/reconfigure ros_api/views',
-    'cli': 'sim/core ros_api/transport ros_api/clients ros_api/node',
+    'web': 'sim/core sim/description sim/meshes sim/rendering',
+    'cli': 'sim/core ros_api/transport ros_api/clients ros_api/node web',
     '': '',
 }
 

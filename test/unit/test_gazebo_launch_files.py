@@ -43,6 +43,9 @@ ARGUMENTS = {
     'shapes_world': {},
     'willowgarage_world': {},
 }
+# Ours, of every launch file.
+WEB = {'web': 'false', 'web_host': '127.0.0.1', 'web_port': '8080'}
+HANDED_ON = {name: f'$(arg {name})' for name in WEB}
 FIXED = {
     'paused': 'false', 'use_sim_time': 'true', 'gui': 'true', 'headless': 'false',
     'recording': 'false', 'debug': 'false',
@@ -58,17 +61,18 @@ def test_every_launch_file_of_gazebo_is_there_and_no_other():
 
 
 @pytest.mark.parametrize('name', ARGUMENTS)
-def test_arguments_and_defaults_are_those_of_gazebo(name):
+def test_arguments_and_defaults_are_those_of_gazebo_and_of_the_browser(name):
     found = {arg.get('name'): arg.get('default') for arg in root(name).findall('arg')}
-    assert found == ARGUMENTS[name]
+    assert found == ARGUMENTS[name] | WEB
 
 
 @pytest.mark.parametrize('name', [name for name, taken in ARGUMENTS.items() if not taken])
-def test_launch_file_without_arguments_passes_fixed_ones(name):
+def test_launch_file_without_arguments_of_gazebo_passes_fixed_ones(name):
     (include,) = root(name).findall('include')
     assert include.get('file') == '$(dirname)/empty_world.launch'
     given = {arg.get('name'): arg.get('value') for arg in include.findall('arg')}
-    assert given == FIXED | {'world_name': f'worlds/{name.removesuffix("_world")}.world'}
+    world = f'worlds/{name.removesuffix("_world")}.world'
+    assert given == FIXED | HANDED_ON | {'world_name': world}
 
 
 def test_range_world_passes_every_argument():
@@ -76,10 +80,12 @@ def test_range_world_passes_every_argument():
     given = {arg.get('name'): arg.get('value') for arg in include.findall('arg')}
     world = given.pop('world_name')
     assert world == '$(find gazebo_plugins)/test/test_worlds/$(arg world).world'
-    assert given == {name: f'$(arg {name})' for name in ARGUMENTS['range_world'] if name != 'world'}
+    assert given == HANDED_ON | {
+        name: f'$(arg {name})' for name in ARGUMENTS['range_world'] if name != 'world'}
 
 
 @pytest.mark.parametrize('name', ['empty_world', 'elevator_world'])
 def test_nodes_have_gazebos_names(name):
     nodes = [(node.get('name'), node.get('pkg')) for node in root(name).findall('node')]
-    assert nodes == [('gazebo', 'gazebo_ros'), ('gazebo_gui', 'gazebo_ros')]
+    assert nodes == [
+        ('gazebo', 'gazebo_ros'), ('gazebo_gui', 'gazebo_ros'), ('gzweb', 'gazebo_ros')]

@@ -168,6 +168,15 @@ def test_see_shows_the_data_of_all_sensors(load):
         'rviz/Image': 'camera1/image_raw'}
 
 
+@pytest.mark.parametrize('file', [
+    'simulation', *(path for path in FILES if path.stem.endswith('_world'))], ids=str)
+def test_each_world_can_be_seen_in_a_browser(load, file):
+    file = f'{file}.launch' if isinstance(file, str) else file
+    assert 'gzweb' not in nodes(load(file))
+    config = load(file, 'web:=true', 'web_host:=0.0.0.0', 'web_port:=8081')
+    assert arguments(config, 'gzweb') == '--host 0.0.0.0 --port 8081'
+
+
 def test_simulation_passes_its_arguments_to_the_simulator(load):
     config = load('simulation.launch', 'paused:=true', 'world_name:=my.world',
                   'use_sim_time:=false')

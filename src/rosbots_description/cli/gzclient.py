@@ -67,7 +67,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not display_works():
         display = os.environ.get('DISPLAY') or 'not set'
         _say(f'no window: there is no display to open it on (DISPLAY is {display}); '
-             'the simulator runs without one')
+             'the simulator runs without one, and web:=true or '
+             'rosrun gazebo_ros gzweb shows it in a browser')
         return 0
     rviz, config = shutil.which('rviz'), config_file()
     if rviz is None:

@@ -50,6 +50,7 @@ from ..transport import (
 )
 from ..views.frames import advertise_frames
 from ..views.overview_picture import advertise_view
+from ..views.scene import advertise_scene
 from ..views.visuals import advertise_visuals
 from .packages import find_model, find_package
 from .world_loading import fill_world, held_records, read_world, replay
@@ -155,6 +156,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
             advertise_visuals(server)
             advertise_view(server)
             advertise_frames(server)
+            advertise_scene(server)
             server.static_frames.watch(server.loop)
     server.world.listeners.append(Adapters(server))
     fill_world(server.world, spec)

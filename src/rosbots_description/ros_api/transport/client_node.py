@@ -21,7 +21,9 @@ logger = logging.getLogger(__name__)
 _RETRY = 0.5  # [s] wall time between two tries to reach the master
 
 
-def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> None:
+def start_node(
+    name: str, arguments: Sequence[str], anonymous: bool = False, wall_time: bool = False
+) -> None:
     """Wait for the ROS master as long as it takes, then start the node.
 
     rospy waits for the master too, but then Ctrl-C takes seconds and ends in a traceback. Signals
@@ -33,6 +35,7 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
         name: of the node.
         arguments: the command line without the program's name, for ROS remappings.
         anonymous: make the name unique, unless the command line gives one with __name.
+        wall_time: do not follow /clock.
 
     Raises:
         KeyboardInterrupt: Ctrl-C while waiting.
@@ -45,7 +48,8 @@ def start_node(name: str, arguments: Sequence[str], anonymous: bool = False) -> 
                        rosgraph.get_master_uri())
         while not rosgraph.is_master_online():
             time.sleep(_RETRY)
-    init_node(name, arguments, anonymous=anonymous, disable_signals=True)
+    init_node(name, arguments, anonymous=anonymous, disable_signals=True,
+              disable_rostime=wall_time)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _shut_down)
 

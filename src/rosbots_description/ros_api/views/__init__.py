@@ -1,3 +1,3 @@
-"""Visualisation: markers and frames for RViz, and overview pictures."""
+"""Visualisation: markers and frames for RViz, the scene for browsers, and overview pictures."""
 
-__all__ = ['frames', 'markers', 'overview_picture', 'visuals']
+__all__ = ['frames', 'markers', 'overview_picture', 'scene', 'visuals']

@@ -27,6 +27,7 @@ from .model_spec import (
 )
 from .physics_settings import PhysicsSettings, check_physics
 from .sensor_spec import SensorSpec
+from .shown_scene import SceneChange, ShownLink, ShownModel, ShownMotion
 from .world_spec import (
     DIRECTIONAL,
     POINT,
@@ -41,7 +42,7 @@ __all__ = [
     'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN',
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
-    'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneSpec', 'SensorSpec', 'Sphere',
-    'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
-    'material_of_colours',
+    'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneChange', 'SceneSpec',
+    'SensorSpec', 'ShownLink', 'ShownModel', 'ShownMotion', 'Sphere', 'Surface', 'Visual',
+    'WorldSpec', 'check_physics', 'gazebo_material', 'inertia', 'material_of_colours',
 ]

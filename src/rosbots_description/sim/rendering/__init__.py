@@ -1,7 +1,8 @@
-"""Rendering: pictures without a display, and meshes for RViz."""
+"""Rendering: pictures without a display, and meshes for RViz and browsers."""
 
 from .camera import EYE, OVERVIEW, TARGET, look_at
 from .gl import BYTES, Lens, Wants
+from .gltf import visual_gltf
 from .image_capture import ImageCapture, Picture
 from .render_process import NoRendererError, RenderError
 from .sunlit_meshes import SunlitMeshes
@@ -19,4 +20,5 @@ __all__ = [
     'SunlitMeshes',
     'Wants',
     'look_at',
+    'visual_gltf',
 ]

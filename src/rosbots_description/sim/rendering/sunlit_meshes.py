@@ -115,7 +115,7 @@ def _parts(visual: Visual) -> Iterator[tuple[Surface, Colour]]:
                        else (part.vertices, part.faces, part.normals))
             yield surface, visual.material.rgba if visual.material else part.rgba
     else:
-        yield _SHAPES[type(visual.geometry)](), (visual.material or Material()).rgba
+        yield UNIT_SURFACES[type(visual.geometry)](), (visual.material or Material()).rgba
 
 
 def _flat(corners: FloatArray) -> Surface:
@@ -148,7 +148,7 @@ def _sphere() -> Surface:
     return _revolved([np.concatenate([outward / 2.0, outward], axis=1)])
 
 
-_SHAPES = {Box: _box, Cylinder: _cylinder, Sphere: _sphere}
+UNIT_SURFACES = {Box: _box, Cylinder: _cylinder, Sphere: _sphere}
 
 
 def _revolved(profile: Sequence[FloatArray | list[tuple[float, ...]]]) -> Surface:

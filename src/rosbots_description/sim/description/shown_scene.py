@@ -1,0 +1,60 @@
+"""What a window on a world has to show, as plain values."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..core import Pose
+from .model_spec import Visual
+from .world_spec import LightSpec, SceneSpec
+
+
+@dataclass(frozen=True)
+class ShownLink:
+    """A link with its pose in the world; no other link ever has its number."""
+
+    number: int
+    name: str
+    pose: Pose
+    visuals: tuple[Visual, ...] = ()
+
+
+@dataclass(frozen=True)
+class ShownModel:
+    """A model with all its links, and the names of its joints."""
+
+    name: str
+    links: tuple[ShownLink, ...]
+    joints: tuple[str, ...] = ()
+    static: bool = False
+
+
+@dataclass(frozen=True)
+class SceneChange:
+    """What has changed in a world; after a `reset`, all that there is.
+
+    `lights` and `scene` are always complete. `step_size` [s], `max_update_rate` [Hz], 0 for no
+    limit.
+    """
+
+    reset: bool = False
+    models: tuple[ShownModel, ...] = ()  # added, or with other links than before
+    removed: tuple[str, ...] = ()
+    lights: Mapping[str, LightSpec] = field(default_factory=dict)
+    scene: SceneSpec = field(default_factory=SceneSpec)
+    step_size: float = 0.001
+    max_update_rate: float = 1000.0
+
+
+@dataclass(frozen=True)
+class ShownMotion:
+    """The clock of a world, and where the links are that moved.
+
+    `time` is simulated, `real_time` that of the simulator's wall clock [s]. `poses` are in the
+    world, by the numbers of links.
+    """
+
+    time: float
+    real_time: float
+    iterations: int
+    paused: bool
+    poses: Mapping[int, Pose] = field(default_factory=dict)

@@ -1,0 +1,126 @@
+"""The controls of time: play, pause, steps, resets, speed; and the clock."""
+
+import logging
+from collections import deque
+from collections.abc import Callable
+from typing import Protocol
+
+import viser
+
+from ..sim.core import SimError
+from ..sim.description import SceneChange, ShownMotion
+
+logger = logging.getLogger(__name__)
+
+PERIOD = 0.2  # [s, wall] between two clocks shown
+WINDOW = 1.0  # [s, wall] over which the real-time factor is taken
+SPEEDS = {'0.1x': 0.1, '1x': 1.0, '10x': 10.0, 'as fast as possible': 0.0}
+
+
+class Commands(Protocol):
+    """What a simulator is told; each raises SimError with a sentence if it is refused."""
+
+    def pause(self) -> None:
+        """Pause simulated time."""
+
+    def unpause(self) -> None:
+        """Continue simulated time."""
+
+    def step(self, steps: int) -> None:
+        """Pause and make steps."""
+
+    def reset_world(self) -> None:
+        """Return every model to its spawn pose; time is kept."""
+
+    def reset_simulation(self) -> None:
+        """Restart at time zero."""
+
+    def set_speed(self, factor: float) -> None:
+        """Set the target real-time factor; 0: as fast as possible."""
+
+
+class Bar:
+    """Controls for all browsers alike."""
+
+    def __init__(
+        self, gui: viser.GuiApi, world: Commands, complain: Callable[[str], None]
+    ) -> None:
+        self._world, self._complain = world, complain
+        self._shown = 0.0  # real time of the clock shown [s]
+        self._past: deque[tuple[float, float]] = deque()  # real time and simulated time
+        self._warning = gui.add_markdown('', visible=False)
+        self._clock = gui.add_markdown('The simulator has not answered yet.')
+        self._play = gui.add_button('Pause', icon=viser.Icon.PLAYER_PAUSE, hint='Space')
+        self._speed = gui.add_dropdown('Speed', list(SPEEDS), initial_value='1x', hint='target real-time factor')
+        self._steps = gui.add_number('Steps', 1, min=1, max=1_000_000, step=1)
+        self._step = gui.add_button('Step', icon=viser.Icon.PLAYER_TRACK_NEXT)
+        self._reset_world = gui.add_button(
+            'Reset world', hint='models return to where they were spawned; time is kept')
+        self._reset = gui.add_button('Reset time and world', hint='everything starts again')
+        self._paused = False
+        self._play.on_click(lambda _: self._toggle())
+        self._speed.on_update(self._choose)
+        self._step.on_click(lambda _: self._do(lambda: world.step(int(self._steps.value))))
+        self._reset_world.on_click(lambda _: self._do(world.reset_world))
+        self._reset.on_click(lambda _: self._do(world.reset_simulation))
+        gui.add_command('Play or pause', hotkey='space').on_trigger(lambda _: self._toggle())
+
+    def show_settings(self, change: SceneChange) -> None:
+        """Show the target speed."""
+        factor = change.max_update_rate * change.step_size
+        name = next((name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None)
+        if name is not None and self._speed.value != name:
+            self._speed.value = name  # type: ignore[misc]  # viser's setter has no type
+
+    def show_clock(self, motion: ShownMotion) -> None:
+        """Show times, and whether time runs."""
+        if motion.paused != self._paused:
+            self._paused = motion.paused
+            self._play.label = 'Play' if motion.paused else 'Pause'
+            self._play.icon = (
+                viser.Icon.PLAYER_PLAY if motion.paused else viser.Icon.PLAYER_PAUSE)
+        factor = self._factor(motion)
+        if abs(motion.real_time - self._shown) < PERIOD:
+            return
+        self._shown = motion.real_time
+        self._clock.content = (
+            '| | |\n|:--|--:|\n'
+            f'| Simulated time | {_time(motion.time)} |\n'
+            f'| Real time | {_time(motion.real_time)} |\n'
+            f'| Real-time factor | {"paused" if motion.paused else format(factor, ".2f")} |\n'
+            f'| Iterations | {motion.iterations} |')
+
+    def warn(self, sentence: str) -> None:
+        """Show a sentence above the clock until it is withdrawn with ''."""
+        self._warning.content, self._warning.visible = f'**{sentence}**', bool(sentence)
+
+    def _factor(self, motion: ShownMotion) -> float:
+        """Return the real-time factor of the last second."""
+        past = self._past
+        if past and (motion.time < past[-1][1] or motion.real_time < past[-1][0]):
+            past.clear()  # time was reset, or it is another simulator
+        past.append((motion.real_time, motion.time))
+        while len(past) > 2 and motion.real_time - past[0][0] > WINDOW:
+            past.popleft()
+        passed = motion.real_time - past[0][0]
+        return (motion.time - past[0][1]) / passed if passed > 0.0 else 0.0
+
+    def _choose(self, event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
+        if event.client is not None:  # else it is what the simulator says
+            self._do(lambda: self._world.set_speed(SPEEDS[event.target.value]))
+
+    def _toggle(self) -> None:
+        self._do(self._world.unpause if self._paused else self._world.pause)
+
+    def _do(self, command: Callable[[], None]) -> None:
+        try:
+            command()
+        except SimError as error:
+            logger.warning('%s', error)
+            self._complain(str(error))
+
+
+def _time(seconds: float) -> str:
+    minutes, rest = divmod(seconds, 60.0)
+    hours, minutes = divmod(int(minutes), 60)
+    return f'{hours:02d}:{minutes:02d}:{rest:06.3f}'

@@ -1,0 +1,101 @@
+"""The page: its scene and its controls, while somebody looks."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+import viser
+
+from ..sim.description import SceneChange, ShownMotion
+from .bar import Bar, Commands
+from .scene import SceneView
+
+logger = logging.getLogger(__name__)
+
+SILENCE = 2.0  # [s, wall] without a motion after which the simulator has gone
+GONE = 'The simulator does not answer. This page shows its last state.'
+BACK = 'The simulator is there again.'
+
+
+class Simulator(Commands, Protocol):
+    """A simulator that can be looked at."""
+
+    def open(self, change: Callable[[SceneChange], None],
+             motion: Callable[[ShownMotion], None]) -> None:
+        """Begin to call back, from any thread."""
+
+    def close(self) -> None:
+        """End that."""
+
+
+class Page:
+    """Shows a world to all browsers that are connected; without one it does not look at it."""
+
+    def __init__(self, site: viser.ViserServer, world: Simulator) -> None:
+        self._site, self._world = site, world
+        self._lock = threading.RLock()
+        self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
+        self._heard = 0.0  # when the last motion came [s, monotonic]
+        self._lost = False
+        site.gui.configure_theme(show_logo=False, show_share_button=False)
+        site.gui.set_panel_label('gzweb')
+        self._scene = SceneView(site)
+        self._bar = Bar(site.gui, world, self._notify)
+        site.on_client_connect(self._enter)
+        site.on_client_disconnect(self._leave)
+
+    def poll(self) -> None:
+        """Tell those who look when the simulator has gone; to be called about once a second."""
+        with self._lock:
+            looked_at = bool(self._site.get_clients())
+            if looked_at and not self._lost and time.monotonic() - self._heard > SILENCE:
+                self._lost = True
+                self._bar.warn(GONE)
+
+    def _enter(self, client: viser.ClientHandle) -> None:
+        with self._lock:
+            self._new.append(client)
+            if len(self._site.get_clients()) == 1:
+                self._heard = time.monotonic()
+                self._world.close()
+                self._world.open(self._change, self._move)
+            elif self._heard:
+                self._look()
+
+    def _leave(self, client: viser.ClientHandle) -> None:
+        with self._lock:
+            if client in self._new:
+                self._new.remove(client)
+            if not self._site.get_clients():
+                self._world.close()
+
+    def _change(self, change: SceneChange) -> None:
+        with self._lock:
+            self._scene.apply(change)
+            self._bar.show_settings(change)
+            self._look()
+
+    def _look(self) -> None:
+        """Let those who are new look at everything."""
+        eye, target = self._scene.start_view()
+        camera = self._site.initial_camera
+        camera.position, camera.look_at = eye, target
+        for client in self._new:
+            client.camera.position, client.camera.look_at = eye, target
+        self._new.clear()
+
+    def _move(self, motion: ShownMotion) -> None:
+        with self._lock:
+            self._heard = time.monotonic()
+            if self._lost:
+                self._lost = False
+                self._bar.warn('')
+                self._notify(BACK)
+            self._scene.move(motion.poses)
+            self._bar.show_clock(motion)
+
+    def _notify(self, sentence: str) -> None:
+        for client in self._site.get_clients().values():
+            client.add_notification(sentence, '', auto_close_seconds=8.0)

@@ -1,0 +1,95 @@
+"""A browser without a picture: it opens the window's connection and decodes what comes."""
+
+import struct
+import time
+
+import msgspec
+import viser
+import zstandard
+from websockets.sync.client import connect
+
+CAMERA = {
+    'type': 'ViewerCameraMessage', 'wxyz': [1.0, 0.0, 0.0, 0.0], 'position': [3.0, 3.0, 3.0],
+    'fov': 1.0, 'near': 0.01, 'far': 1000.0, 'image_height': 100, 'image_width': 100,
+    'look_at': [0.0, 0.0, 0.0], 'up_direction': [0.0, 0.0, 1.0],
+}
+
+
+class Browser:
+    """Keeps all messages by type, and what is known of each node and control."""
+
+    def __init__(self, address, headers=None):
+        self._connection = connect(
+            address.replace('http', 'ws', 1), subprotocols=[f'viser-v{viser.__version__}'],
+            additional_headers=headers, max_size=None)
+        self.messages = []
+        self.nodes = {}  # of the scene: name -> [type, position, wxyz]
+        self.controls = {}  # uuid -> [type, properties]
+        self.send(CAMERA)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._connection.close()
+
+    def send(self, message):
+        self._connection.send(msgspec.msgpack.encode(message))
+
+    def read(self, seconds=0.05):
+        """Take in what comes within so many seconds."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0.0:
+            try:
+                content = self._connection.recv(timeout=left)
+            except TimeoutError:
+                return
+            unpacked, packed = struct.unpack_from('<QQ', content)
+            inner = zstandard.ZstdDecompressor().decompress(
+                content[16:16 + packed], max_output_size=unpacked)
+            for message in msgspec.msgpack.decode(inner)['messages']:
+                self.messages.append(message)
+                self._take(message)
+
+    def wait_until(self, condition, timeout=20.0):
+        """Read until the condition holds."""
+        end = time.monotonic() + timeout
+        while not condition():
+            assert time.monotonic() < end, 'it did not come true'
+            self.read()
+
+    def click(self, label):
+        """Press the button of that label."""
+        self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
+                   'updates': {'value': True}})
+
+    def choose(self, label, value):
+        """Set the value of a control."""
+        self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
+                   'updates': {'value': value}})
+
+    def control(self, label):
+        """Return the number of the control of that label; None if there is none."""
+        return next((uuid for uuid, (_, props) in self.controls.items()
+                     if props.get('label') == label), None)
+
+    def texts(self):
+        """Return the texts that are shown."""
+        return [props['_markdown'] for kind, props in self.controls.values()
+                if kind == 'GuiMarkdownMessage' and props.get('visible', True)]
+
+    def _take(self, message):
+        kind, name = message['type'], message.get('name')
+        if kind == 'RemoveSceneNodeMessage':
+            self.nodes = {node: state for node, state in self.nodes.items()
+                          if node != name and not node.startswith(f'{name}/')}
+        elif kind == 'SetPositionMessage' and name in self.nodes:
+            self.nodes[name][1] = message['position']
+        elif kind == 'SetOrientationMessage' and name in self.nodes:
+            self.nodes[name][2] = message['wxyz']
+        elif kind == 'GuiUpdateMessage' and message['uuid'] in self.controls:
+            self.controls[message['uuid']][1].update(message['updates'])
+        elif kind.startswith('Gui') and 'props' in message:
+            self.controls[message['uuid']] = [kind, message['props']]
+        elif name is not None and 'props' in message and kind != 'SceneNodeUpdateMessage':
+            self.nodes[name] = [kind, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]

@@ -1,0 +1,45 @@
+"""What a window shows arrives as it was sent."""
+
+from rosbots_description.ros_api.messages import (
+    motion_message,
+    read_motion,
+    scene_change,
+    scene_message,
+)
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import (
+    SPOT,
+    Box,
+    Cylinder,
+    LightSpec,
+    Mesh,
+    Plane,
+    SceneChange,
+    SceneSpec,
+    ShownLink,
+    ShownModel,
+    ShownMotion,
+    Sphere,
+    Visual,
+    gazebo_material,
+)
+
+POSE = Pose((1.0, -2.0, 1e-9), (0.5, 0.5, -0.5, 0.5))
+
+
+def test_a_change_arrives_as_it_was_sent():
+    shapes = (Box((1.0, 2.0, 3.0)), Sphere(0.1), Cylinder(0.1, 2.0), Plane(),
+              Mesh('/ä b.dae', (1.0, 1.0, -1.0), 'package://p/ä b.dae'))
+    visuals = tuple(Visual(f'"{n}"', shape, POSE, gazebo_material('Gazebo/Red') if n else None)
+                    for n, shape in enumerate(shapes))
+    change = SceneChange(
+        True, (ShownModel('a/b::c', (ShownLink(7, 'l', POSE, visuals), ShownLink(8, 'm', POSE)),
+                          ('j',), True),), ('gone',),
+        {'lamp': LightSpec('lamp', SPOT, POSE, cast_shadows=True)},
+        SceneSpec(background=(0.0, 0.1, 0.2, 1.0)), 0.002, 0.0)
+    assert scene_change(scene_message(change)) == change
+
+
+def test_a_motion_arrives_as_it_was_sent():
+    motion = ShownMotion(1e6 + 0.001, 2.5, 2**40 + 1, True, {3: POSE, 2**24 + 1: Pose()})
+    assert read_motion(motion_message(motion)) == motion

@@ -1,0 +1,237 @@
+"""The page as a browser gets it: the scene, the clock, and what its controls do."""
+
+import time
+
+import pytest
+from support.browser import Browser
+
+from rosbots_description.sim.core import Pose, SimError
+from rosbots_description.sim.description import (
+    Box,
+    LightSpec,
+    Mesh,
+    Plane,
+    SceneChange,
+    SceneSpec,
+    ShownLink,
+    ShownModel,
+    ShownMotion,
+    Visual,
+)
+from rosbots_description.web import Page, Site
+from rosbots_description.web import page as page_module
+from rosbots_description.web.scene import SceneView
+
+SUN = LightSpec('sun', 'directional', direction=(0.0, 0.0, -1.0), cast_shadows=True)
+
+
+class FakeSimulator:
+    """Remembers what it is told."""
+
+    def __init__(self):
+        self.told = []
+        self.change = self.motion = None
+        self.fault = ''
+
+    def open(self, change, motion):
+        self.change, self.motion = change, motion
+
+    def close(self):
+        self.change = self.motion = None
+
+    def __getattr__(self, name):
+        def note(*arguments):
+            self.told.append((name, *arguments))
+            if self.fault:
+                raise SimError(self.fault)
+        return note
+
+
+def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):
+    visual = Visual('v', shape or Box((1.0, 1.0, 1.0)), Pose((0.0, 0.0, 1.0)))
+    return ShownModel(name, (ShownLink(number, 'link', Pose(position), (visual,)),))
+
+
+def clock(time=0.0, real_time=0.0, paused=False, **poses):
+    return ShownMotion(time, real_time, round(1000 * time), paused,
+                       {int(name[1:]): pose for name, pose in poses.items()})
+
+
+@pytest.fixture
+def site():
+    site = Site('127.0.0.1', 0)
+    yield site
+    site.stop()
+
+
+@pytest.fixture
+def simulator():
+    return FakeSimulator()
+
+
+@pytest.fixture
+def page(site, simulator):
+    return Page(site, simulator)
+
+
+@pytest.fixture
+def browser(site, simulator, page):
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: simulator.change)
+        yield browser
+
+
+def wait_until(condition):
+    end = time.monotonic() + 20.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def shown(browser):
+    """Return the names of the models that are shown."""
+    return {name.split('/')[2] for name in browser.nodes if name.startswith('/models/')}
+
+
+def test_the_simulator_is_looked_at_only_while_a_browser_is(site, simulator, page):
+    assert simulator.change is None
+    with Browser(site.address) as first:
+        first.wait_until(lambda: simulator.change)
+        with Browser(site.address) as second:
+            second.wait_until(lambda: len(site.get_clients()) == 2)
+        first.wait_until(lambda: len(site.get_clients()) == 1)
+        assert simulator.change is not None
+    wait_until(lambda: simulator.change is None)
+
+
+def test_models_come_move_and_go(browser, simulator):
+    simulator.change(SceneChange(True, (model('a/b', 1), model('c', 2)), lights={'sun': SUN}))
+    browser.wait_until(lambda: shown(browser) == {'a\u2215b', 'c'})
+    assert browser.nodes['/models/c/link/0 v'][0] == 'GlbMessage'
+    assert browser.nodes['/models/c/link/0 v'][1:] == [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0]]
+    pose = Pose((1.0, 2.0, 3.0), (0.0, 0.0, 1.0, 0.0))
+    simulator.motion(clock(_2=pose, _9=pose))
+    link = browser.nodes['/models/c/link']
+    browser.wait_until(lambda: link[1:] == [[1.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]])
+    simulator.change(SceneChange(models=(model('d', 3),), removed=('c',), lights={'sun': SUN}))
+    browser.wait_until(lambda: shown(browser) == {'a\u2215b', 'd'})
+
+
+def test_a_second_browser_sees_the_same(browser, simulator, site):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    simulator.motion(clock(_1=Pose((5.0, 0.0, 0.0))))
+    with Browser(site.address) as second:
+        second.wait_until(lambda: second.nodes.get('/models/a/link', [0, 0])[1] == [5.0, 0.0, 0.0])
+
+
+def test_a_simulator_that_restarted_shows_its_own_models(browser, simulator):
+    simulator.change(SceneChange(True, (model('a', 1), model('b', 2))))
+    browser.wait_until(lambda: shown(browser) == {'a', 'b'})
+    before = len([m for m in browser.messages if m['type'] == 'GlbMessage'])
+    simulator.change(SceneChange(True, (model('b', 0, position=(0.0, 7.0, 0.0)),)))
+    simulator.motion(clock(_0=Pose((0.0, 8.0, 0.0))))
+    browser.wait_until(lambda: shown(browser) == {'b'})
+    browser.wait_until(lambda: browser.nodes['/models/b/link'][1] == [0.0, 8.0, 0.0])
+    # What looks the same is not sent again.
+    assert len([m for m in browser.messages if m['type'] == 'GlbMessage']) == before
+
+
+def test_a_mesh_that_cannot_be_read_is_left_out(browser, simulator, caplog):
+    simulator.change(SceneChange(True, (model('a', 1, Mesh('/gone.stl')), model('b', 2))))
+    browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
+    assert '/models/a/link/0 v' not in browser.nodes
+    assert "visual 'v' of model 'a' is not shown" in caplog.text
+
+
+def test_only_a_ground_has_a_grid_and_is_no_part_of_the_view(site):
+    view = SceneView(site)
+    view.apply(SceneChange(True, (model('ground', 1, Plane()), model('wall', 2, Plane(
+        (1.0, 0.0, 0.0))), model('box', 3, position=(100.0, 0.0, 0.0)))))
+    assert site.scene.get_handle_by_name('/models/ground/link/0 v/grid') is not None
+    assert site.scene.get_handle_by_name('/models/wall/link/0 v/grid') is None
+    eye, target = view.start_view()
+    assert target == pytest.approx((100.0, 0.0, 1.0))
+    assert eye[2] > 1.5  # from above
+
+
+def test_everything_is_in_view_and_the_start_looks_there(browser, simulator):
+    simulator.change(SceneChange(True, tuple(
+        model(str(x), x, position=(float(x), 0.0, 0.0)) for x in (1, 9))))
+    browser.wait_until(lambda: [m for m in browser.messages if m['type'] ==
+                                'SetCameraLookAtMessage' and m['look_at'] == [5.0, 0.0, 1.0]])
+
+
+def test_lights_are_those_of_the_world(browser, simulator):
+    lamp = LightSpec('lamp', 'point', Pose((1.0, 2.0, 3.0)), (1.0, 0.5, 0.0, 1.0))
+    spot = LightSpec('spot', 'spot', spot_outer_angle=1.0, spot_inner_angle=0.5)
+    simulator.change(SceneChange(True, lights={'sun': SUN, 'lamp': lamp, 'spot': spot}))
+    browser.wait_until(lambda: '/lights/spot' in browser.nodes)
+    # It shines towards the origin.
+    assert browser.nodes['/lights/sun'][:2] == ['DirectionalLightMessage', [0.0, 0.0, 100.0]]
+    assert browser.nodes['/lights/lamp'][:2] == ['PointLightMessage', [1.0, 2.0, 3.0]]
+    (message,) = [m for m in browser.messages if m['type'] == 'PointLightMessage']
+    assert message['props']['color'] == [255, 128, 0]
+    simulator.change(SceneChange(lights={'sun': SUN}))
+    browser.wait_until(lambda: '/lights/lamp' not in browser.nodes)
+
+
+def test_a_world_without_shadows_has_none(browser, simulator):
+    simulator.change(SceneChange(True, lights={'sun': SUN}, scene=SceneSpec(shadows=False)))
+    browser.wait_until(lambda: '/lights/sun' in browser.nodes)
+    (message,) = [m for m in browser.messages if m['type'] == 'DirectionalLightMessage']
+    assert not message['props']['cast_shadow']
+
+
+def test_the_clock_shows_times_and_the_real_time_factor(browser, simulator):
+    simulator.motion(clock(10.0, 20.0))
+    simulator.motion(clock(10.5, 21.0))
+    browser.wait_until(lambda: any('00:00:10.500' in text and '00:00:21.000' in text
+                                   and '0.50' in text and '10500' in text
+                                   for text in browser.texts()))
+    simulator.motion(clock(0.0, 22.0))  # reset
+    simulator.motion(clock(2.0, 23.0, paused=True))
+    browser.wait_until(lambda: any('paused' in text for text in browser.texts()))
+    assert browser.control('Play')
+
+
+def test_buttons_tell_the_simulator(browser, simulator):
+    browser.wait_until(lambda: browser.control('Step'))
+    browser.choose('Steps', 5)
+    for told, label in enumerate(('Step', 'Pause', 'Reset world', 'Reset time and world'), 1):
+        browser.click(label)
+        browser.wait_until(lambda told=told: len(simulator.told) == told)
+    browser.choose('Speed', 'as fast as possible')
+    browser.wait_until(lambda: len(simulator.told) == 5)
+    assert simulator.told == [
+        ('step', 5), ('pause',), ('reset_world',), ('reset_simulation',), ('set_speed', 0.0)]
+    simulator.motion(clock(paused=True))
+    browser.wait_until(lambda: browser.control('Play'))
+    browser.click('Play')
+    browser.wait_until(lambda: simulator.told[-1] == ('unpause',))
+
+
+def test_the_speed_of_the_simulator_is_shown_and_not_told_to_it(browser, simulator):
+    simulator.change(SceneChange(True, max_update_rate=100.0))
+    browser.wait_until(lambda: browser.controls[browser.control('Speed')][1].get('value') == '0.1x')
+    assert simulator.told == []
+
+
+def test_a_refusal_is_shown(browser, simulator):
+    browser.wait_until(lambda: browser.control('Pause'))
+    simulator.fault = 'no: because.'
+    browser.click('Pause')
+    browser.wait_until(lambda: any(m['type'] == 'NotificationShowMessage' and 'no: because.' in
+                                   str(m) for m in browser.messages))
+
+
+def test_a_simulator_that_has_gone_and_returns_is_told_of(browser, simulator, page, monkeypatch):
+    simulator.motion(clock())
+    page.poll()
+    browser.read()
+    assert not any(page_module.GONE in text for text in browser.texts())
+    monkeypatch.setattr(page_module, 'SILENCE', 0.0)
+    page.poll()
+    browser.wait_until(lambda: any(page_module.GONE in text for text in browser.texts()))
+    simulator.motion(clock())
+    browser.wait_until(lambda: any(page_module.BACK in str(m) for m in browser.messages))
+    browser.wait_until(lambda: not any(page_module.GONE in text for text in browser.texts()))
