@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""The browser's window: it looks only when it is looked at, and acts by the simulator's services."""
+
+import re
+import signal
+import sys
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from gazebo_msgs.srv import DeleteModel, GetPhysicsProperties, GetWorldProperties, SpawnModel
+from server_process import ServerProcess
+from simulator import pose, proxy, wait_until
+from terminal import Terminal
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from support.browser import Browser  # noqa: E402
+
+START = 40.0  # [s, wall] for a program
+TOPICS = {'/gazebo/view/scene', '/gazebo/view/motion'}
+BALL = """<robot name="ball"><link name="body">
+  <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <visual><geometry><sphere radius="0.5"/></geometry></visual>
+  <collision><geometry><sphere radius="0.5"/></geometry></collision>
+</link></robot>"""
+LINK = '/models/ball/body'
+
+
+def subscribed():
+    """Return the topics that the window subscribes to."""
+    _, readers, _ = rospy.get_master().getSystemState()[2]
+    return {topic for topic, nodes in readers if '/gzweb' in nodes}
+
+
+def pace():
+    now = proxy('get_physics_properties', GetPhysicsProperties)()
+    return now.time_step * now.max_update_rate
+
+
+class GzwebTest(unittest.TestCase):
+
+    def open(self, *arguments):
+        window = Terminal('rosrun', 'gazebo_ros', 'gzweb', *arguments)
+        self.addCleanup(window.close)
+        return window
+
+    def address(self, window):
+        found = []
+        wait_until(lambda: found.append(re.search(r'gzweb: the world is at (\S+)', window.shown()))
+                   or found[-1], 'the address', START)
+        return found[-1][1]
+
+    def test_world_is_shown_and_controlled(self):
+        window = self.open('--port', '0')
+        with ServerProcess() as server:
+            server.wait_ready()
+            address = self.address(window)
+            self.assertEqual(subscribed(), set())  # not even to /clock
+            with Browser(address) as browser:
+                browser.wait_until(lambda: '/models/ground_plane/link' in browser.nodes)
+                self.assertEqual(subscribed(), TOPICS)
+                self.follow_a_ball(browser)
+                self.control_time(browser)
+                server.process.kill()
+                browser.wait_until(lambda: any('does not answer' in text
+                                               for text in browser.texts()))
+            wait_until(lambda: subscribed() == set(), 'the window to look no more')
+        with ServerProcess() as server, Browser(address) as browser:
+            server.wait_ready()
+            browser.wait_until(lambda: '/models/ground_plane/link' in browser.nodes)
+            browser.wait_until(lambda: LINK not in browser.nodes)  # of the one before
+            browser.wait_until(lambda: not any('does not answer' in text
+                                               for text in browser.texts()))
+        window.process.send_signal(signal.SIGINT)
+        wait_until(lambda: window.process.poll() is not None, 'the end')
+        self.assertEqual(window.process.returncode, 0)
+        self.assertEqual(window.shown().split('\r\n')[1:], [''])  # it said the address only
+
+    def follow_a_ball(self, browser):
+        spawned = proxy('spawn_urdf_model', SpawnModel)('ball', BALL, '', pose(z=3.0), '')
+        self.assertTrue(spawned.success, spawned.status_message)
+        browser.wait_until(lambda: LINK in browser.nodes)
+        browser.wait_until(lambda: abs(browser.nodes[LINK][1][2] - 0.5) < 0.01)  # it has fallen
+
+    def control_time(self, browser):
+        time = proxy('get_world_properties', GetWorldProperties)
+        browser.click('Pause')
+        browser.wait_until(lambda: browser.control('Play'))
+        before = time().sim_time
+        browser.choose('Steps', 7)
+        browser.click('Step')
+        browser.wait_until(lambda: time().sim_time > before + 0.0065)
+        self.assertAlmostEqual(time().sim_time, before + 0.007, places=9)
+        browser.click('Reset world')
+        browser.wait_until(lambda: browser.nodes[LINK][1][2] == 3.0)
+        self.assertAlmostEqual(time().sim_time, before + 0.007, places=9)
+        browser.click('Reset time and world')
+        browser.wait_until(lambda: time().sim_time == 0.0)
+        browser.choose('Speed', '10x')
+        browser.wait_until(lambda: abs(pace() - 10.0) < 1e-9)
+        browser.click('Play')
+        browser.wait_until(lambda: time().sim_time > 0.1)
+        proxy('delete_model', DeleteModel)('ball')
+        browser.wait_until(lambda: LINK not in browser.nodes)
+        proxy('spawn_urdf_model', SpawnModel)('ball', BALL, '', pose(z=3.0), '')
+        browser.wait_until(lambda: LINK in browser.nodes)
+
+    def test_port_in_use_is_told_in_a_sentence(self):
+        first = self.open('--port', '0')
+        port = re.search(r':(\d+)/', self.address(first))[1]
+        second = self.open('--port', port)
+        wait_until(lambda: second.process.poll() is not None, 'the end', START)
+        self.assertEqual(second.process.returncode, 1)
+        self.assertEqual(second.shown(), f'gzweb: no window at 127.0.0.1, port {port}: Address '
+                         'already in use; web_port and web_host choose others\r\n')
+
+
+if __name__ == '__main__':
+    rospy.init_node('browser', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'browser', GzwebTest)
