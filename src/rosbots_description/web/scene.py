@@ -84,7 +84,7 @@ class SceneView:
         """Return eye and target [m] of a view of everything, from ahead at the right."""
         low, high = self._bounds()
         middle, extent = (low + high) / 2.0, float(np.linalg.norm(high - low))
-        eye = middle + max(1.3 * extent, 1.0) * np.array([0.66, -0.62, 0.42])
+        eye = middle + max(0.95 * extent, 1.0) * np.array([0.66, -0.62, 0.42])
         return (eye[0], eye[1], eye[2]), (middle[0], middle[1], middle[2])
 
     def _bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -175,7 +175,7 @@ def _material(part: _Part, image: int | None) -> dict[str, Any]:
         'pbrMetallicRoughness': {
             'baseColorFactor': [*_linear(part.rgba[:3]), float(alpha)], 'metallicFactor': 0.0,
             'roughnessFactor': _roughness(own)},
-        'emissiveFactor': list(_linear(own.emissive)), 'doubleSided': True}
+        'emissiveFactor': list(_linear(own.emissive)), 'doubleSided': own.both_sides}
     if image is not None:
         made['pbrMetallicRoughness']['baseColorTexture'] = {'index': image}
     if alpha < 1.0:
