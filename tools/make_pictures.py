@@ -2,11 +2,14 @@
 """Regenerate the README's pictures: `./rosbots exec tools/make_pictures.py [folder [picture …]]`.
 
 The windows are opened on a virtual display (Xvfb), which stores its pixels in a file; the
-demo draws its own two. The default is all of them, into doc/images; `speed.png` is drawn by
-`./rosbots bench`, and `map.png` is RViz after a minute of map_while_driving.launch.
+demo draws its own two; `web.png` needs Chromium. The default is all of them, into doc/images;
+`speed.png` is drawn by `./rosbots bench`, and `map.png` is RViz after a minute of
+map_while_driving.launch.
 """
 
+import io
 import os
+import re
 import signal
 import socket
 import struct
@@ -19,6 +22,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from chromium import Chromium
 from PIL import Image
 
 from rosbots_description.cli import demo
@@ -36,7 +40,8 @@ LOOKS = 5  # equal screenshots of a steady window; the first image takes a while
 LEAST = 1000  # width of a window [pixels]; RViz's splash screen is narrower
 FEWEST = 300  # colours of a window that shows the robot
 # Launch files to start in order, each with the output to wait for before the next.
-WINDOWS: dict[str, list[tuple[list[str], str | None]]] = {
+Steps = Sequence[tuple[list[str], str | None]]
+WINDOWS: dict[str, Steps] = {
     'rviz.png': [(['rosbots_description', 'rviz.launch'], None)],
     'gzclient.png': [
         (['gazebo_ros', 'empty_world.launch', 'world_name:=worlds/room.world'],
@@ -46,6 +51,15 @@ WINDOWS: dict[str, list[tuple[list[str], str | None]]] = {
     ],
     'see.png': [(['rosbots_description', 'see.launch'], 'pictures are drawn by')],
 }
+NOTICE = '.mantine-Notification-closeButton'  # that the page is drawn in software
+BROWSER: dict[str, Steps] = {'web.png': [
+    (['gazebo_ros', 'empty_world.launch', 'gui:=false', 'web:=true', 'web_port:=0',
+      'world_name:=worlds/room.world'], 'the world is at'),
+    (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
+     'Successfully spawned entity'),
+]}
+PAGE = (1200, 787)  # [pixels]; Chromium keeps 87 for itself
+LOADING = 30.0  # [s, wall] for all meshes, drawn in software
 DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
 
 
@@ -104,21 +118,39 @@ def steady(file: Path) -> np.ndarray:
     raise PictureError(f'no steady window within {START:g} s')
 
 
-def picture_of(steps: Sequence[tuple[list[str], str | None]], folder: Path) -> np.ndarray:
+def picture_of(steps: Steps, folder: Path) -> np.ndarray:
     """Open windows by launch files; return the pixels."""
+    with display(folder) as (name, pixels), started(steps, folder, DISPLAY=name):
+        return steady(pixels)
+
+
+def picture_in_browser(steps: Steps, folder: Path) -> Image.Image:
+    """Open the window in a browser by launch files; return what it shows."""
+    with started(steps, folder):
+        log = (folder / '0.log').read_text(errors='replace')
+        address = re.findall(r'the world is at (\S+)', log)[-1]
+        with Chromium(address, PAGE, folder / 'profile') as page:
+            page.wait_for("document.body.innerText.includes('Iterations')", START)
+            page.evaluate(f'document.querySelectorAll("{NOTICE}").forEach(b => b.click())')
+            time.sleep(LOADING)
+            return Image.open(io.BytesIO(page.picture()))
+
+
+@contextmanager
+def started(steps: Steps, folder: Path, **environment: str) -> Iterator[None]:
+    """Run launch files in order, with a master of their own."""
     opened = []
-    with display(folder) as (name, pixels):
-        environment = ros_environment(folder, DISPLAY=name)
-        try:
-            for number, (arguments, text) in enumerate(steps):
-                log = folder / f'{number}.log'
-                opened.append(Launched(arguments, log, environment))
-                if text:
-                    wait_for(text, log)
-            return steady(pixels)
-        finally:
-            for launched in reversed(opened):
-                launched.stop()
+    variables = ros_environment(folder, **environment)
+    try:
+        for number, (arguments, text) in enumerate(steps):
+            log = folder / f'{number}.log'
+            opened.append(Launched(arguments, log, variables))
+            if text:
+                wait_for(text, log)
+        yield
+    finally:
+        for launched in reversed(opened):
+            launched.stop()
 
 
 def wait_for(text: str, log: Path) -> None:
@@ -161,12 +193,15 @@ def make_demo(images: Path, names: Iterable[str]) -> None:
 def main() -> int:
     """Make the pictures; return an exit code."""
     images = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / 'doc' / 'images'
-    names = sys.argv[2:] or [*WINDOWS, *DEMO]
+    names = sys.argv[2:] or [*WINDOWS, *BROWSER, *DEMO]
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         for name in WINDOWS.keys() & names:
             with tempfile.TemporaryDirectory() as folder:
                 save(Image.fromarray(picture_of(WINDOWS[name], Path(folder))), images / name)
+        for name in BROWSER.keys() & names:
+            with tempfile.TemporaryDirectory() as folder:
+                save(picture_in_browser(BROWSER[name], Path(folder)), images / name)
         if DEMO.keys() & names:
             make_demo(images, DEMO.keys() & names)
     except (PictureError, OSError) as error:

@@ -15,7 +15,7 @@ from simulator import pose, proxy, wait_until
 from terminal import Terminal
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
-from support.browser import Browser  # noqa: E402
+from support.browser import Browser
 
 START = 40.0  # [s, wall] for a program
 TOPICS = {'/gazebo/view/scene', '/gazebo/view/motion'}
