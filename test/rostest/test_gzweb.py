@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The browser's window: it looks only when it is looked at, and acts by the simulator's services."""
+"""The browser's window looks only when it is looked at, and acts by the simulator's services."""
 
 import re
 import signal

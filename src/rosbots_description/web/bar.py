@@ -51,7 +51,8 @@ class Bar:
         self._warning = gui.add_markdown('', visible=False)
         self._clock = gui.add_markdown('The simulator has not answered yet.')
         self._play = gui.add_button('Pause', icon=viser.Icon.PLAYER_PAUSE, hint='Space')
-        self._speed = gui.add_dropdown('Speed', list(SPEEDS), initial_value='1x', hint='target real-time factor')
+        self._speed = gui.add_dropdown(
+            'Speed', list(SPEEDS), initial_value='1x', hint='target real-time factor')
         self._steps = gui.add_number('Steps', 1, min=1, max=1_000_000, step=1)
         self._step = gui.add_button('Step', icon=viser.Icon.PLAYER_TRACK_NEXT)
         self._reset_world = gui.add_button(

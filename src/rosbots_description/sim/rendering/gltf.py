@@ -6,6 +6,7 @@ Coordinates are those of the link, z up: what shows them must not turn them to g
 import io
 import json
 import logging
+import math
 import struct
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -189,7 +190,7 @@ def _roughness(own: Reflection) -> float:
     """Return the roughness whose highlight is as wide as that of the shininess (Phong)."""
     if not any(own.specular) or own.shininess <= 0.0:
         return 1.0
-    return max(0.2, (2.0 / (own.shininess + 2.0)) ** 0.25)
+    return max(0.2, math.sqrt(math.sqrt(2.0 / (own.shininess + 2.0))))
 
 
 def _linear(rgb: Vector) -> Iterator[float]:
