@@ -37,6 +37,7 @@ class Page:
         self._site, self._world = site, world
         self._lock = threading.RLock()
         self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
+        self._is_open = self._is_complete = False  # the view, and what it has shown
         self._heard = 0.0  # when the last motion came [s, monotonic]
         self._lost = False
         site.gui.configure_theme(show_logo=False, show_share_button=False)
@@ -49,32 +50,33 @@ class Page:
     def poll(self) -> None:
         """Tell those who look when the simulator has gone; to be called about once a second."""
         with self._lock:
-            looked_at = bool(self._site.get_clients())
-            if looked_at and not self._lost and time.monotonic() - self._heard > SILENCE:
+            if self._is_open and not self._lost and time.monotonic() - self._heard > SILENCE:
                 self._lost = True
                 self._bar.warn(GONE)
 
     def _enter(self, client: viser.ClientHandle) -> None:
         with self._lock:
             self._new.append(client)
-            if len(self._site.get_clients()) == 1:
+            if not self._is_open:
+                self._is_open, self._is_complete = True, False
                 self._heard = time.monotonic()
-                self._world.close()
                 self._world.open(self._change, self._move)
-            elif self._heard:
+            elif self._is_complete:
                 self._look()
 
     def _leave(self, client: viser.ClientHandle) -> None:
         with self._lock:
             if client in self._new:
                 self._new.remove(client)
-            if not self._site.get_clients():
+            if self._is_open and not self._site.get_clients():
+                self._is_open = False
                 self._world.close()
 
     def _change(self, change: SceneChange) -> None:
         with self._lock:
             self._scene.apply(change)
             self._bar.show_settings(change)
+            self._is_complete = True
             self._look()
 
     def _look(self) -> None:

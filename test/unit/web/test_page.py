@@ -104,6 +104,17 @@ def test_the_simulator_is_looked_at_only_while_a_browser_is(site, simulator, pag
     wait_until(lambda: simulator.change is None)
 
 
+def test_browsers_that_come_at_once_share_one_view(site, simulator, page, monkeypatch):
+    opened = []
+    monkeypatch.setattr(simulator, 'open', lambda *_: opened.append(len(site.get_clients())))
+    page._lock.acquire()
+    with Browser(site.address), Browser(site.address):
+        wait_until(lambda: len(site.get_clients()) == 2)
+        page._lock.release()
+        wait_until(lambda: opened)
+    assert opened == [2]
+
+
 def test_models_come_move_and_go(browser, simulator):
     simulator.change(SceneChange(True, (model('a/b', 1), model('c', 2)), lights={'sun': SUN}))
     browser.wait_until(lambda: shown(browser) == {'a\u2215b', 'c'})
