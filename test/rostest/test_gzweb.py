@@ -10,6 +10,7 @@ from pathlib import Path
 import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, GetPhysicsProperties, GetWorldProperties, SpawnModel
+from geometry_msgs.msg import Twist
 from server_process import ServerProcess
 from simulator import pose, proxy, wait_until
 from terminal import Terminal
@@ -62,6 +63,7 @@ class GzwebTest(unittest.TestCase):
                 self.assertEqual(subscribed(), TOPICS)
                 self.follow_a_ball(browser)
                 self.control_time(browser)
+                self.drive(browser)
                 server.process.kill()
                 browser.wait_until(lambda: any('does not answer' in text
                                                for text in browser.texts()))
@@ -105,6 +107,17 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: LINK not in browser.nodes)
         proxy('spawn_urdf_model', SpawnModel)('ball', BALL, '', pose(z=3.0), '')
         browser.wait_until(lambda: LINK in browser.nodes)
+
+    def drive(self, browser):
+        commands = []
+        subscriber = rospy.Subscriber('/robot/cmd_vel', Twist, commands.append)
+        browser.wait_until(lambda: any(
+            '/robot/cmd_vel' in props.get('options', ()) for _, props in browser.controls.values()))
+        browser.press('I')
+        browser.wait_until(lambda: len(commands) == 2)
+        self.assertEqual([(one.linear.x, one.angular.z) for one in commands],
+                         [(0.5, 0.0), (0.0, 0.0)])
+        subscriber.unregister()
 
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')

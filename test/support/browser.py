@@ -24,6 +24,7 @@ class Browser:
             additional_headers=headers, max_size=None)
         self.messages = []
         self.nodes = {}  # of the scene: name -> [type, position, wxyz]
+        self.keys = {}  # what is bound to each
         self.controls = {}  # uuid -> [type, properties]
         self.send(CAMERA)
 
@@ -63,6 +64,14 @@ class Browser:
         self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
                    'updates': {'value': True}})
 
+    def hold(self, label):
+        """Be holding the button of that label, once."""
+        self.send({'type': 'GuiButtonHoldMessage', 'uuid': self.control(label), 'frequency': 10.0})
+
+    def press(self, key):
+        """Press a key."""
+        self.send({'type': 'CommandTriggerMessage', 'uuid': self.keys[key]})
+
     def choose(self, label, value):
         """Set the value of a control."""
         self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
@@ -80,7 +89,9 @@ class Browser:
 
     def _take(self, message):
         kind, name = message['type'], message.get('name')
-        if kind == 'RemoveSceneNodeMessage':
+        if kind == 'RegisterCommandMessage':
+            self.keys[message['props']['hotkey']] = message['uuid']
+        elif kind == 'RemoveSceneNodeMessage':
             self.nodes = {node: state for node, state in self.nodes.items()
                           if node != name and not node.startswith(f'{name}/')}
         elif kind == 'SetPositionMessage' and name in self.nodes:

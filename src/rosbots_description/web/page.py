@@ -10,6 +10,7 @@ import viser
 
 from ..sim.description import SceneChange, ShownMotion
 from .bar import Bar, Commands
+from .drive import DrivePanel, Robots
 from .scene import SceneView
 
 logger = logging.getLogger(__name__)
@@ -19,7 +20,7 @@ GONE = 'The simulator does not answer. This page shows its last state.'
 BACK = 'The simulator is there again.'
 
 
-class Simulator(Commands, Protocol):
+class Simulator(Commands, Robots, Protocol):
     """A simulator that can be looked at."""
 
     def open(self, change: Callable[[SceneChange], None],
@@ -44,11 +45,14 @@ class Page:
         site.gui.set_panel_label('gzweb')
         self._scene = SceneView(site)
         self._bar = Bar(site.gui, world, self._notify)
+        self._drive = DrivePanel(site.gui, world)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 
     def poll(self) -> None:
-        """Tell those who look when the simulator has gone; to be called about once a second."""
+        """Tell those who look what has gone or come; to be called about once a second."""
+        if self._is_open:
+            self._drive.refresh()
         with self._lock:
             if self._is_open and not self._lost and time.monotonic() - self._heard > SILENCE:
                 self._lost = True

@@ -2,13 +2,17 @@
 
 Subscribes:
     gazebo/view/scene, gazebo/view/motion: between `open` and `close`.
+Publishes:
+    the topic of `drive` (geometry_msgs/Twist), from its first command on.
 """
 
+import time
 from collections.abc import Callable
 from typing import Any
 
 import rospy
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
+from geometry_msgs.msg import Twist
 from rosbots_msgs.srv import Step
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Empty
@@ -16,10 +20,12 @@ from std_srvs.srv import Empty
 from ...sim.core import SimError
 from ...sim.description import SceneChange, ShownMotion
 from ..messages import read_motion, scene_change
+from ..transport import NO_MASTER
 from .gazebo_interface import interruptibly
 
 TIMEOUT = 10.0  # for an answer [s, wall]
 STEP_TIMEOUT = 600.0  # for many steps
+CONNECTION = 0.5  # [s, wall] that the first command waits for its robot
 
 
 class WorldView:
@@ -27,6 +33,7 @@ class WorldView:
 
     def __init__(self) -> None:
         self._subscribers: list[rospy.Subscriber] = []
+        self._commands: rospy.Publisher | None = None
 
     def open(self, change: Callable[[SceneChange], None],
              motion: Callable[[ShownMotion], None]) -> None:
@@ -41,6 +48,30 @@ class WorldView:
         for subscriber in self._subscribers:
             subscriber.unregister()
         self._subscribers = []
+
+    def drive_topics(self) -> list[str]:
+        """Return the topics of velocity commands that other nodes subscribe to; [] if unknown."""
+        master = rospy.get_master()
+        try:
+            types = dict(master.getTopicTypes()[2])
+            _, subscribed, _ = master.getSystemState()[2]
+        except NO_MASTER:
+            return []
+        return sorted(name for name, nodes in subscribed
+                      if types.get(name) == Twist._type and set(nodes) - {rospy.get_name()})
+
+    def drive(self, topic: str, forward: float, left: float) -> None:
+        """Publish a velocity command: forward [m/s], and turning left [rad/s]."""
+        if self._commands is None or self._commands.name != topic:
+            if self._commands is not None:
+                self._commands.unregister()
+            self._commands = rospy.Publisher(topic, Twist, queue_size=1)
+            end = time.monotonic() + CONNECTION
+            while not self._commands.get_num_connections() and time.monotonic() < end:
+                time.sleep(0.01)
+        command = Twist()
+        command.linear.x, command.angular.z = forward, left
+        self._commands.publish(command)
 
     def pause(self) -> None:
         """Pause simulated time."""
