@@ -9,6 +9,7 @@ enter_environment() {
     callers[$name]=${!name:-}
     unset "$name"
   done
+  find_ros_home  # first: rospack, in a hook of the setup file, writes there
   # The generated setup file reads variables that may be unset, and its own _CATKIN_SETUP_DIR.
   set +u
   unset _CATKIN_SETUP_DIR
@@ -22,7 +23,6 @@ enter_environment() {
   # roslaunch imports distutils; replaced by setuptools, it would start 0.1 s later.
   export SETUPTOOLS_USE_DISTUTILS=${SETUPTOOLS_USE_DISTUTILS:-stdlib}
   export ROSBOTS_ROOT=$ROOT
-  find_ros_home
   find_address
   find_runtime_folder
 }
@@ -75,6 +75,7 @@ leave_workspaces() { unset CMAKE_PREFIX_PATH PKG_CONFIG_PATH PYTHONPATH ROS_PACK
 # ROS writes its logs there; roslaunch fails if it cannot.
 find_ros_home() {
   local temporary=${TMPDIR:-/tmp}/rosbots-$UID
+  if [[ -z ${ROS_HOME-} ]]; then unset ROS_HOME; fi  # rospack would write into the current folder
   if takes_logs "${ROS_HOME:-${HOME:-/nonexistent}/.ros}"; then return; fi
   if takes_logs "$WORKSPACE/ros_home"; then
     export ROS_HOME=$WORKSPACE/ros_home
