@@ -73,7 +73,7 @@ class WorldFilesTest(unittest.TestCase):
                 code, printed = server.wait()
             self.assertEqual(code, 1)
             (line,) = printed.splitlines()
-            for words in (name, 'GAZEBO_RESOURCE_PATH', 'worlds/empty.world, worlds/maze.world'):
+            for words in (name, 'GAZEBO_RESOURCE_PATH', 'worlds/empty.world, worlds/line.world'):
                 self.assertIn(words, line)
         after = proxy('get_world_properties', GetWorldProperties)()
         self.assertEqual(after.model_names, before.model_names)
