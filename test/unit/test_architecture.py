@@ -67,12 +67,15 @@ ARROWS = {
         'ros_api/server ros_api/messages ros_api/transport',
     'ros_api/clients':
         'sim/core sim/description sim/rendering ros_api/messages ros_api/transport ros_api/views',
+    'ros_api/window':
+        'sim/core sim/description ros_api/messages ros_api/transport ros_api/clients',
     'ros_api/node':
         'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
         'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
         'ros_api/reconfigure ros_api/views',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
-    'cli': 'sim/core ros_api/transport ros_api/clients ros_api/node web',
+    'cli':
+        'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web',
     '': '',
 }
 

@@ -34,8 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if importlib.util.find_spec('viser') is None:
         return _fail('no window: the Python package viser is not installed; '
                      './rosbots setup or pip install viser==1.1.1 does that')
-    from ..ros_api.clients.world_view import WorldView
     from ..ros_api.transport import AddressError, is_running, start_node
+    from ..ros_api.window import GazeboSimulator
     from ..web import Page, Site, WindowError
 
     try:
@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if site.token:
         _say('whoever has this address sees and controls the simulation, and the connection is '
              'not encrypted')
-    page = Page(site, WorldView())
+    page = Page(site, GazeboSimulator())
     _say(f'the world is at {site.address}')
     while is_running():
         page.poll()

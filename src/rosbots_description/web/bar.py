@@ -9,6 +9,7 @@ import viser
 
 from ..sim.core import SimError
 from ..sim.description import SceneChange, ShownMotion
+from .panel import Panel
 
 logger = logging.getLogger(__name__)
 
@@ -17,7 +18,7 @@ WINDOW = 1.0  # [s, wall] over which the real-time factor is taken
 SPEEDS = {'0.1x': 0.1, '1x': 1.0, '10x': 10.0, 'as fast as possible': 0.0}
 
 
-class Commands(Protocol):
+class TimeControl(Protocol):
     """What a simulator is told; each raises SimError with a sentence if it is refused."""
 
     def pause(self) -> None:
@@ -39,13 +40,13 @@ class Commands(Protocol):
         """Set the target real-time factor; 0: as fast as possible."""
 
 
-class Bar:
+class Bar(Panel):
     """Controls for all browsers alike."""
 
     def __init__(
-        self, gui: viser.GuiApi, world: Commands, complain: Callable[[str], None]
+        self, gui: viser.GuiApi, time: TimeControl, complain: Callable[[str], None]
     ) -> None:
-        self._world, self._complain = world, complain
+        self._time, self._complain = time, complain
         self._shown = 0.0  # real time of the clock shown [s]
         self._past: deque[tuple[float, float]] = deque()  # real time and simulated time
         self._warning = gui.add_markdown('', visible=False)
@@ -61,19 +62,19 @@ class Bar:
         self._paused = False
         self._play.on_click(lambda _: self._toggle())
         self._speed.on_update(self._choose)
-        self._step.on_click(lambda _: self._do(lambda: world.step(int(self._steps.value))))
-        self._reset_world.on_click(lambda _: self._do(world.reset_world))
-        self._reset.on_click(lambda _: self._do(world.reset_simulation))
+        self._step.on_click(lambda _: self._do(lambda: time.step(int(self._steps.value))))
+        self._reset_world.on_click(lambda _: self._do(time.reset_world))
+        self._reset.on_click(lambda _: self._do(time.reset_simulation))
         gui.add_command('Play or pause', hotkey='space').on_trigger(lambda _: self._toggle())
 
-    def show_settings(self, change: SceneChange) -> None:
+    def apply(self, change: SceneChange) -> None:
         """Show the target speed."""
         factor = change.max_update_rate * change.step_size
         name = next((name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None)
         if name is not None and self._speed.value != name:
             self._speed.value = name  # type: ignore[misc]  # viser's setter has no type
 
-    def show_clock(self, motion: ShownMotion) -> None:
+    def move(self, motion: ShownMotion) -> None:
         """Show times, and whether time runs."""
         if motion.paused != self._paused:
             self._paused = motion.paused
@@ -108,10 +109,10 @@ class Bar:
 
     def _choose(self, event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
         if event.client is not None:  # else it is what the simulator says
-            self._do(lambda: self._world.set_speed(SPEEDS[event.target.value]))
+            self._do(lambda: self._time.set_speed(SPEEDS[event.target.value]))
 
     def _toggle(self) -> None:
-        self._do(self._world.unpause if self._paused else self._world.pause)
+        self._do(self._time.unpause if self._paused else self._time.pause)
 
     def _do(self, command: Callable[[], None]) -> None:
         try:

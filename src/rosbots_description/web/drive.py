@@ -7,6 +7,8 @@ from typing import Any, Protocol
 
 import viser
 
+from .panel import Panel
+
 HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a second
 # Ahead and left, -1 to 1, with the keys. Viser has no comma, teleop's key for backward.
 DIRECTIONS: dict[str, tuple[float, float, tuple[Any, ...]]] = {
@@ -28,7 +30,7 @@ class Robots(Protocol):
         """Send a command: forward [m/s], and turning left [rad/s]."""
 
 
-class DrivePanel:
+class DrivePanel(Panel):
     """Controls that are there while there is something to drive; it stops when they are let go."""
 
     def __init__(self, gui: viser.GuiApi, robots: Robots) -> None:

@@ -9,8 +9,9 @@ from typing import Protocol
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
-from .bar import Bar, Commands
+from .bar import Bar, TimeControl
 from .drive import DrivePanel, Robots
+from .panel import Panel
 from .scene import SceneView
 
 logger = logging.getLogger(__name__)
@@ -20,8 +21,8 @@ GONE = 'The simulator does not answer. This page shows its last state.'
 BACK = 'The simulator is there again.'
 
 
-class Simulator(Commands, Robots, Protocol):
-    """A simulator that can be looked at."""
+class View(Protocol):
+    """The scene of a simulator."""
 
     def open(self, change: Callable[[SceneChange], None],
              motion: Callable[[ShownMotion], None]) -> None:
@@ -31,11 +32,27 @@ class Simulator(Commands, Robots, Protocol):
         """End that."""
 
 
+class Simulator(Protocol):
+    """A simulator that can be seen and controlled, by parts."""
+
+    @property
+    def view(self) -> View:
+        """Its scene."""
+
+    @property
+    def time(self) -> TimeControl:
+        """Its clock."""
+
+    @property
+    def robots(self) -> Robots:
+        """Its robots."""
+
+
 class Page:
     """Shows a world to all browsers that are connected; without one it does not look at it."""
 
-    def __init__(self, site: viser.ViserServer, world: Simulator) -> None:
-        self._site, self._world = site, world
+    def __init__(self, site: viser.ViserServer, simulator: Simulator) -> None:
+        self._site, self._view = site, simulator.view
         self._lock = threading.RLock()
         self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
         self._is_open = self._is_complete = False  # the view, and what it has shown
@@ -44,15 +61,19 @@ class Page:
         site.gui.configure_theme(show_logo=False, show_share_button=False)
         site.gui.set_panel_label('gzweb')
         self._scene = SceneView(site)
-        self._bar = Bar(site.gui, world, self._notify)
-        self._drive = DrivePanel(site.gui, world)
+        self._bar = Bar(site.gui, simulator.time, self._notify)
+        tabs = site.gui.add_tab_group()
+        with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
+            drive = DrivePanel(site.gui, simulator.robots)
+        self._panels: tuple[Panel, ...] = (self._scene, self._bar, drive)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 
     def poll(self) -> None:
         """Tell those who look what has gone or come; to be called about once a second."""
         if self._is_open:
-            self._drive.refresh()
+            for panel in self._panels:
+                panel.refresh()
         with self._lock:
             if self._is_open and not self._lost and time.monotonic() - self._heard > SILENCE:
                 self._lost = True
@@ -64,7 +85,7 @@ class Page:
             if not self._is_open:
                 self._is_open, self._is_complete = True, False
                 self._heard = time.monotonic()
-                self._world.open(self._change, self._move)
+                self._view.open(self._change, self._move)
             elif self._is_complete:
                 self._look()
 
@@ -74,12 +95,12 @@ class Page:
                 self._new.remove(client)
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
-                self._world.close()
+                self._view.close()
 
     def _change(self, change: SceneChange) -> None:
         with self._lock:
-            self._scene.apply(change)
-            self._bar.show_settings(change)
+            for panel in self._panels:
+                panel.apply(change)
             self._is_complete = True
             self._look()
 
@@ -99,8 +120,8 @@ class Page:
                 self._lost = False
                 self._bar.warn('')
                 self._notify(BACK)
-            self._scene.move(motion.poses)
-            self._bar.show_clock(motion)
+            for panel in self._panels:
+                panel.move(motion)
 
     def _notify(self, sentence: str) -> None:
         for client in self._site.get_clients().values():

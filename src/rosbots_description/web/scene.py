@@ -19,12 +19,14 @@ from ..sim.description import (
     SceneSpec,
     ShownLink,
     ShownModel,
+    ShownMotion,
     Sphere,
     Visual,
 )
 from ..sim.meshes import read_mesh
 from ..sim.rendering import visual_gltf
 from .lights import add_light, rgb_bytes
+from .panel import Panel
 
 logger = logging.getLogger(__name__)
 
@@ -40,7 +42,7 @@ class _Shown:
     links: dict[int, viser.FrameHandle]
 
 
-class SceneView:
+class SceneView(Panel):
     """Shows the scene to all that look; not thread-safe."""
 
     def __init__(self, site: viser.ViserServer) -> None:
@@ -73,10 +75,10 @@ class SceneView:
             self._frames = {number: frame for shown in self._models.values()
                             for number, frame in shown.links.items()}
 
-    def move(self, poses: Mapping[int, Pose]) -> None:
-        """Move links, by their numbers."""
+    def move(self, motion: ShownMotion) -> None:
+        """Move links."""
         with self._site.atomic():
-            for number, pose in poses.items():
+            for number, pose in motion.poses.items():
                 if number in self._frames:
                     _place(self._frames[number], pose)
 

@@ -33,6 +33,7 @@ class FakeSimulator:
         self.change = self.motion = None
         self.fault = ''
         self.topics = ()
+        self.view = self.time = self.robots = self
 
     def open(self, change, motion):
         self.change, self.motion = change, motion

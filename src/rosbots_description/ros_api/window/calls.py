@@ -1,0 +1,26 @@
+"""Calls to the simulator's services, with a deadline."""
+
+from typing import Any
+
+import rospy
+
+from ...sim.core import SimError
+from ..clients.gazebo_interface import interruptibly
+
+TIMEOUT = 10.0  # for an answer [s, wall]
+
+
+def call(name: str, kind: type[Any], timeout: float = TIMEOUT, **request: object) -> Any:  # noqa: ANN401  of each service's own type
+    """Return the answer of a service of the simulator `gazebo` of this node's namespace.
+
+    Raises:
+        SimError: it was not reached, did not answer in time, or refused.
+    """
+    service = rospy.resolve_name(f'gazebo/{name}')
+    try:
+        answer = interruptibly(lambda: rospy.ServiceProxy(service, kind)(**request), timeout)
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise SimError(f'{service}: {error}') from error
+    if not getattr(answer, 'success', True):
+        raise SimError(answer.status_message)
+    return answer

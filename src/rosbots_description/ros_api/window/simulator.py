@@ -1,0 +1,14 @@
+"""The simulator as the window in the browser sees it."""
+
+from .robots import RosRobots
+from .time_control import RosTimeControl
+from .view import RosView
+
+
+class GazeboSimulator:
+    """What `web.Page` asks for, over the topics and services of `gazebo`."""
+
+    def __init__(self) -> None:
+        self.view = RosView()
+        self.time = RosTimeControl()
+        self.robots = RosRobots()
