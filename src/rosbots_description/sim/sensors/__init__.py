@@ -2,20 +2,15 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
+from .camera_outputs import CameraInfo, Cloud, CompressedImage, Image, StampedInfo
 from .camera_plugins import (
-    CameraInfo,
     CameraPlugin,
-    Cloud,
-    CompressedImage,
-    DepthCameraPlugin,
-    Image,
     MultiCameraPlugin,
-    OpenniKinectPlugin,
-    StampedInfo,
     TriggeredCameraPlugin,
     TriggeredMultiCameraPlugin,
 )
 from .contact import BumperPlugin, ContactPair, ContactPoint
+from .depth_camera_plugins import DepthCameraPlugin, OpenniKinectPlugin
 from .hector_gps import Fix, HectorGps
 from .hector_imu import HectorImu
 from .imu import ImuReading, ImuSensorPlugin
