@@ -30,6 +30,7 @@ setup(
     # Of `sim` alone; what the ROS side needs comes from Debian, as package.xml has it.
     install_requires=['embreex==4.4.0.post1', 'lxml', 'moderngl==5.12.0', 'numpy',
                       'pillow', 'pybullet==3.2.7', 'pycollada==0.9.3'],
-    extras_require={'web': ['rich==14.3.4', 'viser==1.1.1', 'websockets==16.1.1'],
+    extras_require={'gym': ['PyYAML', 'gymnasium==1.4.0', 'xacro==1.13.3'],
+                    'web': ['rich==14.3.4', 'viser==1.1.1', 'websockets==16.1.1'],
                     'xacro': ['PyYAML', 'xacro==1.13.3']},
 )

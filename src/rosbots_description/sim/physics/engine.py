@@ -228,6 +228,9 @@ class PhysicsEngine(Protocol):
         A contact within the model is listed once, with its first link as `one`.
         """
 
+    def touching(self, body: EngineBody) -> Collection[EngineBody]:
+        """Return the models that touched a model in the last step; not itself."""
+
     def cast_rays(
         self, starts: Points, ends: Points, named: bool = False
     ) -> RayHits:

@@ -199,6 +199,11 @@ class World:
                   for name, other in self.models.items() if other is not model}
         return {name: depth for name, depth in depths.items() if depth > 0.0}
 
+    def touching(self, model: Model) -> list[str]:
+        """Return the names of the models that touched a model in the last step."""
+        bodies = self.engine.touching(model.body)
+        return [name for name, other in self.models.items() if other.body in bodies]
+
     def delete(self, name: str) -> None:
         """Delete a model and its plugins.
 

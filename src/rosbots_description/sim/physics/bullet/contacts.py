@@ -76,6 +76,13 @@ class ContactQueries:
                 self._name(one, on_a), self._name(other, on_b), on_a, normal, -distance, force))
         return found
 
+    def touching(self, body: Body) -> set[Body]:
+        """Return the bodies that touched a body in the last step; not itself."""
+        return {self._owners[Place(point[2], point[4])][0]
+                for number in body.bodies
+                for point in pybullet.getContactPoints(number, physicsClientId=self._client)
+                if point[8] <= 0.0 or point[9] > 0.0} - {body}
+
     def _is_of(self, place: Place, body: Body, link: str | None) -> bool:
         owner, name = self._owners[place]
         return owner is body and link in (None, name)

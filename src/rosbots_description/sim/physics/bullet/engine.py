@@ -248,6 +248,10 @@ class Engine(BodyStates):
         """Return the contacts of a model, or of one link, in the last step."""
         return self._queries.contacts(body, link)
 
+    def touching(self, body: Body) -> set[Body]:
+        """Return the models that touched a model in the last step; not itself."""
+        return self._queries.touching(body)
+
     def joint_reaction(self, body: Body, joint: str) -> Wrench:
         """Return the wrench of the parent on the child through a joint in the last step."""
         measured, (number, index) = super().joint_reaction(body, joint), body.joints[joint]

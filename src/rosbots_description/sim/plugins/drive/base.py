@@ -51,6 +51,10 @@ class Drive(PeriodicPlugin):
         """Tell whether odometry has a reader in either form."""
         return self.odometry.wanted or self.odometry_transform.wanted
 
+    def read_odometry(self) -> Odometry:
+        """Return the odometry of the current state, independent of the rate."""
+        return world_odometry(*self.model.state())
+
     def send_odometry(self, reading: Odometry, flat: bool = False) -> None:
         """Send odometry in both forms; `flat`: z is 0 in the reading, but not in the transform."""
         if self.odometry_transform.wanted:
@@ -102,6 +106,10 @@ class WheeledDrive(Drive):
         """Create the outputs of the wheel transforms, one per wheel, and of the joint states."""
         self.wheel_transform: Output[FrameTransform] = self.output('wheel_transform', transforms)
         self.joint_states: Output[JointStates] = self.output('joint_states', states)
+
+    def read_odometry(self) -> Odometry:
+        """Return the odometry of the current state, independent of the rate."""
+        return self.encoder_odometry() if self.every_step else super().read_odometry()
 
     @abstractmethod
     def encoder_odometry(self) -> Odometry:

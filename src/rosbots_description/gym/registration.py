@@ -1,0 +1,17 @@
+"""The tasks under Gymnasium's names, such as `rosbots/GoToGoal-v0`."""
+
+from gymnasium.envs.registration import register, registry
+
+# Class and module of each task, and the control steps after which an episode is truncated.
+_TASKS = {
+    'GoToGoal': ('go_to_goal', 400),
+}
+
+
+def register_envs() -> None:
+    """Register the tasks; Gymnasium calls this when it is imported, and so does this package."""
+    tasks = f'{__package__}.tasks'
+    for name, (module, steps) in _TASKS.items():
+        known = f'rosbots/{name}-v0'
+        if known not in registry:
+            register(known, entry_point=f'{tasks}.{module}:{name}', max_episode_steps=steps)

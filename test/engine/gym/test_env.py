@@ -1,0 +1,126 @@
+"""The environments of Gymnasium: spaces, exact periods, determinism, and bad input."""
+
+import re
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import rosbots_description.gym  # noqa: F401  registers the tasks
+from rosbots_description.gym import SimEnv
+from rosbots_description.sim import NotFoundError, SimError
+
+TASKS = ['GoToGoal']
+STONE = '''<robot name="stone"><link name="l"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'''
+
+
+class Forward(SimEnv):
+    """As one writes one's own: drive on in the room, away from what is near."""
+
+    def __init__(self, **options):
+        super().__init__('room', **{'arguments': {'laser': 'true', 'imu': 'true'}, **options})
+
+    def score(self, observation, action):
+        return float(action[0]), bool(observation['laser'].min() < 0.3)
+
+
+@pytest.fixture
+def forward():
+    with_laser = Forward()
+    yield with_laser
+    with_laser.close()
+
+
+def rollout(env, seed, steps=15):
+    """Return all that an environment gives for a seed, as bytes."""
+    observation, info = env.reset(seed=seed)
+    actions = np.random.default_rng(seed)
+    parts = [observation, info]
+    for _ in range(steps):
+        observation, reward, terminated, truncated, info = env.step(
+            actions.uniform(-1.0, 1.0, env.action_space.shape))
+        parts += [observation, info, {'reward': np.array([reward, terminated, truncated])}]
+        if terminated or truncated:
+            break
+    return b''.join(np.asarray(part[key]).tobytes() for part in parts for key in sorted(part))
+
+
+@pytest.mark.parametrize('task', TASKS)
+def test_task_passes_the_checks_of_gymnasium_without_a_warning(task):
+    env = gymnasium.make(f'rosbots/{task}-v0')
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        check_env(env.unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize('task', TASKS)
+def test_same_seed_gives_the_same_bits_after_other_episodes_and_in_another_world(task):
+    one, other = (gymnasium.make(f'rosbots/{task}-v0').unwrapped for _ in range(2))
+    first = rollout(one, 7)
+    rollout(one, 8)
+    assert rollout(one, 7) == first
+    assert rollout(other, 7) == first
+    assert rollout(other, 9) != first
+    one.close()
+    other.close()
+
+
+def test_a_step_is_exactly_one_period(forward):
+    forward.reset(seed=0)
+    times = [forward.step(np.zeros(2))[4]['time'] for _ in range(3)]
+    assert times == [0.1, 0.2, 0.3]
+
+
+def test_observation_is_a_dict_of_what_the_sensors_give(forward):
+    space = forward.observation_space
+    assert {name: one.shape for name, one in space.items()} == {
+        'imu': (10,), 'laser': (361,), 'odometry': (6,)}
+    observation, _ = forward.reset(seed=0)
+    assert observation in space
+    for _ in range(10):
+        observation, *_ = forward.step(np.array([1.0, 0.0]))
+    assert observation in space
+    assert observation['odometry'][3] > 0.3  # forward velocity [m/s]
+    assert observation['imu'][9] == pytest.approx(9.8, abs=2.0)
+
+
+@pytest.mark.parametrize(('action', 'said'), [
+    (np.zeros(3), "'differential_drive_controller' takes 2 numbers from -1 to 1"),
+    ('fast', 'takes 2 numbers'),
+    (np.array([np.nan, 0.0]), 'takes finite numbers; it got [nan, 0.0]'),
+    (np.array([0.0, np.inf]), 'takes finite numbers'),
+])
+def test_action_that_cannot_be_given_is_named(forward, action, said):
+    forward.reset(seed=0)
+    with pytest.raises(ValueError, match=re.escape(said)) as error:
+        forward.step(action)
+    assert '\n' not in str(error.value)
+
+
+@pytest.mark.parametrize(('options', 'kind', 'said'), [
+    ({'sensors': ['radar']}, NotFoundError, "no sensor 'radar'; what can be observed: odometry"),
+    ({'actions': {'sails': 1.0}}, NotFoundError, "no action 'sails'; its plugins with commands"),
+    ({'actions': {'differential_drive_controller': (1.0, -1.0)}}, ValueError, 'positive numbers'),
+    ({'world': 'nowhere'}, NotFoundError, 'nowhere'),
+    ({'robot': '<robot name="r"/>'}, SimError, 'link'),
+    ({'robot': STONE}, SimError, 'takes commands'),
+    ({'period': 0.1234567}, ValueError, 'multiple of the step size'),
+    ({'period': float('nan')}, ValueError, 'period is nan'),
+    ({'render_mode': 'human'}, ValueError, "render_mode is 'human'"),
+])
+def test_environment_that_cannot_be_made_is_named(options, kind, said):
+    with pytest.raises(kind) as error:
+        SimEnv(**options)
+    assert said in str(error.value)
+
+
+def test_step_before_reset_and_reset_after_close_are_named():
+    env = Forward(settle=0.1)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros(2))
+    env.close()
+    with pytest.raises(SimError, match='closed'):
+        env.reset()
