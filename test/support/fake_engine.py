@@ -39,6 +39,7 @@ class FakeEngine(PhysicsEngine):
         names = [joint.name for joint in spec.joints]
         self.bodies.append(SimpleNamespace(
             spec=spec, pose=pose, twist=Twist(), roots=[root], joints=set(names),
+            mass_scale=1.0, friction_scales={},
             fixed_roots={root} if spec.static else set(),
             state={name: [0.0, 0.0] for name in names}, motors=dict.fromkeys(names, (0.0, 0.0))))
         self.placements += 1

@@ -54,6 +54,14 @@ class EngineBody(Protocol):
     def joints(self) -> Collection[str]:
         """Joints that can move."""
 
+    @property
+    def mass_scale(self) -> float:
+        """Factor on the described masses and moments of inertia."""
+
+    @property
+    def friction_scales(self) -> Mapping[str, float]:
+        """Factors on the friction of links, where they are not 1."""
+
 
 class CollisionName(NamedTuple):
     """A <collision> of a model in an engine."""
@@ -208,6 +216,12 @@ class PhysicsEngine(Protocol):
 
     def apply_joint_effort(self, body: EngineBody, joint: str, effort: float) -> None:
         """Apply an effort [N m or N] to a joint during the next step, added to its motor's."""
+
+    def scale_mass(self, body: EngineBody, factor: float) -> None:
+        """Multiply the described masses and moments of inertia of a model by a factor."""
+
+    def scale_friction(self, body: EngineBody, link: str, factor: float) -> None:
+        """Multiply the friction of each contact of a link by a factor."""
 
     def can_slip(self, body: EngineBody, link: str, axis: Vector) -> bool:
         """Tell whether a link can have a slip compliance along a unit vector of its frame."""

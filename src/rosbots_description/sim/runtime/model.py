@@ -1,5 +1,6 @@
 """Models, links, joints and collisions in a world: read and move them by name."""
 
+import math
 from typing import Any
 
 from ..core import (
@@ -59,6 +60,24 @@ class Link:
     def apply_wrench(self, force: Vector, torque: Vector) -> None:
         """Apply a force [N] at the centre of mass and a torque [N m] (world axes) for one step."""
         self.model.engine.apply_wrench(self.model.body, self.name, force, torque)
+
+    @property
+    def friction_scale(self) -> float:
+        """Return the factor on the friction of each of the link's contacts."""
+        return self.model.body.friction_scales.get(self.name, 1.0)
+
+    def scale_friction(self, factor: float) -> None:
+        """Multiply the friction of each of the link's contacts by a factor, from the next step on.
+
+        The friction that is described is what is multiplied. `World.restore` undoes it.
+
+        Raises:
+            ValueError: the factor is negative or not finite.
+        """
+        if not 0.0 <= factor < math.inf:
+            raise ValueError(f"the friction of link '{self.scoped_name}' is multiplied by a finite "
+                             f'number of at least 0; it got {factor}')
+        self.model.engine.scale_friction(self.model.body, self.name, factor)
 
     def can_slip(self, axis: Vector) -> bool:
         """Tell whether it can have a slip compliance along `axis`, a unit vector in its frame."""
@@ -208,6 +227,24 @@ class Model:
         """Set the velocity of every link, in world axes; joint velocities become zero."""
         self.engine.set_twist(self.body, twist)
 
+    @property
+    def mass_scale(self) -> float:
+        """Return the factor on the model's masses and moments of inertia."""
+        return self.body.mass_scale
+
+    def scale_mass(self, factor: float) -> None:
+        """Multiply all masses and moments of inertia of the model, from the next step on.
+
+        Those that are described are what is multiplied. `World.restore` undoes it.
+
+        Raises:
+            ValueError: the factor is not a positive finite number.
+        """
+        if not 0.0 < factor < math.inf:
+            raise ValueError(f"the mass of model '{self.name}' is multiplied by a positive finite "
+                             f'number; it got {factor}')
+        self.engine.scale_mass(self.body, factor)
+
     def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
         """Set a link's pose and velocity in the world.
 
@@ -228,7 +265,10 @@ class Model:
         """Add the model to the engine, which is new or was reset, at its spawn pose."""
         if not self._compiled.has_files:
             self._compiled = self.engine.compile(self.spec)
+        old: EngineBody | None = getattr(self, 'body', None)
         self.body: EngineBody = self.engine.add(self._compiled, self.initial_pose)
+        if old is not None:
+            self._keep_scales(old)
 
     def remove_from_engine(self) -> None:
         """Remove the model from the engine for good, with its mesh files."""
@@ -241,6 +281,7 @@ class Model:
         compiled = self.engine.compile(spec)
         self.body = self.engine.add(compiled, self.initial_pose)
         self._compiled = compiled
+        self._keep_scales(old)
         self.engine.remove(old)
         self.engine.set_motion(self.body, motion)
         self.spec = spec
@@ -249,6 +290,12 @@ class Model:
         for joint in spec.joints:
             if joint.name in self.joints:
                 self.joints[joint.name].spec = joint
+
+    def _keep_scales(self, old: EngineBody) -> None:
+        """Scale the body as the one that it replaces."""
+        self.engine.scale_mass(self.body, old.mass_scale)
+        for link, factor in old.friction_scales.items():
+            self.engine.scale_friction(self.body, link, factor)
 
     @property
     def joint_states(self) -> JointStates:

@@ -22,6 +22,7 @@ class SavedState:
         self._models = tuple(world.models.values())
         self._clock = dict(vars(world.clock))
         self._physics, self._lights, self._paused = world.physics, dict(world.lights), world.paused
+        self._seed = world.seed
         self._snapshot = world.engine.snapshot()
         self._shared = tuple(self._find_shared())
         self._hooks = [(hook, self._copied(vars(hook))) for hook in hooks]
@@ -42,7 +43,7 @@ class SavedState:
                 f'{_listed(models)}; save another one after models have come or gone')
         world.engine.restore(self._snapshot)
         vars(world.clock).update(self._clock)
-        world.physics, world.paused = self._physics, self._paused
+        world.physics, world.paused, world.seed = self._physics, self._paused, self._seed
         world.lights.clear()
         world.lights.update(self._lights)
         for hook, state in self._hooks:

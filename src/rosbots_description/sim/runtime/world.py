@@ -98,7 +98,7 @@ class World:
         # Set by who runs it at the pace of the wall clock: then no step waits for what takes long,
         # such as pictures, and these are given out when they are there.
         self.is_paced = False
-        self.seed = 0  # of the noise of sensors that come; set it before they do
+        self.seed = 0  # of the noise of sensors; any number, from the next reading on
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
         self.engine = make_engine(self.physics)

@@ -53,6 +53,8 @@ class Sensor(SensorLife):
     """
 
     measures = True
+    is_noisy = False  # whether its <noise> has a deviation
+    noise_scale = 1.0  # factor on that deviation, which may be set between two runs
 
     def __init__(self, world: 'World', link: 'Link', spec: SensorSpec) -> None:
         self.world = world
@@ -63,7 +65,7 @@ class Sensor(SensorLife):
         self.scoped_name = f'{link.scoped_name}::{spec.name}'
         self.called = f"{spec.type or 'sensor'} '{spec.name}' of link '{link.name}'"
         self.readings: Output[Any] = Output(self.count_readers)
-        self.random = RandomSteps(world.seed, self.scoped_name)
+        self.random = RandomSteps(world, self.scoped_name)
 
     @property
     def pose(self) -> Pose:
@@ -155,7 +157,7 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         super().__init__(sensor.world, sensor.model, spec)
         self.sensor = sensor
         self._receiving = False
-        self.random = RandomSteps(self.world.seed, f'{sensor.scoped_name}::{spec.name}')
+        self.random = RandomSteps(self.world, f'{sensor.scoped_name}::{spec.name}')
 
     def start(self) -> None:
         """Load and begin.

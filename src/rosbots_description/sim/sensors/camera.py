@@ -51,6 +51,7 @@ class CameraSensor(Sensor):
         elements = [one for one in self.spec.element.children if one.tag == 'camera']
         elements = elements or [Element('camera')]  # with all defaults
         self.cameras = tuple(self._camera(one) for one in self._chosen(elements))
+        self.is_noisy = any(one.lens.noise_stddev for one in self.cameras)
         self._wanted: dict[object, Wants] = {}  # by plugin
         self._capture = ImageCapture(self.world)
         self._picture_step = NEVER
@@ -155,7 +156,10 @@ class CameraSensor(Sensor):
         here = self.pose
         seed = int(self.random.at(self.world.clock.steps).integers(1 << 63))
         self._capture.request(
-            [(one.lens, compose(here, one.pose)) for one in self.cameras], seed, wants)
+            [(self._noisy(one.lens), compose(here, one.pose)) for one in self.cameras], seed, wants)
+
+    def _noisy(self, lens: Lens) -> Lens:
+        return lens._replace(noise_stddev=self.noise_scale * lens.noise_stddev)
 
     def _send_finished(self, waits: bool) -> None:
         """Send finished pictures, except stale ones with future stamps from before a reset."""

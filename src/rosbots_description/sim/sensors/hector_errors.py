@@ -46,7 +46,7 @@ class ErrorModel:
         self.noise = read('GaussianNoise')
         self.variances = drift**2 + self.noise**2
         who = f'{plugin.model.name}::{plugin.spec.name}::{prefix}'
-        random = RandomSteps(plugin.world.seed, who).at(0)
+        random = RandomSteps(plugin.world, who).at(0)
         self._rates = self.frequency[:, None] * random.standard_cauchy((axes, _WAVES))  # [rad/s]
         phases = random.uniform(0.0, math.tau, (axes, _WAVES))
         self._waves = (drift * math.sqrt(2.0 / _WAVES))[:, None] * np.exp(1j * phases)

@@ -57,7 +57,7 @@ class HectorGps(PeriodicPlugin):
         self._east = vertical * math.cos(math.radians(latitude))
         self._position, self._speed = ErrorModel(self, ''), ErrorModel(self, 'velocity')
         self.set_rate(self.params.rate('updateRate', 4.0))
-        self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
+        self._random = RandomSteps(self.world, f'{self.model.name}::{self.spec.name}')
         self.fix, self.velocity = self.output('fix'), self.output('velocity')
 
     def _within(self, tag: str, default: float, least: float, most: float) -> float:

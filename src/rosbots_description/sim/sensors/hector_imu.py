@@ -53,7 +53,7 @@ class HectorImu(LinkImu):
         if noise := abs(read('gaussianNoise', 0.0)):
             self._accel.noise[:] = self._rate.noise[:] = noise
         self.set_rate(params.rate('updateRate', 0.0))
-        self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
+        self._random = RandomSteps(self.world, f'{self.model.name}::{self.spec.name}')
         self.imu, self.bias = self.output('imu', bool(topic)), self.output('bias', bool(bias_topic))
 
     def reset(self) -> None:

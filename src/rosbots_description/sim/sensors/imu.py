@@ -53,6 +53,7 @@ class ImuSensor(Sensor):
             *(read_noise(child_at(imu, f'angular_velocity/{axis}/noise')) for axis in _AXES),
             *(read_noise(child_at(imu, f'linear_acceleration/{axis}/noise')) for axis in _AXES),
         ]
+        self.is_noisy = any(noise.deviation for noise in self._noises)
         self._before: tuple[int, Vector] | None = None  # time [ns], velocity
 
     def reset(self) -> None:
@@ -85,7 +86,8 @@ class ImuSensor(Sensor):
         back = conjugate(orientation)
         measured: Sequence[float] = (*rotate(back, angular), *rotate(back, proper))
         if any(self._noises):
-            measured = noisy(measured, self._noises, self.random, self.world.clock.steps)
+            measured = noisy(
+                measured, self._noises, self.random, self.world.clock.steps, self.noise_scale)
         wx, wy, wz, ax, ay, az = measured
         return ImuReading(orientation, (wx, wy, wz), (ax, ay, az))
 

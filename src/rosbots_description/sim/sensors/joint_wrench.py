@@ -38,7 +38,7 @@ class JointWrenchPlugin(PeriodicPlugin):
         self.frame = self.params.values['frame'] = self._joint.spec.child
         self._noise = gaussian(self.params.read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.set_rate(self.params.rate('updateRate', 0.0))
-        self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
+        self._random = RandomSteps(self.world, f'{self.model.name}::{self.spec.name}')
         self.wrench = self.output('wrench')
 
     def before_step(self) -> None:

@@ -41,7 +41,7 @@ class LinkImu(PeriodicPlugin):
             self._mount = IDENTITY
         self._noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.set_rate(params.rate('updateRate', 0.0))
-        self._random = RandomSteps(self.world.seed, f'{self.model.name}::{self.spec.name}')
+        self._random = RandomSteps(self.world, f'{self.model.name}::{self.spec.name}')
         self.imu = self.output('imu')
 
     def reset(self) -> None:

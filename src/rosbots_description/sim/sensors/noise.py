@@ -4,6 +4,7 @@ import math
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,16 @@ from ..core import PluginError
 from ..description import Element
 from .numbers import number
 
+if TYPE_CHECKING:
+    from ..runtime import World
+
 
 class RandomSteps:
-    """The random numbers of one sensor or plugin, a new sequence for each step."""
+    """The random numbers of one sensor or plugin, by the world's seed, a new sequence each step."""
 
-    def __init__(self, seed: int, name: str) -> None:
-        self._bits = np.random.Philox(key=[seed % (1 << 64), zlib.crc32(name.encode())])
+    def __init__(self, world: 'World', name: str) -> None:
+        self._world = world
+        self._bits = np.random.Philox(key=[0, zlib.crc32(name.encode())])
         self._state = self._bits.state
         self._generator = np.random.Generator(self._bits)
 
@@ -27,6 +32,7 @@ class RandomSteps:
 
     def at(self, step: int) -> np.random.Generator:
         """Return the generator at the start of a step's sequence."""
+        self._state['state']['key'][0] = self._world.seed % (1 << 64)
         self._state['state']['counter'][2] = step  # leaves 2^128 blocks for each step
         self._bits.state = self._state
         return self._generator
@@ -43,10 +49,10 @@ class GaussianNoise:
         return self.mean != 0.0 or self.deviation != 0.0
 
     def added_to(
-        self, values: NDArray[np.float64], generator: np.random.Generator
+        self, values: NDArray[np.float64], generator: np.random.Generator, scale: float = 1.0
     ) -> NDArray[np.float64]:
-        """Return the values with independent noise added to each."""
-        return values + generator.normal(self.mean, self.deviation, np.shape(values))
+        """Return the values with independent noise added to each; `scale` is of the deviation."""
+        return values + generator.normal(self.mean, scale * self.deviation, np.shape(values))
 
 
 def read_noise(element: Element | None) -> GaussianNoise:
@@ -79,9 +85,10 @@ def gaussian(deviation: float, what: str) -> GaussianNoise:
 
 
 def noisy(
-    values: Sequence[float], noises: Sequence[GaussianNoise], random: RandomSteps, step: int
+    values: Sequence[float], noises: Sequence[GaussianNoise], random: RandomSteps, step: int,
+    scale: float = 1.0,
 ) -> tuple[float, ...]:
-    """Return the values, each with its own noise for that step."""
+    """Return the values, each with its own noise for that step; `scale` is of the deviations."""
     standard = random.at(step).standard_normal(len(values)).tolist()
-    return tuple(value + noise.mean + noise.deviation * one
+    return tuple(value + noise.mean + scale * noise.deviation * one
                  for value, noise, one in zip(values, noises, standard, strict=True))

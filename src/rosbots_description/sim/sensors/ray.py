@@ -100,6 +100,7 @@ class RaySensor(Sensor):
             logger.warning("model '%s', %s: %d rays take long; the simulation waits for each scan",
                            self.model.name, self.called, total)
         self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
+        self.is_noisy = self.noise.deviation > 0.0
         self._scene, self.fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
         self.blend = self.fan.blend()
         self._is_whole = self.fan.shape == (self.vertical.count, self.horizontal.count)
@@ -123,7 +124,8 @@ class RaySensor(Sensor):
             ranges, retro = self.blend.ranges(ranges), self.blend.intensities(retro)
         missed = ranges >= self.range_max
         if self.noise:
-            ranges = self.noise.added_to(ranges, self.random.at(self.world.clock.steps))
+            ranges = self.noise.added_to(
+                ranges, self.random.at(self.world.clock.steps), self.noise_scale)
             ranges = ranges.clip(self.range_min, self.range_max)
         ranges = np.where(missed, math.inf, ranges)
         return Scan(ranges, retro, *self._fixed)

@@ -55,6 +55,8 @@ def test_continuation_after_each_restore_is_bit_identical(name):
                        lambda: robot.plugin('diff_drive').command(-1.0, 0.0),
                        lambda: robot.set_pose(Pose((2.0, 2.0, 3.0))),
                        lambda: world.set_physics(PhysicsSettings(step_size=0.003)),
+                       lambda: robot.scale_mass(1.7),
+                       lambda: [link.scale_friction(0.1) for link in robot.links.values()],
                        world.reset_world):
             world.restore(state)
             change()

@@ -241,6 +241,23 @@ def test_noise_repeats_with_the_seed_at_any_start_of_reading():
     assert scan_at(1, 0) != scan_at(2, 0)
 
 
+def test_seed_and_scale_of_the_noise_change_in_a_running_world_and_are_restored(scene):
+    sensor = scene.spawn(NOISY).sensor('head_hokuyo_sensor')
+    clean, state = sensor.cast()[0], scene.save_state()
+    assert sensor.is_noisy
+
+    def noise():
+        return (sensor.read().ranges - clean)[clean < 29.0]
+
+    first = noise()
+    sensor.noise_scale = 3.0
+    assert noise() == pytest.approx(3.0 * first, abs=1e-12)
+    scene.seed = 5
+    assert np.abs(noise() - 3.0 * first).max() > 0.01
+    scene.restore(state)
+    assert np.array_equal(noise(), first)
+
+
 def test_noise_differs_between_sensors_and_repeats_after_a_reset(scene):
     sensors = [scene.spawn(NOISY, f'r{i}').sensor('head_hokuyo_sensor') for i in range(2)]
     found = [stamped(scene, sensor) for sensor in sensors]

@@ -36,6 +36,12 @@ class Mass(NamedTuple):
     moments: Vector
     has_weight: bool
 
+    def scaled(self, factor: float) -> 'Mass':
+        """Return this with mass and moments multiplied by a factor."""
+        x, y, z = self.moments
+        return self._replace(
+            mass=factor * self.mass, moments=(factor * x, factor * y, factor * z))
+
 
 class Masses(NamedTuple):
     """Inertial and joint parameters of a moving body."""
@@ -50,6 +56,12 @@ class Masses(NamedTuple):
     compliance: tuple[float, ...]
     unbalanced: tuple[int, ...]  # joints whose motion moves a centre of mass
     is_fixed: bool
+
+    def scaled(self, factor: float) -> 'Masses':
+        """Return these with all masses and moments multiplied by a factor."""
+        return self._replace(
+            parts=tuple(part.scaled(factor) for part in self.parts),
+            compliance=tuple(one / factor for one in self.compliance))
 
 
 class FrictionAxes(NamedTuple):
@@ -80,7 +92,10 @@ class Body:
         # Links that feel no gravity: PyBullet's body and index, and the mass [kg].
         self.weightless: list[tuple[int, int, float]] = []
         self.motors: dict[str, tuple[float, float]] = {}  # target velocity, effort limit by joint
-        self.masses: dict[int, Masses] = {}  # of moving bodies
+        self.masses: dict[int, Masses] = {}  # of moving bodies, as described
+        self.mass_scale = 1.0
+        self.frictions: dict[Place, float] = {}  # of each contact part, as described
+        self.friction_scales: dict[str, float] = {}  # by link, where they are not 1
         self.surfaces: dict[str, list[Place]] = {}  # contact parts of each link
         self.shapes: dict[Place, tuple[Collision, ...]] = {}  # in the frame of the link
         self.friction_axes: dict[Place, FrictionAxes] = {}  # of each contact part

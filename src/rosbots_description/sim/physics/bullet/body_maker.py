@@ -146,6 +146,27 @@ class BodyMaker:
             del self._sides[place]
             self._soft.pop(place, None)
 
+    def scale_mass(self, body: Body, factor: float) -> None:
+        """Multiply all masses and moments that are described of a body by a factor."""
+        body.mass_scale = factor
+        for number, masses in body.masses.items():
+            for part in masses.scaled(factor).parts:
+                # Two calls: the first one also sets moments, those of the shape.
+                pybullet.changeDynamics(
+                    number, part.link, mass=part.mass, physicsClientId=self._client)
+                pybullet.changeDynamics(number, part.link, localInertiaDiagonal=part.moments,
+                                        physicsClientId=self._client)
+
+    def scale_link_friction(self, body: Body, link: str, factor: float) -> None:
+        """Multiply the friction of each contact of a link by a factor."""
+        body.friction_scales.pop(link, None)
+        if factor != 1.0:
+            body.friction_scales[link] = factor
+        for place in body.surfaces[link]:
+            pybullet.changeDynamics(
+                *place, lateralFriction=factor * body.frictions[place],
+                physicsClientId=self._client)
+
     def reset(self) -> None:
         """Remove everything."""
         pybullet.resetSimulation(physicsClientId=self._client)
@@ -218,6 +239,7 @@ class BodyMaker:
             self._soft[place] = part.surface, self._parting_rate(place)
             self._set_spring(place)
         body.shapes[place] = part.shapes
+        body.frictions[place] = part.friction
         body.friction_axes[place] = part.axes
         if part.axes.scales != ISOTROPIC:
             self.scale_friction(place, part.axes.scales)

@@ -222,6 +222,21 @@ class Engine(BodyStates):
         self._leaked += body.size
         self._maker.remove(body)
 
+    def scale_mass(self, body: Body, factor: float) -> None:
+        """Multiply the described masses and moments of inertia of a model by a factor."""
+        if factor == body.mass_scale:
+            return
+        self._maker.scale_mass(body, factor)
+        scaled = {number: masses.scaled(factor) for number, masses in body.masses.items()}
+        self._fast.add(scaled)
+        self._fast.until_check = 0
+        self._springs.add(scaled)
+
+    def scale_friction(self, body: Body, link: str, factor: float) -> None:
+        """Multiply the friction of each contact of a link by a factor."""
+        if factor != body.friction_scales.get(link, 1.0):
+            self._maker.scale_link_friction(body, link, factor)
+
     def overlap(self, one: Body, other: Body) -> float:
         """Return the penetration depth of two models [m]; 0 if they do not overlap."""
         depth = max((
@@ -283,7 +298,13 @@ class Engine(BodyStates):
         Raises:
             SimError: models were added, removed or changed since it was taken.
         """
-        self._restore_state(self._snapshots.restore(snapshot, [*self._bodies], self._moving()))
+        self._snapshots.require(snapshot, [*self._bodies])
+        # First: what PyBullet restores is computed with these.
+        for body, (mass, friction) in snapshot.engine_state[-1]:
+            self.scale_mass(body, mass)
+            for link in {**body.friction_scales, **friction}:
+                self.scale_friction(body, link, friction.get(link, 1.0))
+        self._restore_state(self._snapshots.restore(snapshot, self._moving()))
 
     def _moving(self) -> list[int]:
         """Return PyBullet's numbers of all moving bodies."""
@@ -298,12 +319,13 @@ class Engine(BodyStates):
             self._physics, self._until_check, self._effort.save_state(), self._fast.save_state(),
             self._slipping.save_state(), list(self._applied_forces), dict(self._joint_readings),
             [(body, dict(body.motors)) for body in self._driven],
+            [(body, (body.mass_scale, dict(body.friction_scales))) for body in self._bodies],
         )
 
     def _restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore noted state after PyBullet's own has been restored."""
         self.placements += 1
-        physics, until_check, effort, fast, slipping, applied, readings, motors = saved
+        physics, until_check, effort, fast, slipping, applied, readings, motors, _ = saved
         if physics != self._physics:
             self.apply(physics)
         self._driven = dict.fromkeys(body for body, _ in motors)
@@ -328,7 +350,8 @@ class Engine(BodyStates):
         """Cancel the weight of links without gravity; PyBullet has one gravity for all links."""
         gx, gy, gz = self._gravity
         for body in self._weightless:
-            for number, index, mass in body.weightless:
+            for number, index, described in body.weightless:
+                mass = body.mass_scale * described
                 force = (-mass * gx, -mass * gy, -mass * gz)
                 state = (
                     pybullet.getBasePositionAndOrientation(number, self._client)

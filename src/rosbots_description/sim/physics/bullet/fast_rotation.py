@@ -45,8 +45,10 @@ class FastBodies:
         self.until_check = 0
 
     def add(self, bodies: dict[int, Masses]) -> None:
-        """Watch these bodies, given by PyBullet's numbers."""
+        """Watch these bodies, given by PyBullet's numbers; known ones have other masses now."""
         self._bodies.update(bodies)
+        for number in bodies:
+            self._fast_bodies.pop(number, None)
 
     def remove(self, numbers: Iterable[int]) -> None:
         """Stop watching these bodies."""

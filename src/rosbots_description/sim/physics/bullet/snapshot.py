@@ -73,19 +73,16 @@ class Snapshots:
         self._restore(snapshot, moving)
         return snapshot
 
-    def restore(
-        self, snapshot: BulletSnapshot, bodies: Sequence[Any], moving: Sequence[int]
-    ) -> tuple[Any, ...]:
-        """Restore PyBullet's part of a snapshot, and return the engine's own.
-
-        Raises:
-            SimError: the bodies are not those of the snapshot.
-        """
+    def require(self, snapshot: BulletSnapshot, bodies: Sequence[Any]) -> None:
+        """Raise a `SimError` if the bodies are not those of a snapshot."""
         same = len(bodies) == len(snapshot.bodies) and all(
             a is b for a, b in zip(bodies, snapshot.bodies, strict=True))
         if not same or snapshot.state not in self._states:
             raise SimError('the snapshot is of other models: none may be added, removed or changed '
                            'between taking a snapshot and going back to it; take a new one')
+
+    def restore(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> tuple[Any, ...]:
+        """Restore PyBullet's part of a snapshot, and return the engine's own."""
         self._restore(snapshot, moving)
         return snapshot.engine_state
 
