@@ -25,10 +25,14 @@ class Child:
 
     def ask(self, line: str = '') -> str:
         """Send a line and return the answer."""
+        self.send(line)
+        return self.answer()
+
+    def send(self, line: str) -> None:
+        """Send a line; `answer` returns the answer."""
         assert self._process.stdin is not None
         self._process.stdin.write(f'{line}\n')
         self._process.stdin.flush()
-        return self.answer()
 
     def answer(self) -> str:
         """Return the next line of its standard output."""

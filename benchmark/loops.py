@@ -15,11 +15,10 @@ import contextlib
 import logging
 import sys
 import tempfile
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from article import driven_world, robot_urdf
-from child import Child
+from windows import Steps, WindowedLoop, answer
 
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.physics.bullet.silence import silent
@@ -28,21 +27,14 @@ STANDING = 1000  # steps until spawned robots stand on the ground
 DISTANCE = 3.0  # [m] between robots
 WHEEL_SPEED = 1.9  # [rad/s] of a robot that drives at 0.5 m/s
 WHEEL_TORQUE = 5.0  # [N m]
-BATCH = 0.01  # [s, wall] between readings of the clock
-
-Steps = Callable[[int], object]
 
 
-class Loop(Child):
+class Loop(WindowedLoop):
     """One of the loops, in a child process that waits between windows."""
 
     def __init__(self, kind: str, robots: int, driving: bool) -> None:
         """Start the process; the first window begins when the robots stand."""
         super().__init__(__file__, kind, str(robots), str(int(driving)))
-
-    def speed(self, seconds: float) -> float:
-        """Return the steps per second over a window [s, wall]."""
-        return float(self.ask(str(seconds)))
 
 
 @contextlib.contextmanager
@@ -97,24 +89,13 @@ def engine(robots: int, driving: bool) -> Iterator[Steps]:
         yield made.engine.step
 
 
-def measure(step: Steps, seconds: float, batch: int) -> float:
-    """Return the steps per second over a window [s, wall]; the clock is read once a batch."""
-    steps, begin = 0, time.perf_counter()
-    while (elapsed := time.perf_counter() - begin) < seconds:
-        step(batch)
-        steps += batch
-    return steps / elapsed
-
-
 def main() -> int:
     """Measure windows until the input ends; return the exit code."""
     logging.disable(logging.WARNING)
     kind, robots, driving = sys.argv[1:]
     loop = {'bare': bare, 'engine': engine, 'world': world}[kind]
     with loop(int(robots), driving == '1') as step:
-        batch = max(1, round(BATCH * measure(step, BATCH, 10)))
-        for line in sys.stdin:
-            print(measure(step, float(line), batch), flush=True)
+        answer(step)
     return 0
 
 
