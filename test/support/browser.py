@@ -77,6 +77,12 @@ class Browser:
         self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
                    'updates': {'value': value}})
 
+    def click_node(self, name):
+        """Click on a node of the scene."""
+        self.send({'type': 'SceneNodeClickMessage', 'name': name, 'instance_index': None,
+                   'ray_origin': [0.0, 0.0, 0.0], 'ray_direction': [1.0, 0.0, 0.0],
+                   'screen_pos': [0.5, 0.5], 'modifier': None, 'owner': ''})
+
     def control(self, label):
         """Return the number of the control of that label; None if there is none."""
         return next((uuid for uuid, (_, props) in self.controls.items()

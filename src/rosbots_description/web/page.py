@@ -11,8 +11,11 @@ import viser
 from ..sim.description import SceneChange, ShownMotion
 from .bar import Bar, TimeControl
 from .drive import DrivePanel, Robots
+from .models import Models
+from .outline import Outline
 from .panel import Panel
 from .scene import SceneView
+from .selection import Selection
 
 logger = logging.getLogger(__name__)
 
@@ -60,12 +63,18 @@ class Page:
         self._lost = False
         site.gui.configure_theme(show_logo=False, show_share_button=False)
         site.gui.set_panel_label('gzweb')
-        self._scene = SceneView(site)
+        models = Models()
+        self.selection = Selection(models, self._lock)
+        site.gui.add_command('Select nothing', hotkey='escape').on_trigger(
+            lambda _: self.selection.choose(None))
+        self._scene = SceneView(site, self.selection.click)
+        outline = Outline(site.scene, models, self.selection)
         self._bar = Bar(site.gui, simulator.time, self._notify)
         tabs = site.gui.add_tab_group()
         with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
             drive = DrivePanel(site.gui, simulator.robots)
-        self._panels: tuple[Panel, ...] = (self._scene, self._bar, drive)
+        self._panels: tuple[Panel, ...] = (
+            models, self._scene, self.selection, outline, self._bar, drive)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 

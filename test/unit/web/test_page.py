@@ -4,86 +4,15 @@ import time
 
 import pytest
 from support.browser import Browser
+from support.window import clock, model
 
-from rosbots_description.sim.core import Pose, SimError
-from rosbots_description.sim.description import (
-    Box,
-    LightSpec,
-    Mesh,
-    Plane,
-    SceneChange,
-    SceneSpec,
-    ShownLink,
-    ShownModel,
-    ShownMotion,
-    Visual,
-)
-from rosbots_description.web import Page, Site, drive
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import LightSpec, Mesh, Plane, SceneChange, SceneSpec
+from rosbots_description.web import drive
 from rosbots_description.web import page as page_module
 from rosbots_description.web.scene import SceneView
 
 SUN = LightSpec('sun', 'directional', direction=(0.0, 0.0, -1.0), cast_shadows=True)
-
-
-class FakeSimulator:
-    """Remembers what it is told."""
-
-    def __init__(self):
-        self.told = []
-        self.change = self.motion = None
-        self.fault = ''
-        self.topics = ()
-        self.view = self.time = self.robots = self
-
-    def open(self, change, motion):
-        self.change, self.motion = change, motion
-
-    def close(self):
-        self.change = self.motion = None
-
-    def drive_topics(self):
-        return self.topics
-
-    def __getattr__(self, name):
-        def note(*arguments):
-            self.told.append((name, *arguments))
-            if self.fault:
-                raise SimError(self.fault)
-        return note
-
-
-def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):
-    visual = Visual('v', shape or Box((1.0, 1.0, 1.0)), Pose((0.0, 0.0, 1.0)))
-    return ShownModel(name, (ShownLink(number, 'link', Pose(position), (visual,)),))
-
-
-def clock(time=0.0, real_time=0.0, paused=False, **poses):
-    return ShownMotion(time, real_time, round(1000 * time), paused,
-                       {int(name[1:]): pose for name, pose in poses.items()})
-
-
-@pytest.fixture
-def site():
-    site = Site('127.0.0.1', 0)
-    yield site
-    site.stop()
-
-
-@pytest.fixture
-def simulator():
-    return FakeSimulator()
-
-
-@pytest.fixture
-def page(site, simulator):
-    return Page(site, simulator)
-
-
-@pytest.fixture
-def browser(site, simulator, page):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: simulator.change)
-        yield browser
 
 
 def wait_until(condition):
@@ -160,7 +89,7 @@ def test_a_mesh_that_cannot_be_read_is_left_out(browser, simulator, caplog):
 
 
 def test_only_a_ground_has_a_grid_and_is_no_part_of_the_view(site):
-    view = SceneView(site)
+    view = SceneView(site, lambda *_: None)
     view.apply(SceneChange(True, (model('ground', 1, Plane()), model('wall', 2, Plane(
         (1.0, 0.0, 0.0))), model('box', 3, position=(100.0, 0.0, 0.0)))))
     assert site.scene.get_handle_by_name('/models/ground/link/0 v/grid') is not None

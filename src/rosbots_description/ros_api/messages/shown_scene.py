@@ -79,7 +79,8 @@ def _read_model(values: dict[str, Any]) -> ShownModel:
         ShownLink(link['number'], link['name'], _read_pose(link['pose']),
                   tuple(map(_read_visual, link['visuals'])))
         for link in values['links'])
-    return ShownModel(values['name'], links, tuple(values['joints']), values['static'])
+    return ShownModel(values['name'], links, tuple(values['joints']), values['static'],
+                      _read_pose(values['canonical_pose']))
 
 
 def _read_visual(values: dict[str, Any]) -> Visual:

@@ -73,10 +73,10 @@ class ShownWorld:
         links = []
         for link in model.links.values():
             shown = ShownLink(next(self._numbers), link.name, link.pose, link.spec.visuals)
-            if shown.visuals:
-                self._links[shown.number] = link, shown.pose
+            self._links[shown.number] = link, shown.pose
             links.append(shown)
-        return ShownModel(name, tuple(links), tuple(model.joints), model.static)
+        return ShownModel(name, tuple(links), tuple(model.joints), model.static,
+                          model.spec.links[0].pose)
 
 
 def advertise_scene(server: Server) -> None:

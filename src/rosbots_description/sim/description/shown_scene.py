@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..core import Pose
+from ..core import IDENTITY, Pose
 from .model_spec import Visual
 from .world_spec import LightSpec, SceneSpec
 
@@ -20,12 +20,16 @@ class ShownLink:
 
 @dataclass(frozen=True)
 class ShownModel:
-    """A model with all its links, and the names of its joints."""
+    """A model with all its links, the canonical one first, and the names of its joints.
+
+    `canonical_pose` is that link's in the model's frame, which moves with it.
+    """
 
     name: str
     links: tuple[ShownLink, ...]
     joints: tuple[str, ...] = ()
     static: bool = False
+    canonical_pose: Pose = IDENTITY
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ def test_a_change_arrives_as_it_was_sent():
                     for n, shape in enumerate(shapes))
     change = SceneChange(
         True, (ShownModel('a/b::c', (ShownLink(7, 'l', POSE, visuals), ShownLink(8, 'm', POSE)),
-                          ('j',), True),), ('gone',),
+                          ('j',), True, POSE),), ('gone',),
         {'lamp': LightSpec('lamp', SPOT, POSE, cast_shadows=True)},
         SceneSpec(background=(0.0, 0.1, 0.2, 1.0)), 0.002, 0.0)
     assert scene_change(scene_message(change)) == change

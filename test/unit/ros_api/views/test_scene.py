@@ -60,6 +60,17 @@ def test_only_what_moved_is_told_and_the_clock_always():
     assert shown.motion(3.0).poses == {}
 
 
+def test_links_that_cannot_be_seen_are_told_too():
+    world = World(make_engine=FakeEngine)
+    bare = replace(BALL, links=(replace(BALL.links[0], pose=Pose((0.0, 0.0, 1.0)), visuals=()),))
+    ball = world.spawn(bare, 'ball', Pose())
+    shown = ShownWorld(world)
+    (model,) = shown.change().models
+    assert model.canonical_pose == Pose((0.0, 0.0, 1.0))
+    ball.set_pose(Pose((0.0, 2.0, 0.0)))
+    assert shown.motion(1.0).poses == {model.links[0].number: ball.links['ball'].pose}
+
+
 def test_lights_and_speed_are_told_when_they_change():
     world = World(make_engine=FakeEngine)
     shown = ShownWorld(world)

@@ -1,0 +1,51 @@
+"""The models of the page: what there is, and where it is now."""
+
+from collections.abc import Mapping
+
+from ..sim.core import Pose, compose, inverse
+from ..sim.description import SceneChange, ShownLink, ShownModel, ShownMotion
+from .panel import Panel
+
+
+class Models(Panel):
+    """Keeps what the simulator has shown; the first of all panels, so that others can ask it."""
+
+    def __init__(self) -> None:
+        self._models: dict[str, ShownModel] = {}
+        self._poses: dict[int, Pose] = {}  # of links in the world, by their numbers
+
+    @property
+    def all(self) -> Mapping[str, ShownModel]:
+        """Return all models by name, in the order in which they came."""
+        return self._models
+
+    def link(self, model: str, link: str) -> ShownLink | None:
+        """Return a link of a model; None if there is none of that name."""
+        shown = self._models.get(model)
+        return next((one for one in shown.links if one.name == link), None) if shown else None
+
+    def link_pose(self, link: ShownLink) -> Pose:
+        """Return the pose of a link's frame in the world."""
+        return self._poses.get(link.number, link.pose)
+
+    def pose(self, model: str) -> Pose:
+        """Return the pose of a model's frame in the world.
+
+        Raises:
+            KeyError: there is no such model.
+        """
+        shown = self._models[model]
+        return compose(self.link_pose(shown.links[0]), inverse(shown.canonical_pose))
+
+    def apply(self, change: SceneChange) -> None:
+        """Take in models that came, changed or went."""
+        gone = list(self._models) if change.reset else change.removed
+        for name in gone:
+            if shown := self._models.pop(name, None):
+                for link in shown.links:
+                    self._poses.pop(link.number, None)
+        self._models |= {model.name: model for model in change.models}
+
+    def move(self, motion: ShownMotion) -> None:
+        """Take in poses."""
+        self._poses |= motion.poses

@@ -1,0 +1,52 @@
+"""A box around what is selected."""
+
+import numpy as np
+import viser
+
+from ..sim.description import SceneChange, ShownLink
+from .bounds import corners
+from .models import Models
+from .nodes import link_node
+from .panel import Panel
+from .selection import Selection
+
+COLOUR = (255, 140, 0)
+WIDTH = 2.0  # of its lines [pixels]
+GAP = 0.01  # between the box and what it is around [m]
+# Edges of a box: pairs of opposite ends along each axis, of a cube from -1 to 1.
+_ENDS = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
+EDGES = np.array([(one, other) for one in _ENDS for other in _ENDS
+                  if one < other and sum(x != y for x, y in zip(one, other, strict=True)) == 1])
+
+
+class Outline(Panel):
+    """Shows a box around each selected link; it moves along as a part of the link's node."""
+
+    def __init__(self, scene: viser.SceneApi, models: Models, selection: Selection) -> None:
+        self._scene, self._models, self._selection = scene, models, selection
+        self._shown: list[str] = []
+        selection.on_change(self._draw)
+
+    def apply(self, change: SceneChange) -> None:
+        """Draw it again around a model that has changed."""
+        if any(model.name == self._selection.model for model in change.models):
+            self._draw()
+
+    def _draw(self) -> None:
+        for name in self._shown:
+            self._scene.remove_by_name(name)  # unless it went with its link
+        self._shown = []
+        model, chosen = self._selection.model, self._selection.link
+        if model is not None:
+            for link in self._models.all[model].links:
+                if chosen in (None, link.name):
+                    self._add(f'{link_node(model, link.name)}/selected', link)
+
+    def _add(self, name: str, link: ShownLink) -> None:
+        points = corners(link.visuals)
+        if points:
+            low, high = np.min(points, axis=0) - GAP, np.max(points, axis=0) + GAP
+            self._scene.add_line_segments(
+                name, (low + high) / 2.0 + EDGES * (high - low) / 2.0, COLOUR, thickness=WIDTH,
+                thickness_units='screen')
+            self._shown.append(name)

@@ -1,0 +1,55 @@
+"""What is selected on the page, for all browsers alike."""
+
+import threading
+from collections.abc import Callable
+
+from ..sim.description import SceneChange
+from .models import Models
+from .panel import Panel
+
+
+class Selection(Panel):
+    """A model or one of its links, or nothing; it ends when the model goes.
+
+    Any thread may choose. Callbacks are called with the page's lock held, so they must be quick;
+    what takes long, such as a service, is called from elsewhere.
+    """
+
+    def __init__(self, models: Models, lock: threading.RLock) -> None:
+        self._models, self._lock = models, lock
+        self._chosen: tuple[str | None, str | None] = (None, None)
+        self._callbacks: list[Callable[[], None]] = []
+
+    @property
+    def model(self) -> str | None:
+        """Return the name of the selected model, or None."""
+        return self._chosen[0]
+
+    @property
+    def link(self) -> str | None:
+        """Return the name of the selected link in that model; None for the whole model."""
+        return self._chosen[1]
+
+    def choose(self, model: str | None, link: str | None = None) -> None:
+        """Select a model, one of its links, or nothing; what does not exist counts as nothing."""
+        with self._lock:
+            if model not in self._models.all:
+                model = None
+            if model is None or link is None or self._models.link(model, link) is None:
+                link = None
+            if (model, link) != self._chosen:
+                self._chosen = model, link
+                for callback in self._callbacks:
+                    callback()
+
+    def click(self, model: str, link: str) -> None:
+        """Select what was clicked on: the model first, then the link."""
+        self.choose(model, link if model == self.model else None)
+
+    def on_change(self, callback: Callable[[], None]) -> None:
+        """Call back from now on when something else, or nothing, is selected."""
+        self._callbacks.append(callback)
+
+    def apply(self, _change: SceneChange) -> None:
+        """End with the model, or fall back to it when the link goes."""
+        self.choose(*self._chosen)

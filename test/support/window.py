@@ -1,0 +1,43 @@
+"""What the window's page is tested with: a simulator that remembers, and what it would show."""
+
+from rosbots_description.sim.core import Pose, SimError
+from rosbots_description.sim.description import Box, ShownLink, ShownModel, ShownMotion, Visual
+
+
+class FakeSimulator:
+    """Remembers what it is told; every part of it is this object."""
+
+    def __init__(self):
+        self.told = []
+        self.change = self.motion = None
+        self.fault = ''
+        self.topics = ()
+        self.view = self.time = self.robots = self
+
+    def open(self, change, motion):
+        self.change, self.motion = change, motion
+
+    def close(self):
+        self.change = self.motion = None
+
+    def drive_topics(self):
+        return self.topics
+
+    def __getattr__(self, name):
+        def note(*arguments):
+            self.told.append((name, *arguments))
+            if self.fault:
+                raise SimError(self.fault)
+        return note
+
+
+def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):
+    """Return a model of one link, 'link', with a visual 1 m above its frame."""
+    visual = Visual('v', shape or Box((1.0, 1.0, 1.0)), Pose((0.0, 0.0, 1.0)))
+    return ShownModel(name, (ShownLink(number, 'link', Pose(position), (visual,)),))
+
+
+def clock(time=0.0, real_time=0.0, paused=False, **poses):
+    """Return a motion; _3=POSE is of the link of number 3."""
+    return ShownMotion(time, real_time, round(1000 * time), paused,
+                       {int(name[1:]): pose for name, pose in poses.items()})

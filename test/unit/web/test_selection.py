@@ -1,0 +1,94 @@
+"""What is selected: by clicks, for all browsers, and no longer than it exists."""
+
+import pytest
+from support.browser import Browser
+from support.window import clock, model
+
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import Plane, SceneChange, ShownLink, ShownModel
+from rosbots_description.web.models import Models
+
+CLICK = '/models/a/link/0 v'
+BOX = '/models/a/link/selected'
+
+
+def two_links(name, number):
+    (link,) = model(name, number).links
+    return ShownModel(name, (link, ShownLink(number + 1, 'other', Pose(), link.visuals)))
+
+
+def test_a_click_selects_the_model_and_a_second_one_its_link(browser, simulator, page, site):
+    simulator.change(SceneChange(True, (two_links('a', 1), model('b', 3))))
+    browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
+    browser.click_node(CLICK)
+    browser.wait_until(lambda: BOX in browser.nodes)
+    browser.wait_until(lambda: '/models/a/other/selected' in browser.nodes)
+    assert (page.selection.model, page.selection.link) == ('a', None)
+    browser.click_node(CLICK)
+    browser.wait_until(lambda: '/models/a/other/selected' not in browser.nodes)
+    assert (page.selection.model, page.selection.link) == ('a', 'link')
+    with Browser(site.address) as second:
+        second.wait_until(lambda: BOX in second.nodes)
+        second.click_node('/models/b/link/0 v')
+        browser.wait_until(lambda: '/models/b/link/selected' in browser.nodes)
+    assert BOX not in browser.nodes
+    browser.press('escape')
+    browser.wait_until(lambda: '/models/b/link/selected' not in browser.nodes)
+    assert page.selection.model is None
+
+
+def test_the_box_is_around_what_is_seen(browser, simulator, page, site):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    page.selection.choose('a')
+    points = site.scene.get_handle_by_name(BOX).points.reshape(-1, 3)
+    assert points.min(axis=0) == pytest.approx([-0.5, -0.5, 0.5], abs=0.02)
+    assert points.max(axis=0) == pytest.approx([0.5, 0.5, 1.5], abs=0.02)
+
+
+def test_grounds_take_no_clicks(browser, simulator):
+    simulator.change(SceneChange(True, (model('a', 1), model('ground', 2, Plane()))))
+    browser.wait_until(lambda: '/models/ground/link/0 v/grid' in browser.nodes)
+    bound = {m['name'] for m in browser.messages
+             if m['type'] == 'SetSceneNodeClickBindingsMessage' and m['bindings']}
+    assert bound == {CLICK}
+
+
+def test_it_survives_a_simulator_that_numbers_anew_and_a_model_that_changes(
+        browser, simulator, page):
+    simulator.change(SceneChange(True, (two_links('a', 1),)))
+    page.selection.choose('a', 'other')
+    simulator.change(SceneChange(True, (two_links('a', 7),)))
+    simulator.change(SceneChange(models=(two_links('a', 9),), removed=('a',)))
+    assert (page.selection.model, page.selection.link) == ('a', 'other')
+    simulator.change(SceneChange(models=(model('a', 11, Plane()),), removed=('a',)))
+    assert (page.selection.model, page.selection.link) == ('a', None)
+    simulator.change(SceneChange(models=(model('a', 12),), removed=('a',)))
+    browser.wait_until(lambda: BOX in browser.nodes)  # it was drawn again
+
+
+def test_it_ends_when_the_model_goes(browser, simulator, page):
+    seen = []
+    page.selection.on_change(lambda: seen.append(page.selection.model))
+    simulator.change(SceneChange(True, (model('a', 1), model('b', 2))))
+    page.selection.choose('a')
+    page.selection.choose('a')
+    simulator.change(SceneChange(removed=('a',)))
+    page.selection.choose('nobody')
+    page.selection.choose('b', 'no link')
+    assert (page.selection.model, page.selection.link) == ('b', None)
+    simulator.change(SceneChange(True))
+    assert seen == ['a', None, 'b', None]
+
+
+def test_models_know_where_they_are():
+    models = Models()
+    (link,) = model('a', 1, position=(1.0, 0.0, 3.0)).links
+    models.apply(SceneChange(True, (ShownModel('a', (link,), canonical_pose=Pose(
+        (0.0, 0.0, 1.0))),)))
+    assert models.pose('a') == Pose((1.0, 0.0, 2.0))
+    models.move(clock(_1=Pose((5.0, 0.0, 3.0)), _2=Pose()))
+    assert models.pose('a') == Pose((5.0, 0.0, 2.0))
+    assert models.link('a', 'link') == link
+    assert models.link('a', 'x') is models.link('x', 'link') is None
+    models.apply(SceneChange(removed=('a',)))
+    assert models.all == {}
