@@ -95,6 +95,8 @@ class Page:
                 self._is_open, self._is_complete = True, False
                 self._heard = time.monotonic()
                 self._view.open(self._change, self._move)
+                for panel in self._panels:
+                    panel.open()
             elif self._is_complete:
                 self._look()
 
@@ -105,6 +107,8 @@ class Page:
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
                 self._view.close()
+                for panel in self._panels:
+                    panel.close()
 
     def _change(self, change: SceneChange) -> None:
         with self._lock:

@@ -4,48 +4,29 @@ A window is of the same version as its simulator, so nothing is checked.
 """
 
 import json
-from dataclasses import asdict
-from typing import Any
+from dataclasses import fields
+from functools import cache
+from typing import Any, get_args, get_type_hints
 
 from std_msgs.msg import Float64MultiArray, String
 
+from ...sim import description
 from ...sim.core import Pose
-from ...sim.description import (
-    Box,
-    Cylinder,
-    Geometry,
-    LightSpec,
-    Material,
-    Mesh,
-    Plane,
-    Reflection,
-    SceneChange,
-    SceneSpec,
-    ShownLink,
-    ShownModel,
-    ShownMotion,
-    Sphere,
-    Visual,
-)
+from ...sim.description import SceneChange, ShownMotion
 
-_SHAPES = {kind.__name__: kind for kind in (Box, Cylinder, Mesh, Plane, Sphere)}
 _CLOCK, _LINK = 4, 8  # numbers of the clock, and of each link
+_CLASS = 'class'  # of an object in JSON
 
 
 def scene_message(change: SceneChange) -> String:
     """Return a change of the scene as JSON."""
-    return String(json.dumps(asdict(change) | {'models': [_model(m) for m in change.models]}))
+    return String(json.dumps(change, default=_write))
 
 
 def scene_change(message: String) -> SceneChange:
     """Return the change that `scene_message` was made of."""
-    values = json.loads(message.data)
-    return SceneChange(**values | {
-        'models': tuple(map(_read_model, values['models'])),
-        'removed': tuple(values['removed']),
-        'lights': {name: LightSpec(**_tuples(light) | {'pose': _read_pose(light['pose'])})
-                   for name, light in values['lights'].items()},
-        'scene': SceneSpec(**_tuples(values['scene']))})
+    change: SceneChange = json.loads(message.data, object_hook=_read)
+    return change
 
 
 def motion_message(motion: ShownMotion) -> Float64MultiArray:
@@ -66,40 +47,30 @@ def read_motion(message: Float64MultiArray) -> ShownMotion:
     return ShownMotion(time, real_time, int(iterations), bool(paused), poses)
 
 
-def _model(model: ShownModel) -> dict[str, Any]:
-    values = asdict(model)
-    for link, shown in zip(values['links'], model.links, strict=True):
-        for visual, spec in zip(link['visuals'], shown.visuals, strict=True):
-            visual['geometry']['type'] = type(spec.geometry).__name__
-    return values
+def _write(value: Any) -> dict[str, Any]:  # noqa: ANN401  of any class of the description
+    """Return the fields of a description, and its class."""
+    return {_CLASS: type(value).__name__} | {
+        field.name: getattr(value, field.name) for field in fields(value)}
 
 
-def _read_model(values: dict[str, Any]) -> ShownModel:
-    links = tuple(
-        ShownLink(link['number'], link['name'], _read_pose(link['pose']),
-                  tuple(map(_read_visual, link['visuals'])))
-        for link in values['links'])
-    return ShownModel(values['name'], links, tuple(values['joints']), values['static'],
-                      _read_pose(values['canonical_pose']))
+def _read(values: dict[str, Any]) -> Any:  # noqa: ANN401  of the class that it names
+    """Return what `_write` was given; a mapping names no class."""
+    name = values.get(_CLASS)
+    if not isinstance(name, str):
+        return values
+    kind = getattr(description, name)
+    poses = _poses(kind)
+    return kind(**{
+        field: Pose(*map(tuple, value)) if field in poses and value is not None
+        else _tuples(value) for field, value in values.items() if field != _CLASS})
 
 
-def _read_visual(values: dict[str, Any]) -> Visual:
-    material = values['material'] and Material(
-        **_tuples(values['material'])
-        | {'reflection': Reflection(**_tuples(values['material']['reflection']))})
-    return Visual(values['name'], _read_geometry(values['geometry']), _read_pose(values['pose']),
-                  material)
+@cache
+def _poses(kind: type) -> set[str]:
+    """Return which fields of a class are poses, as JSON knows no named tuples."""
+    return {field for field, hint in get_type_hints(kind).items()
+            if Pose in (hint, *get_args(hint))}
 
 
-def _read_geometry(values: dict[str, Any]) -> Geometry:
-    return _SHAPES[values.pop('type')](**_tuples(values))
-
-
-def _read_pose(values: list[list[float]]) -> Pose:
-    (x, y, z), (qx, qy, qz, qw) = values
-    return Pose((x, y, z), (qx, qy, qz, qw))
-
-
-def _tuples(values: dict[str, Any]) -> dict[str, Any]:
-    return {name: tuple(value) if isinstance(value, list) else value
-            for name, value in values.items()}
+def _tuples(value: Any) -> Any:  # noqa: ANN401  as it is but for lists
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value

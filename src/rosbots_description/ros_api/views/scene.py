@@ -14,7 +14,14 @@ import rospy
 from std_msgs.msg import Float64MultiArray, String
 
 from ...sim.core import Pose
-from ...sim.description import ModelSpec, SceneChange, ShownLink, ShownModel, ShownMotion
+from ...sim.description import (
+    ModelSpec,
+    SceneChange,
+    ShownLink,
+    ShownModel,
+    ShownMotion,
+    ShownSensor,
+)
 from ...sim.runtime import Link, Model, World
 from ..messages import motion_message, scene_message
 from ..server import Server
@@ -72,11 +79,14 @@ class ShownWorld:
     def _shown(self, name: str, model: Model) -> ShownModel:
         links = []
         for link in model.links.values():
-            shown = ShownLink(next(self._numbers), link.name, link.pose, link.spec.visuals)
+            spec = link.spec
+            sensors = (ShownSensor(one.name, one.type, one.pose) for one in spec.sensors)
+            shown = ShownLink(next(self._numbers), link.name, link.pose, spec.visuals,
+                              spec.collisions, spec.inertial, spec.gravity, tuple(sensors))
             self._links[shown.number] = link, shown.pose
             links.append(shown)
-        return ShownModel(name, tuple(links), tuple(model.joints), model.static,
-                          model.spec.links[0].pose)
+        joints = tuple(joint.spec for joint in model.joints.values())
+        return ShownModel(name, tuple(links), joints, model.static, model.spec.links[0].pose)
 
 
 def advertise_scene(server: Server) -> None:

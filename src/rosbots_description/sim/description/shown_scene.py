@@ -4,8 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose
-from .model_spec import Visual
+from .model_spec import Collision, Inertial, JointSpec, Visual
 from .world_spec import LightSpec, SceneSpec
+
+
+@dataclass(frozen=True)
+class ShownSensor:
+    """A sensor; `pose` is in its link's frame."""
+
+    name: str
+    type: str
+    pose: Pose = IDENTITY
 
 
 @dataclass(frozen=True)
@@ -16,18 +25,22 @@ class ShownLink:
     name: str
     pose: Pose
     visuals: tuple[Visual, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+    inertial: Inertial | None = None
+    gravity: bool = True
+    sensors: tuple[ShownSensor, ...] = ()
 
 
 @dataclass(frozen=True)
 class ShownModel:
-    """A model with all its links, the canonical one first, and the names of its joints.
+    """A model with all its links, the canonical one first, and its movable joints.
 
     `canonical_pose` is that link's in the model's frame, which moves with it.
     """
 
     name: str
     links: tuple[ShownLink, ...]
-    joints: tuple[str, ...] = ()
+    joints: tuple[JointSpec, ...] = ()
     static: bool = False
     canonical_pose: Pose = IDENTITY
 

@@ -10,7 +10,10 @@ from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import (
     SPOT,
     Box,
+    Collision,
     Cylinder,
+    Inertial,
+    JointSpec,
     LightSpec,
     Mesh,
     Plane,
@@ -19,7 +22,9 @@ from rosbots_description.sim.description import (
     ShownLink,
     ShownModel,
     ShownMotion,
+    ShownSensor,
     Sphere,
+    Surface,
     Visual,
     gazebo_material,
 )
@@ -32,10 +37,12 @@ def test_a_change_arrives_as_it_was_sent():
               Mesh('/ä b.dae', (1.0, 1.0, -1.0), 'package://p/ä b.dae'))
     visuals = tuple(Visual(f'"{n}"', shape, POSE, gazebo_material('Gazebo/Red') if n else None)
                     for n, shape in enumerate(shapes))
+    whole = ShownLink(7, 'l', POSE, visuals, (Collision('c', shapes[0], POSE, Surface(0.5)),),
+                      Inertial(2.0, POSE, 1.0), False, (ShownSensor('s', 'ray', POSE),))
+    joint = JointSpec('j', 'revolute', 'l', 'm', POSE, lower=-1.0)
     change = SceneChange(
-        True, (ShownModel('a/b::c', (ShownLink(7, 'l', POSE, visuals), ShownLink(8, 'm', POSE)),
-                          ('j',), True, POSE),), ('gone',),
-        {'lamp': LightSpec('lamp', SPOT, POSE, cast_shadows=True)},
+        True, (ShownModel('a/b::c', (whole, ShownLink(8, 'm', POSE)), (joint,), True, POSE),),
+        ('gone',), {'class': LightSpec('lamp', SPOT, POSE, cast_shadows=True)},
         SceneSpec(background=(0.0, 0.1, 0.2, 1.0)), 0.002, 0.0)
     assert scene_change(scene_message(change)) == change
 
