@@ -61,7 +61,7 @@ OUR_TOPICS = {
     '/gazebo/visual_markers', '/gazebo/view/markers', '/gazebo/view/frames',
     '/gazebo/view/image_raw', '/gazebo/view/scene', '/gazebo/view/motion', '/tf_static',
 }
-OUR_SERVICES = {'get_model_omissions', 'step'}
+OUR_SERVICES = {'get_friction', 'get_model_omissions', 'set_friction', 'step'}
 # What the article's robot adds when it is spawned.
 OF_ROBOT = {'/odom', '/joint_states', '/tf', '/part2_cmr/cmd_vel'}
 PARAMETERS = {

@@ -1,6 +1,7 @@
 """The services of the node, grouped by subject; importing registers them."""
 
 from . import (  # noqa: F401
+    friction,
     joints,
     lights,
     link_properties,

@@ -276,7 +276,7 @@ class Model:
         del self._compiled
 
     def respecify(self, spec: ModelSpec) -> None:
-        """Replace the description by one with the same links and joints; the motion stays."""
+        """Replace the description by one with the same parts; the motion stays."""
         motion, old = self.engine.motion(self.body), self.body
         compiled = self.engine.compile(spec)
         self.body = self.engine.add(compiled, self.initial_pose)
@@ -287,6 +287,8 @@ class Model:
         self.spec = spec
         for link in spec.links:
             self.links[link.name].spec = link
+            for collision in link.collisions:
+                self.links[link.name].collisions[collision.name].spec = collision
         for joint in spec.joints:
             if joint.name in self.joints:
                 self.joints[joint.name].spec = joint
