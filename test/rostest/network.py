@@ -59,7 +59,8 @@ SUBSCRIBED = {'/gazebo/set_link_state': LinkState, '/gazebo/set_model_state': Mo
 OF_ROSOUT = {'/rosout'}  # /rosout_agg exists where roslaunch starts a master
 OUR_TOPICS = {
     '/gazebo/visual_markers', '/gazebo/view/markers', '/gazebo/view/frames',
-    '/gazebo/view/image_raw', '/gazebo/view/scene', '/gazebo/view/motion', '/tf_static',
+    '/gazebo/view/image_raw', '/gazebo/view/scene', '/gazebo/view/motion', '/gazebo/view/contacts',
+    '/tf_static',
 }
 OUR_SERVICES = {'get_friction', 'get_model_omissions', 'set_friction', 'step'}
 # What the article's robot adds when it is spawned.

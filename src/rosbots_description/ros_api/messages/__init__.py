@@ -19,12 +19,20 @@ from .layouts import (
     TransformLayout,
     floats,
 )
-from .shown_scene import motion_message, read_motion, scene_change, scene_message
+from .shown_scene import (
+    contacts_message,
+    motion_message,
+    read_contacts,
+    read_motion,
+    scene_change,
+    scene_message,
+)
 from .validity import RequestError, require_finite
 
 __all__ = [
     'ImuLayout', 'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'PointCloudLayout',
-    'RequestError', 'TransformLayout', 'fill_pose', 'fill_transform', 'fill_twist', 'floats',
-    'motion_message', 'read_motion', 'read_pose', 'read_transform', 'read_twist', 'read_vector',
-    'require_finite', 'scene_change', 'scene_message', 'stamp',
+    'RequestError', 'TransformLayout', 'contacts_message', 'fill_pose', 'fill_transform',
+    'fill_twist', 'floats', 'motion_message', 'read_contacts', 'read_motion', 'read_pose',
+    'read_transform', 'read_twist', 'read_vector', 'require_finite', 'scene_change',
+    'scene_message', 'stamp',
 ]

@@ -4,6 +4,7 @@ A window is of the same version as its simulator, so nothing is checked.
 """
 
 import json
+from collections.abc import Iterable
 from dataclasses import fields
 from functools import cache
 from typing import Any, get_args, get_type_hints
@@ -12,7 +13,7 @@ from std_msgs.msg import Float64MultiArray, String
 
 from ...sim import description
 from ...sim.core import Pose
-from ...sim.description import SceneChange, ShownMotion
+from ...sim.description import SceneChange, ShownContact, ShownMotion
 
 _CLOCK, _LINK = 4, 8  # numbers of the clock, and of each link
 _CLASS = 'class'  # of an object in JSON
@@ -45,6 +46,18 @@ def read_motion(message: Float64MultiArray) -> ShownMotion:
         number, x, y, z, qx, qy, qz, qw = message.data[start:start + _LINK]
         poses[int(number)] = Pose((x, y, z), (qx, qy, qz, qw))
     return ShownMotion(time, real_time, int(iterations), bool(paused), poses)
+
+
+def contacts_message(contacts: Iterable[ShownContact]) -> Float64MultiArray:
+    """Return contacts as numbers: position, normal and force of each."""
+    return Float64MultiArray(data=[
+        number for one in contacts for number in (*one.position, *one.normal, *one.force)])
+
+
+def read_contacts(message: Float64MultiArray) -> list[ShownContact]:
+    """Return the contacts that `contacts_message` was made of."""
+    vectors = zip(*[iter(message.data)] * 3, strict=True)
+    return [ShownContact(*one) for one in zip(*[vectors] * 3, strict=True)]
 
 
 def _write(value: Any) -> dict[str, Any]:  # noqa: ANN401  of any class of the description

@@ -48,6 +48,7 @@ from ..transport import (
     wait_for_answers,
     watch_master,
 )
+from ..views.contacts import advertise_contacts
 from ..views.frames import advertise_frames
 from ..views.overview_picture import advertise_view
 from ..views.scene import advertise_scene
@@ -157,6 +158,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
             advertise_view(server)
             advertise_frames(server)
             advertise_scene(server)
+            advertise_contacts(server)
             server.static_frames.watch(server.loop)
     server.world.listeners.append(Adapters(server))
     fill_world(server.world, spec)

@@ -27,7 +27,14 @@ from .model_spec import (
 )
 from .physics_settings import PhysicsSettings, check_physics
 from .sensor_spec import SensorSpec
-from .shown_scene import SceneChange, ShownLink, ShownModel, ShownMotion, ShownSensor
+from .shown_scene import (
+    SceneChange,
+    ShownContact,
+    ShownLink,
+    ShownModel,
+    ShownMotion,
+    ShownSensor,
+)
 from .world_spec import (
     DIRECTIONAL,
     POINT,
@@ -43,6 +50,7 @@ __all__ = [
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
     'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneChange', 'SceneSpec',
-    'SensorSpec', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownSensor', 'Sphere', 'Surface',
-    'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia', 'material_of_colours',
+    'SensorSpec', 'ShownContact', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownSensor',
+    'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
+    'material_of_colours',
 ]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..core import IDENTITY, Pose
+from ..core import IDENTITY, Pose, Vector
 from .model_spec import Collision, Inertial, JointSpec, Visual
 from .world_spec import LightSpec, SceneSpec
 
@@ -60,6 +60,15 @@ class SceneChange:
     scene: SceneSpec = field(default_factory=SceneSpec)
     step_size: float = 0.001
     max_update_rate: float = 1000.0
+
+
+@dataclass(frozen=True)
+class ShownContact:
+    """A point where two bodies touch [m], the normal, and the force on one of them [N]."""
+
+    position: Vector
+    normal: Vector
+    force: Vector
 
 
 @dataclass(frozen=True)

@@ -236,10 +236,12 @@ class PhysicsEngine(Protocol):
             compliances: along the axis, and across it [m/s per N].
         """
 
-    def contacts(self, body: EngineBody, link: str | None = None) -> list[Contact]:
-        """Return the contacts of a model, or of one link, in the last step, as `one` of each.
+    def contacts(
+        self, body: EngineBody | None = None, link: str | None = None
+    ) -> list[Contact]:
+        """Return the contacts in the last step; of a model, or of one link, as `one` of each.
 
-        A contact within the model is listed once, with its first link as `one`.
+        Each contact is listed once, one within the model with its first link as `one`.
         """
 
     def touching(self, body: EngineBody) -> Collection[EngineBody]:

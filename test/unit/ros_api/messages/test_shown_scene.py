@@ -1,7 +1,9 @@
 """What a window shows arrives as it was sent."""
 
 from rosbots_description.ros_api.messages import (
+    contacts_message,
     motion_message,
+    read_contacts,
     read_motion,
     scene_change,
     scene_message,
@@ -19,6 +21,7 @@ from rosbots_description.sim.description import (
     Plane,
     SceneChange,
     SceneSpec,
+    ShownContact,
     ShownLink,
     ShownModel,
     ShownMotion,
@@ -45,6 +48,12 @@ def test_a_change_arrives_as_it_was_sent():
         ('gone',), {'class': LightSpec('lamp', SPOT, POSE, cast_shadows=True)},
         SceneSpec(background=(0.0, 0.1, 0.2, 1.0)), 0.002, 0.0)
     assert scene_change(scene_message(change)) == change
+
+
+def test_contacts_arrive_as_they_were_sent():
+    contacts = [ShownContact((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), (0.0, 0.1, 9.8)),
+                ShownContact((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-5.0, 0.0, 0.0))]
+    assert read_contacts(contacts_message(contacts)) == contacts
 
 
 def test_a_motion_arrives_as_it_was_sent():

@@ -56,7 +56,7 @@ class ContactQueries:
         self._triangles.clear()
         self._bounds.clear()
 
-    def contacts(self, body: Body, link: str | None) -> list[Contact]:
+    def contacts(self, body: Body | None, link: str | None) -> list[Contact]:
         """Return contacts; see `PhysicsEngine.contacts`."""
         found = []
         # Queried for one body, PyBullet flips normals where it is the second, but not friction.
@@ -83,9 +83,9 @@ class ContactQueries:
                 for point in pybullet.getContactPoints(number, physicsClientId=self._client)
                 if point[8] <= 0.0 or point[9] > 0.0} - {body}
 
-    def _is_of(self, place: Place, body: Body, link: str | None) -> bool:
+    def _is_of(self, place: Place, body: Body | None, link: str | None) -> bool:
         owner, name = self._owners[place]
-        return owner is body and link in (None, name)
+        return (body is None or owner is body) and link in (None, name)
 
     def cast_rays(self, starts: Points, ends: Points, named: bool) -> RayHits:
         """Return the first hits of rays; see `PhysicsEngine.cast_rays`."""

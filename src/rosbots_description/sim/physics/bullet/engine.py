@@ -259,8 +259,8 @@ class Engine(BodyStates):
         state = self.link_state(body, link)
         self._slipping.update_friction(body, link, state, axle, slips, self._physics.step_size)
 
-    def contacts(self, body: Body, link: str | None = None) -> list[Contact]:
-        """Return the contacts of a model, or of one link, in the last step."""
+    def contacts(self, body: Body | None = None, link: str | None = None) -> list[Contact]:
+        """Return all contacts, those of a model, or of one link, in the last step."""
         return self._queries.contacts(body, link)
 
     def touching(self, body: Body) -> set[Body]:

@@ -63,6 +63,8 @@ def test_contacts_name_the_collisions_and_balance_the_weight():
         assert {names(contact.other) for contact in below} == {names(c.one) for c in contacts}
         assert total(below) == pytest.approx(-total(contacts), abs=1e-9)
         assert below[0].normal == pytest.approx((0.0, 0.0, -1.0))
+        everywhere = world.engine.contacts()
+        assert sorted(c.position for c in everywhere) == sorted(c.position for c in contacts)
 
 
 def test_wheels_and_caster_of_the_robot_carry_its_weight():
