@@ -62,7 +62,10 @@ OUR_TOPICS = {
     '/gazebo/view/image_raw', '/gazebo/view/scene', '/gazebo/view/motion', '/gazebo/view/contacts',
     '/tf_static',
 }
-OUR_SERVICES = {'get_friction', 'get_model_omissions', 'set_friction', 'step'}
+OUR_SERVICES = {
+    'get_friction', 'get_model_description', 'get_model_library', 'get_model_omissions',
+    'insert_model', 'set_friction', 'step',
+}
 # What the article's robot adds when it is spawned.
 OF_ROBOT = {'/odom', '/joint_states', '/tf', '/part2_cmr/cmd_vel'}
 PARAMETERS = {

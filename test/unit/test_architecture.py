@@ -53,7 +53,7 @@ ARROWS = {
     'ros_api/server':
         'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
     'ros_api/services':
-        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime '
+        'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
         'ros_api/server ros_api/messages ros_api/transport',
     'ros_api/topics':
         'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
@@ -68,7 +68,8 @@ ARROWS = {
     'ros_api/clients':
         'sim/core sim/description sim/rendering ros_api/messages ros_api/transport ros_api/views',
     'ros_api/window':
-        'sim/core sim/description ros_api/messages ros_api/transport ros_api/clients',
+        'sim/core sim/description sim/resources sim/formats '
+        'ros_api/messages ros_api/transport ros_api/clients',
     'ros_api/node':
         'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
         'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '

@@ -2,6 +2,7 @@
 
 from . import (  # noqa: F401
     friction,
+    insertion,
     joints,
     lights,
     link_properties,

@@ -42,7 +42,7 @@ _DONE = 'SpawnModel: Successfully spawned entity'
 
 
 @dataclass(frozen=True)
-class _Prepared:
+class PreparedModel:
     """A compiled model that is ready to be added to the world; `pose` is in the frame `frame`."""
 
     name: str
@@ -51,7 +51,7 @@ class _Prepared:
     frame: str
 
 
-def _read_urdf(server: Server, request: SpawnModelRequest) -> _Prepared | SpawnModelResponse:
+def _read_urdf(server: Server, request: SpawnModelRequest) -> PreparedModel | SpawnModelResponse:
     """Parse, compile and test a URDF; errors for which Gazebo's call fails are logged here."""
     if root_tag(request.model_xml) != 'robot':
         logger.error('SpawnModel: Failure - entity format is invalid.')
@@ -66,10 +66,10 @@ def _read_urdf(server: Server, request: SpawnModelRequest) -> _Prepared | SpawnM
         raise CallError(f'SpawnModel: Failure - {error}') from None
 
 
-def _read_sdf(
+def read_description(
     server: Server, request: SpawnModelRequest
-) -> _Prepared | LightSpec | SpawnModelResponse:
-    """Parse, compile and test a URDF or an SDF model, or parse a light."""
+) -> PreparedModel | LightSpec | SpawnModelResponse:
+    """Parse, compile and test a URDF or an SDF model, or parse a light; called beside the loop."""
     kind = root_tag(request.model_xml)
     if kind == 'robot':
         return _prepare(server, request, lambda: _load_urdf(server, request))
@@ -100,7 +100,7 @@ def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, P
 
 def _prepare(
     server: Server, request: SpawnModelRequest, load: Callable[[], tuple[ModelSpec, Pose]]
-) -> _Prepared | SpawnModelResponse:
+) -> PreparedModel | SpawnModelResponse:
     """Parse the model, compile it and test it in the sandbox, while the simulation goes on."""
     name, frame = request.model_name, request.reference_frame
     if not name:
@@ -112,12 +112,12 @@ def _prepare(
     spec, origin = load()
     model = server.world.compile(spec)
     server.sandbox.require(model, server.world.physics, caller_waits)
-    return _Prepared(name, model, compose(pose, origin), frame)
+    return PreparedModel(name, model, compose(pose, origin), frame)
 
 
 @service('spawn_urdf_model', SpawnModel, prepare=_read_urdf, registers=True)
-@service('spawn_sdf_model', SpawnModel, prepare=_read_sdf, registers=True)
-def spawn_model(server: Server, prepared: _Prepared | LightSpec) -> SpawnModelResponse:
+@service('spawn_sdf_model', SpawnModel, prepare=read_description, registers=True)
+def spawn_model(server: Server, prepared: PreparedModel | LightSpec) -> SpawnModelResponse:
     """Add a prepared model or a light to the world."""
     if isinstance(prepared, LightSpec):
         return _spawn_light(server, prepared)

@@ -2,6 +2,7 @@
 
 from ..resources import SharedFile
 from .engine_files import EngineFiles
+from .extent import extent
 from .loader import MeshPart, check_mesh, load_readers, read_mesh, visual_parts
 from .stl import read_stl
 from .submesh import submesh_file
@@ -12,6 +13,7 @@ __all__ = [
     'MeshPart',
     'SharedFile',
     'check_mesh',
+    'extent',
     'load_readers',
     'read_mesh',
     'read_stl',

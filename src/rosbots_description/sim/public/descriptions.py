@@ -13,7 +13,7 @@ from ..resources import (
     ModelSearch,
     PackageSearch,
     below_model_path,
-    parse_xml,
+    own_name,
     path_directories,
     read_file,
     root_tag,
@@ -67,7 +67,7 @@ class Descriptions:
             raise ModelError(f'{source}: it is not a model; a model is XML whose root element is '
                              f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}')
         load = load_urdf if tag == 'robot' else load_sdf
-        return load(text, name or _own_name(text, source), source=source,
+        return load(text, name or own_name(text, source), source=source,
                     find_package=find_package, find_model=self.find_model)
 
     def _path(self, address: str) -> str:
@@ -80,13 +80,3 @@ class Descriptions:
             raise ModelError(f"package '{package}' of {address} is unknown; add the folder that "
                              'holds it to package_path or to ROS_PACKAGE_PATH')
         return os.path.join(folder, inner)
-
-
-def _own_name(text: str | bytes, source: str) -> str:
-    """Return the name that a description gives its model."""
-    root = parse_xml(text, source)
-    element = root if root.tag == 'robot' else root.find('.//model')
-    name = '' if element is None else element.get('name', '')
-    if not name:
-        raise ModelError(f'{source}: it gives the model no name; give one with name=')
-    return name

@@ -11,6 +11,7 @@ from .search_path import (
     description_file,
     find_world,
     in_models,
+    model_names,
     path_directories,
 )
 from .uris import (
@@ -21,7 +22,7 @@ from .uris import (
     substitute_in_tree,
     substitute_packages,
 )
-from .xml_parser import MAX_XML_BYTES, check_xml_bounds, parse_xml, root_tag
+from .xml_parser import MAX_XML_BYTES, check_xml_bounds, own_name, parse_xml, root_tag
 
 __all__ = [
     'BUILT_IN_MODELS',
@@ -39,6 +40,8 @@ __all__ = [
     'file_path',
     'find_world',
     'in_models',
+    'model_names',
+    'own_name',
     'parse_xml',
     'path_directories',
     'read_file',

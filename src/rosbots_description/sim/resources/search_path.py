@@ -1,5 +1,6 @@
 """Find models and worlds along search paths, and the description in a model's folder."""
 
+import contextlib
 import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ Directories = Iterable[str | os.PathLike[str] | Callable[[], Iterable[str | os.P
 
 _NEWEST = (1, 7)
 _MANIFESTS = ('model.config', 'manifest.xml')
+_FILES = ('model.config', 'model.sdf')  # either makes a folder a model
 
 # Written here, not in files, so that they are found however the package is installed.
 BUILT_IN_MODELS = {
@@ -77,6 +79,19 @@ class ModelSearch:
         for entry in self._directories:
             for path in entry() if callable(entry) else [entry]:
                 yield os.fspath(path)
+
+
+def model_names(find_model: FindModel) -> list[str]:
+    """Return the names of all models that a search finds, and of those that are always there.
+
+    A model is a folder with a description. An unreadable directory has none.
+    """
+    found = {name for name, text in BUILT_IN_MODELS.items() if '<model' in text}
+    for directory in getattr(find_model, 'directories', list)():
+        with contextlib.suppress(OSError), os.scandir(directory) as entries:
+            found |= {entry.name for entry in entries
+                      if any(os.path.isfile(os.path.join(entry.path, file)) for file in _FILES)}
+    return sorted(found)
 
 
 def searched(find_model: FindModel) -> str:

@@ -64,6 +64,22 @@ def root_tag(text: str | bytes) -> str | None:
     return tags[0] if tags else None
 
 
+def own_name(text: str | bytes, source: str) -> str:
+    """Return the name that a URDF or SDF gives its model or light.
+
+    Raises:
+        ModelError: it gives none, or is not XML.
+    """
+    root = parse_xml(text, source)
+    element = root if root.tag == 'robot' else root.find('.//model')
+    if element is None:
+        element = root.find('.//light')
+    name = '' if element is None else element.get('name', '')
+    if not name:
+        raise ModelError(f'{source}: it gives the model no name; give one with name=')
+    return name
+
+
 class _Found(Exception):  # noqa: N818 (it ends a search)
     pass
 

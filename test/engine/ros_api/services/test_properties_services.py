@@ -39,7 +39,7 @@ def bench():
 def requests(name):
     """Return a strategy for calls of a service: its name and a request."""
     strategy = messages(ALL[name].type._request_class, NAMES)
-    if name.startswith('spawn_'):
+    if name.startswith(('spawn_', 'insert_')):
         texts = st.sampled_from((BOX, DOOR, NESTED, LAMP)) | damaged(BOX) | damaged(NESTED) | TEXTS
         strategy = st.builds(_set, strategy, st.just('model_xml'), texts)
     if name == 'step':

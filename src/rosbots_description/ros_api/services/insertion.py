@@ -1,0 +1,109 @@
+"""Services by which a window inserts models where there is room, and copies them; not in Gazebo."""
+
+import re
+from dataclasses import dataclass, replace
+from itertools import count
+
+from gazebo_msgs.srv import SetModelConfigurationRequest, SpawnModelRequest, SpawnModelResponse
+from rosbots_msgs.srv import (
+    GetModelDescription,
+    GetModelDescriptionRequest,
+    GetModelDescriptionResponse,
+    GetModelLibrary,
+    GetModelLibraryRequest,
+    GetModelLibraryResponse,
+    InsertModel,
+    InsertModelRequest,
+    InsertModelResponse,
+)
+
+from ...sim.description import LightSpec
+from ...sim.formats import sdf_of_model
+from ...sim.resources import model_names, own_name
+from ...sim.runtime import World
+from ..messages import fill_pose, require_finite
+from ..server import Server
+from .model_setters import set_model_configuration
+from .placement import placed
+from .registry import EXTENSIONS, refuse, service
+from .spawning import PreparedModel, read_description, spawn_model
+
+_NUMBER = re.compile(r'_\d+$')
+
+
+@dataclass(frozen=True)
+class _Insertion:
+    """A model or light under a name that is free, and the request for it."""
+
+    name: str
+    prepared: PreparedModel | LightSpec
+    request: InsertModelRequest
+
+
+def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertModelResponse:
+    """Parse, compile and test; called beside the loop."""
+    require_finite(request)
+    if len(request.joint_names) != len(request.joint_positions):
+        return refuse(InsertModelResponse(), 'InsertModel: Failure - joint_names and '
+                      'joint_positions have different lengths')
+    wanted = request.model_name or own_name(request.model_xml, 'model_xml')
+    name = server.loop.call(lambda: free_name(server.world, wanted))
+    prepared = read_description(server, SpawnModelRequest(
+        name, request.model_xml, request.robot_namespace, request.initial_pose, ''))
+    if isinstance(prepared, SpawnModelResponse):
+        return _response(prepared)
+    return _Insertion(name, prepared, request)
+
+
+@service('insert_model', InsertModel, prepare=_read, registers=True, table=EXTENSIONS)
+def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
+    """Spawn a model or light that was prepared."""
+    prepared, request = insertion.prepared, insertion.request
+    if isinstance(prepared, PreparedModel):
+        prepared = replace(prepared, pose=placed(
+            server.world, prepared.model.spec, prepared.pose, request.on_ground, request.beside))
+    response = spawn_model(server, prepared)
+    if not response.success:
+        return _response(response)
+    if request.joint_names:
+        set_model_configuration(server, SetModelConfigurationRequest(
+            insertion.name, '', request.joint_names, request.joint_positions))
+    return _response(response, insertion.name)
+
+
+@service('get_model_description', GetModelDescription, table=EXTENSIONS)
+def get_model_description(
+    server: Server, request: GetModelDescriptionRequest
+) -> GetModelDescriptionResponse:
+    """Return a model as SDF, with the joint positions and the pose that it has now."""
+    response = GetModelDescriptionResponse()
+    model = server.world.models.get(request.model_name)
+    if model is None:
+        return refuse(response, 'GetModelDescription: model does not exist')
+    response.model_xml = sdf_of_model(model.spec)
+    fill_pose(response.pose, model.pose)
+    response.joint_names = list(model.joints)
+    response.joint_positions = [joint.position for joint in model.joints.values()]
+    response.success, response.status_message = True, 'GetModelDescription: got description'
+    return response
+
+
+@service('get_model_library', GetModelLibrary, on_loop=False, table=EXTENSIONS)
+def get_model_library(
+    server: Server, _request: GetModelLibraryRequest
+) -> GetModelLibraryResponse:
+    """Return the names of the models along the model path."""
+    return GetModelLibraryResponse(model_names(server.find_model))
+
+
+def free_name(world: World, name: str) -> str:
+    """Return the name, with another number at its end if a model or light has it."""
+    taken = world.models.keys() | world.lights.keys()
+    if name not in taken:
+        return name
+    stem = _NUMBER.sub('', name)
+    return next(other for n in count() if (other := f'{stem}_{n}') not in taken)
+
+
+def _response(response: SpawnModelResponse, name: str = '') -> InsertModelResponse:
+    return InsertModelResponse(response.success, response.status_message, name)

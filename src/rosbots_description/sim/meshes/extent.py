@@ -1,0 +1,42 @@
+"""How far shapes reach along the axes of the world."""
+
+import numpy as np
+
+from ..core import Pose, rotate
+from ..core.arrays import FloatArray
+from ..description import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+from .loader import read_mesh
+
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
+    """Return the lowest and the highest corner (2, 3) of the box around a shape [m].
+
+    It is exact, and None for a plane, which has no end.
+
+    Args:
+        pose: of the shape, in the frame along whose axes the box is.
+    Raises:
+        ModelError: a mesh cannot be read.
+    """
+    turn: FloatArray = np.stack([rotate(pose.orientation, axis) for axis in _AXES], axis=1)
+    match geometry:
+        case Box(size):
+            reach = np.abs(turn) @ np.divide(size, 2.0)
+        case Sphere(radius):
+            reach = np.full(3, radius)
+        case Cylinder(radius, length):
+            along = np.abs(turn[:, 2])
+            reach = radius * np.sqrt(np.maximum(1.0 - along**2, 0.0)) + length / 2.0 * along
+        case Mesh(path, scale):
+            vertices, _ = read_mesh(path).triangles()
+            points = (vertices * scale) @ turn.T + pose.position
+            return _stacked(points.min(axis=0), points.max(axis=0))
+        case Plane():
+            return None
+    return _stacked(pose.position - reach, pose.position + reach)
+
+
+def _stacked(low: FloatArray, high: FloatArray) -> FloatArray:
+    return np.array([low, high])
