@@ -1,0 +1,72 @@
+"""Undo: the last ten changes, the latest first."""
+
+import pytest
+from support.browser import Browser
+
+from rosbots_description.sim.core import SimError
+from rosbots_description.sim.description import ShownMotion
+from rosbots_description.web import Site
+from rosbots_description.web.history import History
+
+
+@pytest.fixture
+def site():
+    site = Site('127.0.0.1', 0)
+    yield site
+    site.stop()
+
+
+@pytest.fixture
+def told():
+    return []
+
+
+@pytest.fixture
+def history(site, told):
+    return History(site.gui, told.append)
+
+
+def clock(real_time):
+    return ShownMotion(0.0, real_time, 0, False)
+
+
+def test_the_last_change_is_undone_first_by_button_and_key(site, history, told):
+    history.add('move a', lambda: told.append('a'))
+    history.add('move b', lambda: told.append('b'))
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: browser.control('Undo: move b'))
+        browser.click('Undo: move b')
+        browser.wait_until(lambda: told == ['b'] and browser.control('Undo: move a'))
+        browser.press('Z')
+        browser.wait_until(lambda: told == ['b', 'a'] and browser.control('Undo'))
+        browser.press('Z')  # there is nothing more
+        browser.read()
+    assert told == ['b', 'a']
+
+
+def test_ten_changes_are_remembered(history, told):
+    for number in range(12):
+        history.add('move', lambda number=number: told.append(number))
+    for _ in range(12):
+        history.undo()
+    assert told == list(range(11, 1, -1))
+
+
+def test_a_refusal_is_shown_and_the_change_before_it_can_be_undone(history, told):
+    def refuse():
+        raise SimError('it is gone.')
+
+    history.add('move a', lambda: told.append('a'))
+    history.add('move b', refuse)
+    history.undo()
+    history.undo()
+    assert told == ['Undo: move b: it is gone.', 'a']
+
+
+def test_changes_of_another_simulator_are_forgotten(history, told):
+    history.move(clock(50.0))
+    history.add('move', lambda: told.append(1))
+    history.move(clock(51.0))
+    history.move(clock(0.1))  # it was restarted
+    history.undo()
+    assert told == []
