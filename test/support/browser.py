@@ -25,6 +25,7 @@ class Browser:
         self.messages = []
         self.nodes = {}  # of the scene: name -> [type, position, wxyz]
         self.keys = {}  # what is bound to each
+        self.idle_keys = set()  # those of them that do nothing now
         self.controls = {}  # uuid -> [type, properties]
         self.send(CAMERA)
 
@@ -97,6 +98,9 @@ class Browser:
         kind, name = message['type'], message.get('name')
         if kind == 'RegisterCommandMessage':
             self.keys[message['props']['hotkey']] = message['uuid']
+            self._enable(message['uuid'], message['props'])
+        elif kind == 'CommandUpdateMessage':
+            self._enable(message['uuid'], message['updates'])
         elif kind == 'RemoveSceneNodeMessage':
             self.nodes = {node: state for node, state in self.nodes.items()
                           if node != name and not node.startswith(f'{name}/')}
@@ -110,3 +114,8 @@ class Browser:
             self.controls[message['uuid']] = [kind, message['props']]
         elif name is not None and 'props' in message and kind != 'SceneNodeUpdateMessage':
             self.nodes[name] = [kind, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
+
+    def _enable(self, uuid, told):
+        if 'disabled' in told:
+            keys = {key for key, command in self.keys.items() if command == uuid}
+            self.idle_keys = self.idle_keys | keys if told['disabled'] else self.idle_keys - keys

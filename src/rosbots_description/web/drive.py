@@ -7,16 +7,30 @@ from typing import Any, Protocol
 
 import viser
 
+from .camera_keys import CameraKeys
 from .panel import Panel
 
 HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a second
-# Ahead and left, -1 to 1, with the keys. Viser has no comma, teleop's key for backward.
-DIRECTIONS: dict[str, tuple[float, float, tuple[Any, ...]]] = {
-    'Forward': (1.0, 0.0, ('I', 'arrowup')),
-    'Left': (0.0, 1.0, ('J', 'arrowleft')),
-    'Right': (0.0, -1.0, ('L', 'arrowright')),
-    'Backward': (-1.0, 0.0, ('M', 'arrowdown')),
-    'Stop': (0.0, 0.0, ('K',)),
+# Ahead and left, -1 to 1, with teleop's keys. Viser lists neither comma nor full stop, but passes
+# on to the browser whatever a key is called there.
+DIRECTIONS: dict[str, tuple[float, float, Any]] = {
+    'Forward': (1.0, 0.0, 'I'),
+    'Left': (0.0, 1.0, 'J'),
+    'Right': (0.0, -1.0, 'L'),
+    'Backward': (-1.0, 0.0, ','),
+    'Stop': (0.0, 0.0, 'K'),
+}
+CURVES: dict[str, tuple[float, float, Any]] = {
+    'Forward and left': (1.0, 1.0, 'U'),
+    'Forward and right': (1.0, -1.0, 'O'),
+    'Backward and right': (-1.0, -1.0, 'M'),  # it turns as teleop does
+    'Backward and left': (-1.0, 1.0, '.'),
+}
+CAMERA_KEYS: dict[str, tuple[Any, Any]] = {  # viser moves its camera by them
+    'Forward': ('W', 'arrowup'),
+    'Left': ('A', 'arrowleft'),
+    'Right': ('D', 'arrowright'),
+    'Backward': ('S', 'arrowdown'),
 }
 
 
@@ -33,8 +47,8 @@ class Robots(Protocol):
 class DrivePanel(Panel):
     """Controls that are there while there is something to drive; it stops when they are let go."""
 
-    def __init__(self, gui: viser.GuiApi, robots: Robots) -> None:
-        self._robots = robots
+    def __init__(self, gui: viser.GuiApi, robots: Robots, keys: CameraKeys) -> None:
+        self._robots, self._camera_keys = robots, keys
         self._lock = threading.Lock()
         self._end = threading.Timer(0.0, lambda: None)
         self._topics: Sequence[str] = ()
@@ -43,13 +57,21 @@ class DrivePanel(Panel):
             self._topic = gui.add_dropdown('Topic', [''])
             self._speed = gui.add_slider('Speed [m/s]', 0.05, 3.0, 0.05, 0.5)
             self._turn = gui.add_slider('Turn [rad/s]', 0.1, 4.0, 0.1, 1.0)
-            for name, (ahead, left, keys) in DIRECTIONS.items():
-                button = gui.add_button(name, hint=f'hold; or keys {" and ".join(keys)}')
+            self._keys = gui.add_checkbox('W A S D and arrows drive', initial_value=True,
+                                          hint='else they move the camera')
+            for name, (ahead, left, key) in DIRECTIONS.items():
+                button = gui.add_button(name, hint=f'hold; or hold the key {key}')
                 button.on_hold(partial(self._command, ahead, left))
-        for name, (ahead, left, keys) in DIRECTIONS.items():
-            for key in keys:
-                gui.add_command(f'{name} ({key})', hotkey=key).on_trigger(
-                    partial(self._command, ahead, left))
+        for name, (ahead, left, key) in (DIRECTIONS | CURVES).items():
+            gui.add_command(f'{name} ({key})', hotkey=key).on_trigger(
+                partial(self._command, ahead, left))
+        self._commands = [
+            gui.add_command(f'{name} ({key})', hotkey=key, disabled=True)
+            for name, keys in CAMERA_KEYS.items() for key in keys]
+        for command in self._commands:
+            ahead, left, _ = DIRECTIONS[command.label.split()[0]]
+            command.on_trigger(partial(self._command, ahead, left))
+        self._keys.on_update(lambda _: self._bind())
 
     def refresh(self) -> None:
         """Offer the topics that there are."""
@@ -59,8 +81,10 @@ class DrivePanel(Panel):
             self._folder.visible = bool(topics)
             if topics:
                 self._topic.options = topics
+            self._bind()
 
-    def _command(self, ahead: float, left: float, _event: object) -> None:
+    def steer(self, ahead: float, left: float) -> None:
+        """Send a command for `HOLD`: parts of the greatest speed and turn, -1 to 1."""
         with self._lock:
             topic = self._topic.value
             if topic not in self._topics:
@@ -71,3 +95,13 @@ class DrivePanel(Panel):
                 self._end = threading.Timer(HOLD, self._robots.drive, (topic, 0.0, 0.0))
                 self._end.daemon = True
                 self._end.start()
+
+    def _bind(self) -> None:
+        """Let the camera's keys drive, or leave them to the camera."""
+        drives = bool(self._topics) and self._keys.value
+        self._camera_keys.give(to_camera=not drives)
+        for command in self._commands:
+            command.disabled = not drives
+
+    def _command(self, ahead: float, left: float, _event: object) -> None:
+        self.steer(ahead, left)

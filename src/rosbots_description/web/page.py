@@ -10,6 +10,7 @@ import viser
 
 from ..sim.description import SceneChange, ShownMotion
 from .bar import Bar, TimeControl
+from .camera_keys import CameraKeys
 from .drive import DrivePanel, Robots
 from .models import Models
 from .outline import Outline
@@ -70,9 +71,10 @@ class Page:
         self._scene = SceneView(site, self.selection.click)
         outline = Outline(site.scene, models, self.selection)
         self._bar = Bar(site.gui, simulator.time, self._notify)
+        keys = CameraKeys(site.gui)
         tabs = site.gui.add_tab_group()
         with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
-            drive = DrivePanel(site.gui, simulator.robots)
+            drive = DrivePanel(site.gui, simulator.robots, keys)
         self._panels: tuple[Panel, ...] = (
             models, self._scene, self.selection, outline, self._bar, drive)
         site.on_client_connect(self._enter)

@@ -8,7 +8,6 @@ from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import LightSpec, Mesh, Plane, SceneChange, SceneSpec
-from rosbots_description.web import drive
 from rosbots_description.web import page as page_module
 from rosbots_description.web.scene import SceneView
 
@@ -168,36 +167,6 @@ def test_a_refusal_is_shown(browser, simulator):
     browser.click('Pause')
     browser.wait_until(lambda: any(m['type'] == 'NotificationShowMessage' and 'no: because.' in
                                    str(m) for m in browser.messages))
-
-
-def test_a_robot_drives_while_a_key_or_button_is_held(browser, simulator, page, monkeypatch):
-    monkeypatch.setattr(drive, 'HOLD', 0.3)
-    browser.wait_until(lambda: 'arrowleft' in browser.keys)
-    browser.press('I')
-    browser.read(0.2)
-    assert simulator.told == []  # there is nothing to drive yet
-    simulator.topics = ('/a/cmd_vel', '/b/cmd_vel')
-    page.poll()
-    browser.wait_until(lambda: browser.control('Topic'))
-    browser.choose('Topic', '/b/cmd_vel')
-    browser.choose('Turn [rad/s]', 2.0)
-    browser.press('arrowleft')
-    browser.wait_until(lambda: simulator.told)
-    browser.wait_until(lambda: len(simulator.told) == 2)
-    assert simulator.told == [('drive', '/b/cmd_vel', 0.0, 2.0), ('drive', '/b/cmd_vel', 0.0, 0.0)]
-    for _ in range(5):  # faster than it would stop
-        browser.hold('Backward')
-        browser.read(0.1)
-    assert simulator.told[2:7] == [('drive', '/b/cmd_vel', -0.5, 0.0)] * 5
-    browser.press('K')
-    browser.wait_until(lambda: simulator.told[-1] == ('drive', '/b/cmd_vel', 0.0, 0.0))
-    told = len(simulator.told)
-    browser.read(0.5)
-    assert len(simulator.told) == told  # it stopped once
-    simulator.topics = ()
-    page.poll()
-    browser.wait_until(lambda: ['GuiFolderMessage', False] in (
-        [kind, props['visible']] for kind, props in browser.controls.values()))
 
 
 def test_a_simulator_that_has_gone_and_returns_is_told_of(browser, simulator, page, monkeypatch):
