@@ -33,11 +33,15 @@ class LightSpec:
 
 @dataclass(frozen=True)
 class SceneSpec:
-    """Ambient light, background colour and shadows."""
+    """Ambient light, background colour and shadows.
+
+    `user_camera`: where a window begins to look from, x forward, in the world; None: it chooses.
+    """
 
     ambient: Colour = (0.4, 0.4, 0.4, 1.0)
     background: Colour = (0.7, 0.7, 0.7, 1.0)
     shadows: bool = True
+    user_camera: Pose | None = None
 
 
 @dataclass(frozen=True)

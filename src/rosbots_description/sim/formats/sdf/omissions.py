@@ -25,7 +25,7 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
 # Stored and reported, but without effect here: parent -> children.
 _KEPT = {
     'ode': ('max_vel', 'min_depth'), 'collision': ('max_contacts',),
-    'limit': ('velocity',), 'scene': ('ambient', 'background', 'shadows'),
+    'limit': ('velocity',),
 }
 # The same, but the author of the model expects an effect.
 _NOT_RUN = {'link': ('light', 'projector')}

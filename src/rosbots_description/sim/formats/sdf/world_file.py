@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from ...core import ModelError, Pose, fault
-from ...description import LightSpec, ModelSpec, ModelState, PluginSpec, SceneSpec, WorldSpec
+from ...description import LightSpec, ModelSpec, ModelState, PluginSpec, WorldSpec
 from ...resources import MAX_XML_BYTES, FindModel, FindPackage, read_file
 from ..xml import required_name
 from .document import SdfDocument, SdfLibrary
@@ -18,19 +18,22 @@ from .frames import Frames
 from .lights import read_light
 from .models import ModelParts, model_spec, read_include, read_model, read_plugin
 from .physics import read_physics
+from .scene import read_scene, read_user_camera
 from .state import read_states
-from .values import boolean_of, colour_of, text_of
+from .values import text_of
 
 logger = logging.getLogger(__name__)
 
-_READ = ('model', 'include', 'light', 'plugin', 'scene', 'physics', 'gravity', 'state', 'frame')
-# Elements with an effect on cameras, sound and other sensors only.
-_IDLE = ('gui', 'audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
+_READ = (
+    'model', 'include', 'light', 'plugin', 'scene', 'gui', 'physics', 'gravity', 'state', 'frame')
+# Elements with an effect on sound and other sensors only.
+_IDLE = ('audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
 
 # End of the message about an element that is not valid.
 _WITHOUT = {
     'model': 'this model is left out', 'light': 'this light is left out',
     'frame': 'this frame is left out', 'state': "the world's <state> is not applied",
+    'gui': 'windows choose their own view',
 }
 
 
@@ -83,12 +86,15 @@ def load_world(
     if state is not None:
         with _left_out(content, 'state'):
             states, time = read_states(document, state)
+    scene = read_scene(document, world)
+    with _left_out(content, 'gui'):
+        scene = replace(scene, user_camera=read_user_camera(document, world))
     spec = WorldSpec(
         world.get('name', 'default'),
         tuple(content.models.values()),
         read_physics(document, world),
         tuple(content.lights),
-        _scene(document, world),
+        scene,
         tuple(content.plugins),
         states,
         time,
@@ -209,18 +215,3 @@ def _read_plugin(
 _READERS = {
     'model': _read_model, 'include': _read_include, 'light': _read_light, 'plugin': _read_plugin
 }
-
-
-def _scene(document: SdfDocument, world: etree._Element) -> SceneSpec:
-    element = world.find('scene')
-    if element is None:
-        return SceneSpec()
-    document.notes.check(
-        element, ('ambient', 'background', 'shadows'), ('grid', 'sky', 'fog', 'origin_visual')
-    )
-    plain = SceneSpec()
-    return SceneSpec(
-        colour_of(element, 'ambient') or plain.ambient,
-        colour_of(element, 'background') or plain.background,
-        boolean_of(element, 'shadows', plain.shadows),
-    )

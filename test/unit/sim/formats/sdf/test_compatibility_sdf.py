@@ -26,7 +26,9 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
   <precon_iters>1</precon_iters></solver><constraints><cfm>0</cfm><erp>1</erp>
   <contact_surface_layer>1</contact_surface_layer>
   <contact_max_correcting_vel>1</contact_max_correcting_vel></constraints></ode></physics>
-<scene/><plugin name="p" filename="libgazebo_ros_factory.so"/>
+<scene><ambient>1 1 1</ambient><background>1 1 1</background><shadows>1</shadows></scene>
+<gui><camera><pose>0 0 0 0 0 0</pose></camera></gui>
+<plugin name="p" filename="libgazebo_ros_factory.so"/>
 <state><sim_time>1 0</sim_time><model name="m"><pose>0 0 0 0 0 0</pose>
   <link name="a"><pose>0 0 0 0 0 0</pose></link><model name="i"/></model></state>
 <include><uri>model://ground_plane</uri><name>g</name><pose>0 0 0 0 0 0</pose>

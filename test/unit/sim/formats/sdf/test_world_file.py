@@ -6,7 +6,7 @@ import math
 import pytest
 
 from rosbots_description.sim.core.errors import ModelError
-from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description.built_in import GROUND_PLANE
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.description.world_spec import SceneSpec
@@ -140,6 +140,21 @@ def test_the_scene_is_kept():
     assert scene == SceneSpec((0.1, 0.2, 0.3, 1.0), (0.0, 0.0, 1.0, 1.0), False)
 
 
+def test_the_view_of_the_gui_is_kept():
+    camera = load('<gui><camera name="user_camera"><pose>5 -5 2 0 0.5 2.36</pose>'
+                  '<view_controller>orbit</view_controller></camera></gui>').scene.user_camera
+    assert camera == Pose((5.0, -5.0, 2.0), from_rpy(0.0, 0.5, 2.36))
+    for without in ('', '<gui/>', '<gui><camera/></gui>'):
+        assert load(without).scene.user_camera is None
+
+
+def test_a_view_that_is_no_pose_is_left_out():
+    world = load('<gui><camera><pose>5 -5 2e9 0 0 0</pose></camera></gui>')
+    assert world.scene == SceneSpec()
+    (sentence,) = world.faults
+    assert sentence.startswith('w.world, line 1: the position of <pose> has a length of 2e+09 m')
+
+
 def test_lights_of_the_world_are_kept():
     lights = load('<light type="point" name="a"><pose>1 2 3 0 0 0</pose></light>'
                   '<light type="directional" name="b"/>').lights
@@ -161,7 +176,8 @@ def test_a_model_without_name_is_left_out():
 
 def test_omissions_are_reported_once_with_path_and_line(caplog):
     load('\n<actor name="walker"><pose>0 0 0 0 0 0</pose></actor>\n<population name="p"><a>1</a>'
-         '</population><wind><linear_velocity>0 0 0</linear_velocity></wind><gui><a>1</a></gui>')
+         '</population><wind><linear_velocity>0 0 0</linear_velocity></wind><audio><a>1</a>'
+         '</audio>')
     assert [record.getMessage() for record in caplog.records] == [
         'w.world: not simulated: world/actor (line 2), world/population (line 3)'
     ]
