@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """The simulator survives the end of the ROS master, and registers with the next one."""
 
+import re
 import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
 
 import rosgraph
 import rospy
@@ -20,6 +22,9 @@ from gazebo_msgs.srv import (
 from raw_client import answer, request_bytes, service_connection
 from server_process import MasterProcess, ServerProcess
 from simulator import BOX, DEADLINE, pose, wait_until
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from support.browser import Browser
 
 CTRL_C_LIMIT = 2.0  # [s] promised
 LATE = {'/late/odom', '/late/joint_states'}
@@ -81,8 +86,23 @@ class MasterRestartTest(unittest.TestCase):
             'late', rospy.get_param('robot_description'), '/late', pose(y=5.0), ''))
         self.assertTrue(response.success, response.status_message)
 
-    def test_simulator_registers_with_a_new_master(self):
+    def _window(self):
+        """Open the window in the browser, and look; return the browser."""
+        window = ServerProcess('--port', '0', program='gzweb', master=self.server.master)
+        self.addCleanup(window.__exit__)
+        address = re.search(r'gzweb: the world is at (\S+)', window.process.stdout.readline())[1]
+        browser = Browser(address)
+        self.addCleanup(browser.__exit__)
+        wait_until(self._is_shown, 'the window to look')
+        return browser
+
+    def _is_shown(self):
+        return any(topic == '/gazebo/view/motion' and '/gzweb' in nodes
+                   for topic, nodes in self.graph.getSystemState()[1])
+
+    def test_simulator_and_window_register_with_a_new_master(self):
         before, now = self._of_server(), self._time_query()
+        browser = self._window()
         for topic, where in (('/odom', 0), ('/part2_cmr/cmd_vel', 1)):
             self.assertIn(topic, before[where])
         step = self.graph.getParam('/gazebo/time_step')
@@ -95,6 +115,12 @@ class MasterRestartTest(unittest.TestCase):
         self.assertTrue(self.graph.getParam('/use_sim_time'))
         wait_until(lambda: self.graph.hasParam('/gazebo/time_step'), 'the parameters')
         self.assertEqual(self.graph.getParam('/gazebo/time_step'), step)
+        wait_until(self._is_shown, 'the window among the new registrations')
+        browser.wait_until(lambda: browser.control('Pause'))
+        browser.click('Pause')  # the buttons find the services again
+        browser.wait_until(lambda: browser.control('Play'))
+        browser.click('Play')
+        browser.wait_until(lambda: browser.control('Pause'))
         self._assert_it_works()
 
     def test_robot_spawned_without_a_master_is_registered_with_the_next(self):

@@ -34,7 +34,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if importlib.util.find_spec('viser') is None:
         return _fail('no window: the Python package viser is not installed; '
                      './rosbots setup or pip install viser==1.1.1 does that')
-    from ..ros_api.transport import AddressError, is_running, start_node
+    from ..ros_api.transport import (
+        AddressError,
+        Registrar,
+        connect_logging,
+        is_running,
+        start_node,
+        watch_master,
+    )
     from ..ros_api.window import GazeboSimulator
     from ..web import Page, Site, WindowError
 
@@ -43,6 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         start_node(NAME, remappings, wall_time=True)
     except (WindowError, AddressError) as error:
         return _fail(str(error))
+    connect_logging(time.time_ns)
+    watch_master(Registrar(), ())
     if site.token:
         _say('whoever has this address sees and controls the simulation, and the connection is '
              'not encrypted')

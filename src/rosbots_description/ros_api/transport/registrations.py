@@ -1,7 +1,7 @@
 """Registers this node again after a restart of the ROS master.
 
 A ROS node registers once; a restarted master does not know it. Gazebo has to be restarted, too.
-Here the simulation continues, and existing connections are kept.
+Here the simulation and its windows continue, and existing connections are kept.
 """
 
 import logging
@@ -58,7 +58,7 @@ def _watch(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> No
         if rospy.core.is_shutdown_requested():  # unregistered on purpose
             return
         if known is None and not gone:
-            logger.warning('the ROS master is gone; the simulation goes on and waits for it')
+            logger.warning('the ROS master is gone; %s goes on and waits for it', rospy.get_name())
         if known is False:
             registrar.post(lambda: _register_again(parameters))
             registrar.wait(TIMEOUT)
