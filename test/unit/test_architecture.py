@@ -76,7 +76,7 @@ ARROWS = {
         'ros_api/reconfigure ros_api/views',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
     'gym': 'sim sim/plugins sim/sensors',
-    'gym/tasks': 'gym',
+    'gym/tasks': 'gym sim sim/description',
     'cli':
         'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web',
     '': '',

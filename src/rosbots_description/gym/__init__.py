@@ -10,14 +10,17 @@ from .registration import register_envs
 
 if TYPE_CHECKING:
     from .env import SimEnv
+    from .randomisation import Randomisation
 
-__all__ = ['SimEnv', 'register_envs']
+__all__ = ['Randomisation', 'SimEnv', 'register_envs']
+
+_HOMES = {'Randomisation': 'randomisation', 'SimEnv': 'env'}
 
 
 def __getattr__(name: str) -> object:
-    if name not in __all__:
+    if name not in _HOMES:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    return getattr(import_module('.env', __name__), name)
+    return getattr(import_module(f'.{_HOMES[name]}', __name__), name)
 
 
 register_envs()

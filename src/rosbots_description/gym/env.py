@@ -8,9 +8,11 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from ..sim import Model, Pose, SimError, World, from_rpy, yaw_of
+from ..sim import Model, Pose, SimError, World, yaw_of
 from .actions import Actions, Limits
 from .observations import observed
+from .placement import Place, Range, move, move_freely
+from .randomisation import Randomisation
 
 ROSBOTS = 'package://rosbots_description/urdf/rosbots.xacro'
 _ABOVE = Pose((0.0, 0.0, 0.5))
@@ -43,6 +45,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         more: Mapping[str, spaces.Space[Any]] | None = None,
         period: float = 0.1,
         settle: float = 1.0,
+        randomise: Randomisation | None = None,
         render_mode: str | None = None,
         package_path: Sequence[str | os.PathLike[str]] = (),
         model_path: Sequence[str | os.PathLike[str]] = (),
@@ -60,6 +63,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             more: spaces of what `observe` adds.
             period: of control [s, simulated], a multiple of the world's step size.
             settle: time before the first episode, in which the robot comes to rest [s, simulated].
+            randomise: what differs between episodes; by default only the noise of sensors.
             render_mode: one of the metadata's, or None.
             package_path: folders to search for package:// addresses.
             model_path: folders to search for model:// addresses.
@@ -75,6 +79,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             world, package_path=package_path, model_path=model_path)
         self._spawned = robot, pose, dict(arguments or {})
         self._limits, self._sensors, self._settle = actions, sensors, settle
+        self._randomise = randomise or Randomisation()
         self.world: World = self._opened()
         try:
             self._load()
@@ -93,6 +98,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self._actions = Actions(self.world, self.robot, self._limits)
         self.action_space = self._actions.space
         self._parts = observed(self.robot, self._sensors)
+        self._randomise.require(self.world, self.robot)
         self.world.run(seconds=self._settle)
         self._floor = frozenset(self.world.touching(self.robot))
         self._start = self.world.save_state()
@@ -138,9 +144,18 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         return x, y, yaw_of(orientation)
 
     def place(self, x: float, y: float, yaw: float) -> None:
-        """Move the robot to x, y [m] and a yaw [rad], at the height at which it came to rest."""
-        _, _, z = self.robot.pose.position
-        self.robot.set_pose(Pose((x, y, z), from_rpy(0.0, 0.0, yaw)))
+        """Move the robot to x, y [m] and a yaw [rad]; height, roll and pitch stay."""
+        move(self.robot, (x, y, yaw))
+
+    def place_freely(self, xs: Range, ys: Range) -> Place:
+        """Move the robot to a random place, with any yaw, where it overlaps nothing; return it.
+
+        Args:
+            xs, ys: least and greatest x and y [m].
+        Raises:
+            SimError: no free place was found.
+        """
+        return move_freely(self.world, self.robot, self._floor, self.np_random, xs, ys)
 
     def bumps(self) -> bool:
         """Tell whether the robot touches a model that it did not touch at rest."""
@@ -160,9 +175,10 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         super().reset(seed=seed)
         self._require_open()
         self.world.restore(self._start)
+        drawn = self._randomise.apply(self.world, self.robot, self.np_random)
         self.begin(options or {})
         self._ready = True
-        return self.observe(), self.truth()
+        return self.observe(), {**self.truth(), 'randomised': drawn}
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, Info]:  # noqa: ANN401
         """Drive for a control period.

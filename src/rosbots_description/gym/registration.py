@@ -4,7 +4,10 @@ from gymnasium.envs.registration import register, registry
 
 # Class and module of each task, and the control steps after which an episode is truncated.
 _TASKS = {
+    'FollowLine': ('follow_line', 600),
     'GoToGoal': ('go_to_goal', 400),
+    'Maze': ('maze', 3000),
+    'Wander': ('wander', 600),
 }
 
 

@@ -12,7 +12,7 @@ import rosbots_description.gym  # noqa: F401  registers the tasks
 from rosbots_description.gym import SimEnv
 from rosbots_description.sim import NotFoundError, SimError
 
-TASKS = ['GoToGoal']
+TASKS = ['FollowLine', 'GoToGoal', 'Maze', 'Wander']
 STONE = '''<robot name="stone"><link name="l"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'''
 
@@ -45,7 +45,8 @@ def rollout(env, seed, steps=15):
         parts += [observation, info, {'reward': np.array([reward, terminated, truncated])}]
         if terminated or truncated:
             break
-    return b''.join(np.asarray(part[key]).tobytes() for part in parts for key in sorted(part))
+    return b''.join(repr(value).encode() if isinstance(value, dict) else np.asarray(value).tobytes()
+                    for part in parts for _, value in sorted(part.items()))
 
 
 @pytest.mark.parametrize('task', TASKS)

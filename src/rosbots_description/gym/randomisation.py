@@ -1,0 +1,96 @@
+"""What differs between episodes: drawn by the seed, undone by the next reset."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+import numpy as np
+
+from ..sim import Model, SimError, World, yaw_of
+from ..sim.sensors import Sensor
+from .placement import Range, move, move_freely
+
+Colour = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Randomisation:
+    """Ranges (least, greatest) of factors, and greatest shifts; each is drawn uniformly.
+
+    Attributes:
+        mass: factor on the robot's masses and moments of inertia.
+        friction: factor on the friction of all contacts of the robot.
+        light: factor on the brightness of all lights.
+        noise: factor on the deviation of the <noise> of the robot's sensors.
+        pose: greatest shift of the robot along x and y [m] and of its yaw [rad].
+        obstacles: greatest shift of models along x and y [m], by name; their yaw is any.
+    """
+
+    mass: Range | None = None
+    friction: Range | None = None
+    light: Range | None = None
+    noise: Range | None = None
+    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    obstacles: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in (one.name for one in fields(self)):
+            value = getattr(self, name)
+            if name in ('pose', 'obstacles'):
+                shifts = list(value.values() if name == 'obstacles' else value)
+                if not all(0.0 <= shift < math.inf for shift in shifts):
+                    raise ValueError(f'randomisation of {name} is {value}; shifts are finite '
+                                     'numbers of at least 0')
+            elif value is not None and not 0.0 < value[0] <= value[1] < math.inf:
+                raise ValueError(f'randomisation of {name} is {value}; it is a range of factors, '
+                                 'the least and the greatest, both above 0')
+
+    def require(self, world: World, robot: Model) -> None:
+        """Raise a `SimError` if the world or the robot lacks what is to differ."""
+        for name in self.obstacles:
+            world.model(name)
+        if self.noise and not _noisy(robot):
+            raise SimError(f"no sensor of model '{robot.name}' has noise that could be multiplied; "
+                           'give one a <noise>')
+
+    def apply(self, world: World, robot: Model, random: np.random.Generator) -> dict[str, Any]:
+        """Change the world, which has just been restored; return what was drawn, by name."""
+        world.seed = int(random.integers(1 << 63))
+        drawn: dict[str, Any] = {
+            name: random.uniform(*limits) for name in ('mass', 'friction', 'light', 'noise')
+            if (limits := getattr(self, name)) is not None}
+        if 'mass' in drawn:
+            robot.scale_mass(drawn['mass'])
+        if 'friction' in drawn:
+            for link in robot.links.values():
+                link.scale_friction(drawn['friction'])
+        if 'noise' in drawn:
+            for sensor in _noisy(robot):
+                sensor.noise_scale = drawn['noise']
+        if 'light' in drawn:
+            world.lights.update({
+                name: replace(light, diffuse=_brighter(light.diffuse, drawn['light']),
+                              specular=_brighter(light.specular, drawn['light']))
+                for name, light in world.lights.items()})
+        for name, most in self.obstacles.items():
+            obstacle = world.model(name)
+            x, y, _ = obstacle.pose.position
+            drawn[name] = move_freely(world, obstacle, world.touching(obstacle), random,
+                                      (x - most, x + most), (y - most, y + most))
+        if any(self.pose):
+            (x, y, _), orientation = robot.pose
+            here = np.array((x, y, yaw_of(orientation)))
+            x, y, yaw = (here + random.uniform(-1.0, 1.0, 3) * self.pose).tolist()
+            drawn['pose'] = (x, y, yaw)
+            move(robot, drawn['pose'])
+        return drawn
+
+
+def _noisy(robot: Model) -> list[Sensor]:
+    return [one for one in robot.sensors if isinstance(one, Sensor) and one.is_noisy]
+
+
+def _brighter(colour: Colour, factor: float) -> Colour:
+    red, green, blue, alpha = colour
+    return (factor * red, factor * green, factor * blue, alpha)

@@ -1,0 +1,95 @@
+"""Find the way out of the maze."""
+
+import heapq
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+from ...sim import World
+from ...sim.description import Box
+from ..env import Info, Observation
+from .driving import BUMPED, Driving
+
+GOAL = (8.0, 6.0)  # [m] the green spot, outside the only door
+REACHED = 0.7  # [m] distance from there at which it is reached
+_CELL = 2.0  # [m]
+_SIDE = range(-3, 5)  # columns and rows of cells, and one outside that holds the goal
+
+Cell = tuple[int, int]
+
+
+class Distances:
+    """The length of the shortest way from anywhere in the maze to the goal, by cells."""
+
+    def __init__(self, world: World) -> None:
+        """Read the walls of the model 'maze', which lie along x and y."""
+        link = world.model('maze').link('link')
+        self._walls = [(x, y, one.spec.geometry.size[0] / 2.0, one.spec.geometry.size[1] / 2.0)
+                       for one in link.collisions.values() if isinstance(one.spec.geometry, Box)
+                       for x, y, _ in [one.pose.position]]
+        goal = _cell(*GOAL)
+        self._ways: dict[Cell, float] = {goal: 0.0}
+        queue = [(0.0, goal)]
+        while queue:
+            way, cell = heapq.heappop(queue)
+            for near in self._neighbours(cell):
+                if near not in self._ways:
+                    self._ways[near] = way + _CELL
+                    heapq.heappush(queue, (way + _CELL, near))
+
+    def of(self, x: float, y: float) -> float:
+        """Return the way from a point to the goal [m]; inf where there is none."""
+        cell = _cell(x, y)
+        return min((self._ways.get(one, math.inf) + math.dist((x, y), _middle(one))
+                    for one in (cell, *self._neighbours(cell))), default=math.inf)
+
+    def _neighbours(self, cell: Cell) -> Iterator[Cell]:
+        column, row = cell
+        for near in ((column + 1, row), (column - 1, row), (column, row + 1), (column, row - 1)):
+            if near[0] in _SIDE and near[1] in _SIDE and not self._is_walled(cell, near):
+                yield near
+
+    def _is_walled(self, cell: Cell, near: Cell) -> bool:
+        (ax, ay), (bx, by) = _middle(cell), _middle(near)
+        x, y = (ax + bx) / 2.0, (ay + by) / 2.0
+        return any(abs(x - wall_x) <= half_x and abs(y - wall_y) <= half_y
+                   for wall_x, wall_y, half_x, half_y in self._walls)
+
+
+class Maze(Driving):
+    """Find the way from the middle of the maze to the green spot outside, without touching a wall.
+
+    The reward is what the shortest way has become shorter [m], and 10 at its end. `options`:
+    {'start': (x, y, yaw)} in place of the middle and a random yaw [m, rad].
+    """
+
+    settings: ClassVar[dict[str, Any]] = {'world': 'maze'}
+
+    def begin(self, options: Mapping[str, Any]) -> None:
+        """Place the robot."""
+        self._distances = Distances(self.world)
+        self.place(*options.get('start', (0.0, 0.0, self.np_random.uniform(-math.pi, math.pi))))
+        self._left = self._distances.of(*self.pose[:2])
+
+    def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
+        """Reward what the way has become shorter."""
+        before, self._left = self._left, self._distances.of(*self.pose[:2])
+        if self.bumps():
+            return BUMPED, True
+        return before - self._left + 10.0 * self._is_out, self._is_out
+
+    def truth(self) -> Info:
+        """Add the shortest way that is left [m], and whether the robot is out."""
+        return {**super().truth(), 'left': self._left, 'is_success': self._is_out}
+
+    @property
+    def _is_out(self) -> bool:
+        return math.dist(self.pose[:2], GOAL) < REACHED
+
+
+def _cell(x: float, y: float) -> Cell:
+    return round(x / _CELL), round(y / _CELL)
+
+
+def _middle(cell: Cell) -> tuple[float, float]:
+    return cell[0] * _CELL, cell[1] * _CELL

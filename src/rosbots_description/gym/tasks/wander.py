@@ -1,0 +1,45 @@
+"""See as much of the rooms as possible without touching anything."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from ..env import Info, Observation
+from .driving import BUMPED, Driving
+
+CELL = 0.5  # [m] edge of the squares that are visited
+_START = (-3.0, 9.0), (-3.0, 6.0)  # the whole floor, x and y [m]
+
+
+class Wander(Driving):
+    """Drive through the rooms without touching anything.
+
+    The reward is 1 for each square that the robot's frame visits first, 0.5 m wide. `options`:
+    {'start': (x, y, yaw)} in place of a random one [m, rad].
+    """
+
+    settings: ClassVar[dict[str, Any]] = {'world': 'rooms'}
+
+    def begin(self, options: Mapping[str, Any]) -> None:
+        """Place the robot."""
+        if 'start' in options:
+            self.place(*options['start'])
+        else:
+            self.place_freely(*_START)
+        self._visited = {self._cell()}
+
+    def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
+        """Reward new squares."""
+        cell = self._cell()
+        is_new = cell not in self._visited
+        self._visited.add(cell)
+        if self.bumps():
+            return BUMPED, True
+        return float(is_new), False
+
+    def truth(self) -> Info:
+        """Add the area that was visited [m^2]."""
+        return {**super().truth(), 'visited': len(self._visited) * CELL ** 2}
+
+    def _cell(self) -> tuple[int, int]:
+        x, y, _ = self.pose
+        return round(x / CELL), round(y / CELL)
