@@ -75,7 +75,7 @@ ARROWS = {
         'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
         'ros_api/reconfigure ros_api/views',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
-    'gym': 'sim sim/plugins sim/sensors',
+    'gym': 'sim sim/plugins sim/rendering sim/sensors',
     'gym/tasks': 'gym sim sim/description',
     'cli':
         'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web',

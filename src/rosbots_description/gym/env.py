@@ -11,6 +11,7 @@ from gymnasium import spaces
 from ..sim import Model, Pose, SimError, World, yaw_of
 from .actions import Actions, Limits
 from .observations import observed
+from .pictures import Pictures
 from .placement import Place, Range, move, move_freely
 from .randomisation import Randomisation
 
@@ -31,7 +32,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
     bit, in any process and after any other episodes.
     """
 
-    metadata: dict[str, Any] = {'render_modes': [], 'render_fps': 10}  # noqa: RUF012
+    metadata: dict[str, Any] = {'render_modes': ['rgb_array'], 'render_fps': 10}  # noqa: RUF012
 
     def __init__(
         self,
@@ -90,6 +91,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             self.world.close()
             raise
         self.period = period
+        self.metadata = {**self.metadata, 'render_fps': max(1, round(1.0 / period))}
 
     def _load(self) -> None:
         """Spawn the robot, let it come to rest, and save the state that episodes start from."""
@@ -97,6 +99,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self.robot: Model = self.world.spawn(robot, pose=pose, arguments=arguments)
         self._actions = Actions(self.world, self.robot, self._limits)
         self.action_space = self._actions.space
+        self._pictures = Pictures(self.world, self.robot)
         self._parts = observed(self.robot, self._sensors)
         self._randomise.require(self.world, self.robot)
         self.world.run(seconds=self._settle)
@@ -197,6 +200,15 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         observation = self.observe()
         reward, terminated = self.score(observation, action)
         return observation, float(reward), bool(terminated), False, self.truth()
+
+    def render(self) -> Any:  # noqa: ANN401
+        """Return a picture (480, 640, 3) of the robot in its world, with render_mode 'rgb_array'.
+
+        Raises:
+            SimError: nothing can be drawn on this machine.
+        """
+        self._require_open()
+        return self._pictures.take() if self.render_mode == 'rgb_array' else None
 
     def close(self) -> None:
         """Free the world; idempotent."""

@@ -51,10 +51,11 @@ def rollout(env, seed, steps=15):
 
 @pytest.mark.parametrize('task', TASKS)
 def test_task_passes_the_checks_of_gymnasium_without_a_warning(task):
-    env = gymnasium.make(f'rosbots/{task}-v0')
+    mode = 'rgb_array' if task == 'GoToGoal' else None
+    env = gymnasium.make(f'rosbots/{task}-v0', render_mode=mode)
     with warnings.catch_warnings():
         warnings.simplefilter('error')
-        check_env(env.unwrapped, skip_render_check=True)
+        check_env(env.unwrapped, skip_render_check=mode is None)
 
 
 @pytest.mark.parametrize('task', TASKS)
@@ -116,6 +117,18 @@ def test_environment_that_cannot_be_made_is_named(options, kind, said):
     with pytest.raises(kind) as error:
         SimEnv(**options)
     assert said in str(error.value)
+
+
+def test_picture_follows_the_robot():
+    env = Forward(render_mode='rgb_array', settle=0.3)
+    env.reset(seed=0)
+    first = env.render()
+    assert (first.shape, first.dtype) == ((480, 640, 3), np.uint8)
+    blue = (first[:, :, 2] > 200) & (first[:, :, 0] < 80)  # the upper deck
+    assert np.argwhere(blue).mean(axis=0) == pytest.approx((160.0, 320.0), abs=60.0)
+    env.place(2.0, 1.0, 0.0)
+    assert np.abs(env.render().astype(int) - first).mean() > 3.0  # the room has moved
+    env.close()
 
 
 def test_step_before_reset_and_reset_after_close_are_named():
