@@ -1,7 +1,6 @@
 """Connect one plugin to ROS, by the declarations of its class."""
 
 import logging
-import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -25,8 +24,6 @@ if TYPE_CHECKING:
     from .declarations import Declaration
 
 logger = logging.getLogger(__name__)
-
-_TAG = re.compile('<([^<>]+)>')
 
 
 class Adapter:
@@ -77,7 +74,7 @@ class Adapter:
 
     def text(self, template: str) -> str:
         """Return `template` with `<tag>` replaced by the plugin's value of that tag."""
-        return _TAG.sub(lambda tag: str(self.plugin.params.values[tag[1]]), template)
+        return self.plugin.params.fill(template)
 
     @cached_property
     def tf_prefix(self) -> str:

@@ -43,5 +43,5 @@ def _wrench(force: Vector, torque: Vector) -> Wrench:
     return Wrench(Vector3(*force), Vector3(*torque))
 
 
-connects(BumperPlugin, Publishes('contacts', '<bumperTopicName>', ContactsState,
+connects(BumperPlugin, Publishes('contacts', BumperPlugin.topic_names['contacts'], ContactsState,
                                  convert=contacts_message, frame='<frameName>'))

@@ -111,17 +111,17 @@ class WheelFramesTopic(PublishedTopic):
 
 
 COMMAND, SIDEWAYS = (
-    Subscribes('<commandTopic>', Twist, 'command', finite(*fields),
+    Subscribes(DiffDrive.topic_names['command'], Twist, 'command', finite(*fields),
                log_before='Try to subscribe to {}', log='Subscribe to {}')
     for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y'))
 )
-ODOMETRY = Publishes('odometry', '<odometryTopic>', OdometryMessage, pack=odometry_pack,
-                     log='Advertise odom on {} ')
+ODOMETRY = Publishes('odometry', DiffDrive.topic_names['odometry'], OdometryMessage,
+                     pack=odometry_pack, log='Advertise odom on {} ')
 TRANSFORM = Publishes('odometry_transform', '/tf', TFMessage, pack=RootedTransformPack, queue=100,
                       always=True)
 WHEELS = (
-    WheelStates('joint_states', 'joint_states', JointState, pack=JointStatesPack, queue=1000,
-                log='Advertise joint_states'),
+    WheelStates('joint_states', DiffDrive.topic_names['joint_states'], JointState,
+                pack=JointStatesPack, queue=1000, log='Advertise joint_states'),
     WheelFrames('wheel_transform', '/tf', TFMessage, pack=TransformPack, queue=100),
 )
 

@@ -128,5 +128,5 @@ def _from_root(name: str, edges: Mapping[str, tuple[str, Pose]]) -> tuple[str, P
     return name, pose
 
 
-connects(Force, Subscribes('<topicName>', Wrench, 'command', read_wrench))
+connects(Force, Subscribes(Force.topic_names['command'], Wrench, 'command', read_wrench))
 connects(HandOfGod, Actual('actual', '/tf', TFMessage, pack=actual_pack, queue=100), FollowsFrame())

@@ -57,7 +57,7 @@ def velocity_message(velocity: Vector) -> Vector3Stamped:
     return Vector3Stamped(vector=Vector3(*velocity))
 
 
-IMU = Publishes('imu', '<topicName>', Imu, pack=imu_pack)
+IMU = Publishes('imu', LinkImu.topic_names['imu'], Imu, pack=imu_pack)
 
 connects(ImuSensorPlugin, IMU)
 connects(LinkImu, IMU, Offers('<serviceName>', calibration))

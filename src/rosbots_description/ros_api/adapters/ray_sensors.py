@@ -64,9 +64,9 @@ def ring_cloud_message(cloud: RingCloud) -> PointCloud2:
         data=cloud.points.tobytes(), is_dense=cloud.is_dense)
 
 
-connects(LaserPlugin, Publishes('scan', '<topicName>', LaserScan, pack=scan_pack))
+connects(LaserPlugin, Publishes('scan', LaserPlugin.topic_names['scan'], LaserScan, pack=scan_pack))
 connects(RangePlugin, Publishes(
-    'range', '<topicName>', Range, convert=range_message, frame='<frameName>'))
+    'range', RangePlugin.topic_names['range'], Range, convert=range_message, frame='<frameName>'))
 connects(BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, pack=points_pack))
 connects(VelodynePlugin, Publishes(
     'cloud', '<topicName>', PointCloud2, convert=ring_cloud_message, frame='<frameName>'))

@@ -2,6 +2,7 @@
 
 import logging
 import math
+import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +43,9 @@ class ModelPlugin(Plugin):
     # The namespace if <robotNamespace> is absent or empty; {} is the model's name.
     absent_namespace = empty_namespace = ''
     hints: Mapping[str, str] = {}  # unread tag -> remark about it
+    # Name of an output, or `command` for the method that a message calls -> topic in the namespace,
+    # in which <tag> stands for the value of that tag.
+    topic_names: Mapping[str, str] = {}
 
     def __init__(self, world: 'World', model: 'Model', spec: PluginSpec) -> None:
         self.world = world
@@ -59,6 +63,11 @@ class ModelPlugin(Plugin):
         """Return the namespace of its topics, given the text of <robotNamespace> (None: absent)."""
         fallback = self.absent_namespace if given is None else self.empty_namespace
         return given or fallback.format(self.model.name)
+
+    def topic(self, name: str) -> str:
+        """Return the global name of one of its `topic_names`, for a server without a namespace."""
+        topic = self.params.fill(self.topic_names[name])
+        return re.sub('/+', '/', topic if topic.startswith('/') else f'/{self.namespace}/{topic}')
 
     def start(self) -> None:
         """Load and start; log the tags that were not read."""

@@ -1,6 +1,7 @@
 """Typed reading of a plugin's tags, with upstream's defaults and upstream's warnings."""
 
 import logging
+import re
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -11,6 +12,7 @@ logger = logging.getLogger(__name__)
 
 Value = TypeVar('Value', str, float, bool)
 Missing = Callable[[str, str | float | bool], str]  # a tag and its default -> a warning
+_TAG = re.compile('<([^<>]+)>')
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 
 
@@ -61,6 +63,10 @@ class Params:
     def string(self, tag: str) -> str:
         """Return the text that `read` has returned for a tag."""
         return str(self.values[tag])
+
+    def fill(self, template: str) -> str:
+        """Return `template` with each `<tag>` replaced by what `read` has returned for that tag."""
+        return _TAG.sub(lambda tag: str(self.values[tag[1]]), template)
 
     def required(self, tag: str) -> str:
         """Return the tag's text.

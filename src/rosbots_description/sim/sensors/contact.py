@@ -6,6 +6,7 @@ normals in world axes.
 """
 
 import logging
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..core import Vector, add, conjugate, cross, rotate, subtract
@@ -123,6 +124,7 @@ class BumperPlugin(SensorPlugin[tuple[ContactPair, ...]]):
     """Publishes contacts, empty readings included. Output: `contacts`."""
 
     sensor_class = ContactSensor
+    topic_names: Mapping[str, str] = {'contacts': '<bumperTopicName>'}
     prefix = 'bumper plugin '
     missing = staticmethod('missing <{}>, defaults to {}'.format)
     missing_level = logging.INFO

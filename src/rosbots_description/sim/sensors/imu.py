@@ -5,7 +5,7 @@ quirks: 1 Hz without <updateRateHZ>, and noise on the quaternion, which is not n
 """
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ..core import (
@@ -119,6 +119,7 @@ def _says_set_to(tag: str, default: str | float | bool) -> str:
 class ImuSensorPlugin(SensorPlugin[ImuReading]):
     """Publishes readings at its own rate. Output: `imu`."""
 
+    topic_names: Mapping[str, str] = {'imu': '<topicName>'}
     sensor_class = ImuSensor
     absent_namespace = '/{}'
     rate_tag = 'updateRateHZ'

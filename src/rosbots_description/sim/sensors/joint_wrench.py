@@ -5,7 +5,7 @@ origin. Gazebo needs <provideFeedback>; here a joint is measured while the outpu
 """
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ..core import Vector
@@ -25,6 +25,7 @@ class JointWrench(NamedTuple):
 class JointWrenchPlugin(PeriodicPlugin):
     """Publishes the wrench in <jointName>. Output: `wrench`. `frame` is the child's name."""
 
+    topic_names: Mapping[str, str] = {'wrench': '<topicName>'}
     prefix = 'ft_sensor plugin '
     strictly_after = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)

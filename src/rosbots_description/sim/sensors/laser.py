@@ -4,6 +4,7 @@ Tags, defaults and namespaces are those of gazebo_ros_pkgs 2.9.2.
 """
 
 import logging
+from collections.abc import Mapping
 
 from ..plugin_registry import register_in_sensor
 from .base import SensorPlugin
@@ -16,6 +17,7 @@ class LaserPlugin(SensorPlugin[Scan]):
     """Publishes scans. Output: `scan`, unless <topicName> is empty."""
 
     sensor_class = RaySensor
+    topic_names: Mapping[str, str] = {'scan': '<topicName>'}
     prefix = 'Laser plugin '
     missing = staticmethod('missing <{}>, defaults to {}'.format)
     missing_level = logging.INFO

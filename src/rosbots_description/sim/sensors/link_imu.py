@@ -6,7 +6,7 @@ is wrong; so it is here in a strict world only.
 """
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from ..core import IDENTITY, Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
 from ..plugin_registry import register
@@ -19,6 +19,7 @@ from .noise import RandomSteps, gaussian, noisy
 class LinkImu(PeriodicPlugin):
     """Publishes orientation, angular velocity and acceleration of <bodyName>. Output: `imu`."""
 
+    topic_names: Mapping[str, str] = {'imu': '<topicName>'}
     prefix = 'imu plugin '
     strictly_after = False
     missing = staticmethod('missing <{}>, defaults to {}'.format)

@@ -1,6 +1,7 @@
 """Range finders: the plugin libgazebo_ros_range.so of gazebo_ros_pkgs 2.9.2."""
 
 import logging
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..plugin_registry import register_in_sensor
@@ -25,6 +26,7 @@ class RangePlugin(SensorPlugin[Scan]):
 
     sensor_class = RaySensor
     sensor: RaySensor
+    topic_names: Mapping[str, str] = {'range': '<topicName>'}
     prefix = 'Range plugin '
     missing = staticmethod('missing <{}>, defaults to {}'.format)
     missing_level = logging.INFO

@@ -31,6 +31,7 @@ class Drive(PeriodicPlugin):
     # Diagonals of the covariances of odometry: x, y, z, roll, pitch, yaw.
     pose_variances: tuple[float, ...] = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
     twist_variances: tuple[float, ...] = NO_VARIANCES
+    topic_names: Mapping[str, str] = {'command': '<commandTopic>', 'odometry': '<odometryTopic>'}
     hints: Mapping[str, str] = {'torque': ' (the motor limit is <wheelTorque>)'}
     target = (0.0, 0.0, 0.0)
 
@@ -96,6 +97,7 @@ class WheeledDrive(Drive):
     """
 
     absent_namespace = empty_namespace = '{}'
+    topic_names: Mapping[str, str] = {**Drive.topic_names, 'joint_states': 'joint_states'}
     encoders: Encoders
 
     def read_debug_level(self) -> None:

@@ -5,6 +5,7 @@ Tags and behaviour are those of libgazebo_ros_force.so in gazebo_ros_pkgs 2.9.2.
 
 import logging
 import math
+from collections.abc import Mapping
 
 from ...core import ZERO, Vector
 from ...plugin_registry import register
@@ -16,6 +17,7 @@ from ..base import ModelPlugin
 class Force(ModelPlugin):
     """Apply a wrench to <bodyName> in each step, in world axes at its centre of mass."""
 
+    topic_names: Mapping[str, str] = {'command': '<topicName>'}
     prefix = 'force plugin: '
     missing_level = logging.DEBUG
 

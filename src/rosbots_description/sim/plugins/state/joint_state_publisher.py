@@ -5,6 +5,7 @@ Tags, defaults and timing are those of libgazebo_ros_joint_state_publisher.so in
 """
 
 import logging
+from collections.abc import Mapping
 
 from ...core import NotFoundError
 from ...plugin_registry import register
@@ -19,6 +20,7 @@ logger = logging.getLogger(__name__)
 class JointStatePublisher(PeriodicPlugin):
     """Report positions and velocities of the `joints` in <jointName>. Output: `joint_states`."""
 
+    topic_names: Mapping[str, str] = {'joint_states': 'joint_states'}
     prefix = 'GazeboRosJointStatePublisher Plugin (ns = {}/) '
     absent_namespace = empty_namespace = '{}'
     missing = staticmethod(says_defaults_to)

@@ -42,6 +42,7 @@ class P3D(PeriodicPlugin):
     Output: `odometry`. `body` is the name of the link, or of its parent after reduction.
     """
 
+    topic_names: Mapping[str, str] = {'odometry': '<topicName>'}
     prefix = 'gazebo_ros_p3d plugin: '
     missing_level = logging.DEBUG
     hints: Mapping[str, str] = {
