@@ -72,7 +72,12 @@ class World(runtime.World):
 
     @classmethod
     def from_file(
-        cls, path: str | os.PathLike[str], *, package_path: Paths = (), model_path: Paths = ()
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        package_path: Paths = (),
+        model_path: Paths = (),
+        seed: int = 0,
     ) -> Self:
         """Return the world that an SDF file describes.
 
@@ -83,6 +88,7 @@ class World(runtime.World):
                 'empty', 'maze', 'room', 'shapes'.
             package_path: see `World`.
             model_path: see `World`.
+            seed: of the noise of sensors.
         Raises:
             NotFoundError: there is no such file.
             ModelError: it is not SDF with a <world>, or a number of the world is not valid.
@@ -90,6 +96,7 @@ class World(runtime.World):
         places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_LIBRARY)]
         file = find_world(os.fspath(path), places)
         world = cls(package_path=package_path, model_path=model_path)
+        world.seed = seed
         try:
             world._populate(open_world(
                 file,
