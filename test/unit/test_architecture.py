@@ -74,6 +74,7 @@ ARROWS = {
         'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
         'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
         'ros_api/reconfigure ros_api/views',
+    'batch': 'sim sim/core sim/plugins',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
     'gym': 'sim sim/plugins sim/rendering sim/sensors',
     'gym/tasks': 'gym sim sim/description',

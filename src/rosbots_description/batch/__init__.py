@@ -1,0 +1,18 @@
+"""Many runs of one scenario: parameters, records, conditions, and one row a run in Parquet.
+
+A run needs no ROS. Ray, which only `run` imports, spreads runs over processes and machines.
+"""
+
+from .cluster import ClusterError
+from .conditions import Condition
+from .parameters import Parameters, Run
+from .policy import Commands, Policy, load_policy
+from .records import JointReading, Statistics, check_vectors, value_at
+from .runner import Result, run
+from .scenario import ModelEntry, RecordEntry, Scenario, ScenarioError, ScenarioFile
+
+__all__ = [
+    'ClusterError', 'Commands', 'Condition', 'JointReading', 'ModelEntry', 'Parameters', 'Policy',
+    'RecordEntry', 'Result', 'Run', 'Scenario', 'ScenarioError', 'ScenarioFile', 'Statistics',
+    'check_vectors', 'load_policy', 'run', 'value_at',
+]

@@ -1,0 +1,176 @@
+"""Runs as tasks of Ray: on this machine, or on a cluster that there is.
+
+Ray decides where a run is made, and repeats it elsewhere when its worker or machine is lost.
+"""
+
+import contextlib
+import importlib
+import os
+import secrets
+import shutil
+import tempfile
+from collections.abc import Iterator
+from typing import Any
+
+from ..sim import SimError
+from ..sim.core import one_line
+from .scenario import ScenarioFile
+from .simulation import empty_row, simulate
+
+ATTEMPTS = 5  # to make a run whose worker is lost
+MAX_PENDING = 2000  # runs that Ray knows of; a few for each of a thousand processors
+WAIT = 0.2  # longest wait for further rows before those that are there are taken [s, wall]
+STORE_BYTES = 100_000_000  # of the shared memory for objects; rows do not need it
+_MAX_PLACE = 30  # characters of a folder in which Ray's sockets have names that Linux takes
+# For Ray on this machine alone: only the loopback interface (the switch is named after the systems
+# where it is off by default), only processes that have the token, and no statistics sent.
+_PRIVATE = {'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0', 'RAY_AUTH_MODE': 'token',
+            'RAY_USAGE_STATS_ENABLED': '0',
+            'RAY_AUTH_TOKEN': secrets.token_hex(32)}  # one for this process: Ray reads it once
+
+
+class ClusterError(SimError):
+    """Ray is not installed, cannot be started or cannot be reached."""
+
+
+def rows(
+    file: ScenarioFile, numbers: list[int], workers: int | None, address: str | None
+) -> Iterator[tuple[dict[str, Any], int]]:
+    """Yield the row of each run, in any order, with the number of runs repeated so far.
+
+    Raises:
+        ClusterError: see `run`.
+    """
+    with _connected(workers, address) as ray:
+        starts = ray.remote(num_cpus=0)(_Starts).options(
+            scheduling_strategy=ray.util.scheduling_strategies.NodeAffinitySchedulingStrategy(
+                ray.get_runtime_context().get_node_id(), soft=False)).remote()
+        task = ray.remote(num_cpus=1, max_retries=ATTEMPTS - 1)(_simulate)
+        shared = ray.put(file)
+        waiting, pending, done = iter(numbers), {}, 0
+        try:
+            while True:
+                for number in waiting:
+                    pending[task.remote(shared, number, starts)] = number
+                    if len(pending) >= MAX_PENDING:
+                        break
+                if not pending:
+                    return
+                ready, _ = ray.wait(list(pending), num_returns=1)
+                more, _ = ray.wait(list(pending), num_returns=len(pending), timeout=WAIT)
+                again = ray.get(starts.repeated.remote())
+                for reference in {*ready, *more}:
+                    yield _row(ray, file, pending.pop(reference), reference), again
+                    done += 1
+        finally:
+            for reference in pending:
+                with contextlib.suppress(Exception):
+                    ray.cancel(reference, force=True)
+
+
+def _simulate(file: ScenarioFile, number: int, starts: Any) -> dict[str, Any]:  # noqa: ANN401
+    import ray
+
+    ray.get(starts.add.remote(number))
+    return simulate(file, number)
+
+
+class _Starts:
+    """Counts how often runs were begun; an actor beside who waits for the rows."""
+
+    def __init__(self) -> None:
+        self._begun: set[int] = set()
+        self._repeated = 0
+
+    def add(self, number: int) -> None:
+        """Count the start of a run."""
+        self._repeated += number in self._begun
+        self._begun.add(number)
+
+    def repeated(self) -> int:
+        """Return how many starts were not the first of their run."""
+        return self._repeated
+
+
+def _row(ray: Any, file: ScenarioFile, number: int, reference: Any) -> dict[str, Any]:  # noqa: ANN401
+    """Return the row of a task that has ended, in whatever way."""
+    from ray.exceptions import RayError, RayTaskError
+
+    try:
+        row: dict[str, Any] = ray.get(reference)
+    except RayTaskError as error:  # as where this library is not installed
+        reason = f'the worker could not make the run: {str(error).strip().splitlines()[-1]}'
+    except RayError:
+        reason = f'the worker ended in each of {ATTEMPTS} attempts'
+    else:
+        return row
+    return {**empty_row(file, file.parameters.run(number)), 'reason': one_line(reason)}
+
+
+@contextlib.contextmanager
+def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
+    """Yield the module ray, connected; disconnect, and end what was started here."""
+    if workers is not None and (workers < 1 or address is not None):
+        raise ClusterError('workers takes at least 1, or 0 for none, and only without an address')
+    if address is None:
+        with _environment(_PRIVATE), _place() as place:
+            ray = _ray()
+            with _session(ray, num_cpus=workers, include_dashboard=False, _temp_dir=place,
+                          object_store_memory=STORE_BYTES, address='local'):
+                yield ray
+    else:
+        ray = _ray()
+        with _session(ray, address=address):
+            yield ray
+
+
+@contextlib.contextmanager
+def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
+    """Connect quietly, unless the caller has connected already."""
+    if ray.is_initialized():
+        yield
+        return
+    try:
+        ray.init(log_to_driver=False, configure_logging=False, logging_level='error', **arguments)
+    except Exception as error:  # Ray raises many kinds
+        where = arguments['address']
+        what = 'Ray cannot be started' if where == 'local' else f"no Ray cluster at '{where}'"
+        raise ClusterError(f'{what}: {error}') from None
+    try:
+        yield
+    finally:
+        ray.shutdown()
+
+
+def _ray() -> Any:  # noqa: ANN401  the module
+    try:
+        ray = importlib.import_module('ray')
+        importlib.import_module('ray.util.scheduling_strategies')
+    except ImportError:
+        raise ClusterError("the Python package ray is not installed; ./rosbots setup or "
+                           "pip install '.[ray]' installs it, and with 0 workers the runs are made "
+                           'in one process without it') from None
+    return ray
+
+
+@contextlib.contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    """Set those environment variables that are not set."""
+    absent = {name: value for name, value in values.items() if name not in os.environ}
+    os.environ.update(absent)
+    try:
+        yield
+    finally:
+        for name in absent:
+            os.environ.pop(name, None)
+
+
+@contextlib.contextmanager
+def _place() -> Iterator[str]:
+    """Yield a folder for Ray's files and for those of its workers; remove it."""
+    parent = tempfile.gettempdir()
+    made = tempfile.mkdtemp(prefix='rb', dir=parent if len(parent) <= _MAX_PLACE else '/tmp')
+    try:
+        yield made
+    finally:
+        shutil.rmtree(made, ignore_errors=True)

@@ -1,0 +1,119 @@
+"""Make the runs of a scenario that have no row yet."""
+
+import os
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .scenario import ScenarioError, ScenarioFile
+from .simulation import ERROR, FAILED, PASSED, simulate
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from .table import Table
+
+FLUSH_PERIOD = 2.0  # between two files of rows [s, wall]
+
+# Called with the number of rows, that of all runs, and that of runs repeated so far.
+Progress = Callable[[int, int, int], None]
+
+
+class Result(NamedTuple):
+    """What came of a batch."""
+
+    table: 'pa.Table'  # a row a run, ordered by run
+    repeated: int  # runs that were repeated because their worker was lost
+    unwritten: str = ''  # why rows could not be written; '' if they were
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """Return how many runs passed, failed and ended with an error."""
+        count = Counter(self.table.column('outcome').to_pylist())
+        return {outcome: count[outcome] for outcome in (PASSED, FAILED, ERROR)}
+
+
+def run(
+    scenario: str | os.PathLike[str] | Mapping[str, Any] | ScenarioFile,
+    parameters: Mapping[str, Any] | None = None,
+    *,
+    workers: int | None = None,
+    address: str | None = None,
+    output: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Make all runs of a scenario; one with a row in `output` is not made again.
+
+    The rows depend on the scenario and its seed only, not on the workers.
+
+    Args:
+        scenario: a YAML file, or its content.
+        parameters: replace those of the scenario that have their names.
+        workers: processes on this machine, on a Ray of their own; None: one per processor. 0 makes
+            the runs in this process, without Ray.
+        address: of a Ray cluster to use instead, or 'auto'.
+        output: a folder for `rows.parquet`; None returns the rows only.
+        progress: called after each row.
+    Raises:
+        ScenarioError: the scenario is not valid, or the folder holds the rows of another one.
+        ClusterError: Ray is not installed, cannot be started or cannot be reached.
+    """
+    file = _as_file(scenario, parameters)
+    try:
+        from .table import Table
+    except ImportError as error:
+        raise ScenarioError(f'no rows without the Python package {error.name}; ./rosbots setup or '
+                            "pip install '.[ray]' installs it") from None
+    table, total = Table(file, output), file.parameters.runs
+    missing = [number for number in range(total) if number not in table.rows]
+    repeated = 0
+    if missing:
+        repeated = _collect(table, _rows(file, missing, workers, address), total, progress)
+    table.finish()
+    return Result(table.table(), repeated, table.fault)
+
+
+def _as_file(scenario: Any, parameters: Mapping[str, Any] | None) -> ScenarioFile:  # noqa: ANN401
+    if isinstance(scenario, ScenarioFile):
+        if parameters:
+            raise ScenarioError('a ScenarioFile has its parameters already')
+        return scenario
+    if isinstance(scenario, Mapping):
+        given = {**scenario}
+        if parameters:
+            given['parameters'] = {**(given.get('parameters') or {}), **parameters}
+        return ScenarioFile(given)
+    return ScenarioFile.read(scenario, parameters)
+
+
+def _rows(
+    file: ScenarioFile, numbers: list[int], workers: int | None, address: str | None
+) -> Iterator[tuple[dict[str, Any], int]]:
+    """Yield rows, and the number of runs repeated so far, as they come."""
+    if workers == 0 and address is None:
+        return ((simulate(file, number), 0) for number in numbers)
+    from .cluster import rows
+
+    return rows(file, numbers, workers, address)
+
+
+def _collect(
+    table: 'Table', rows: Iterable[tuple[dict[str, Any], int]], total: int,
+    progress: Progress | None,
+) -> int:
+    """Add the rows to the table, whatever ends this; return the number of repeated runs."""
+    flushed, repeated = time.monotonic(), 0
+    try:
+        with closing(rows):  # type: ignore[type-var]
+            for row, repeated in rows:
+                table.add(row)
+                if time.monotonic() > flushed + FLUSH_PERIOD:
+                    table.flush()
+                    flushed = time.monotonic()
+                if progress:
+                    progress(len(table.rows), total, repeated)
+    finally:
+        table.flush()
+    return repeated

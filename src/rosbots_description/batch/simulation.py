@@ -1,0 +1,182 @@
+"""One run of a scenario in a world of its own, and the row that comes of it."""
+
+import contextlib
+import logging
+import math
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import Any
+
+from ..sim import Joint, Link, Model, Odometry, SimError, World
+from ..sim.core import one_line
+from .parameters import Run
+from .policy import PolicyError, in_words, load_policy
+from .records import JointReading, Statistics, value_at
+from .scenario import RecordEntry, Scenario, ScenarioError, ScenarioFile
+from .topics import Topics
+
+PASSED, FAILED, ERROR = 'passed', 'failed', 'error'
+_LIBRARY = __name__.rpartition('.batch.')[0]  # its logger
+
+
+def simulate(file: ScenarioFile, number: int) -> dict[str, Any]:
+    """Make one run; return its row, whatever happens.
+
+    The outcome is `passed`; `failed`, by a condition that does not hold; or `error`, if the run
+    could not be made or an error was logged in it. `reason` says why in one line.
+    """
+    run = file.parameters.run(number)
+    row = empty_row(file, run)
+    try:
+        with _logged_errors() as errors:
+            row |= _Simulation(file, run).columns()
+        if errors:
+            raise ScenarioError(errors[0])
+        faults = filter(None, (condition.fault(row) for condition in file.conditions))
+        reason = next(faults, '')
+    except (SimError, PolicyError, ValueError, OSError) as error:
+        return {**row, 'outcome': ERROR, 'reason': one_line(str(error))}
+    except Exception as error:  # one run must not end the others
+        return {**row, 'outcome': ERROR, 'reason': one_line(in_words(error))}
+    return {**row, 'outcome': FAILED if reason else PASSED, 'reason': one_line(reason)}
+
+
+def empty_row(file: ScenarioFile, run: Run) -> dict[str, Any]:
+    """Return the row of a run of which nothing is known but its parameters."""
+    return {'run': run.number, 'seed': run.seed, 'outcome': ERROR, 'reason': '',
+            **run.parameters, **dict.fromkeys(file.columns)}
+
+
+class _Simulation:
+    """The world of one run."""
+
+    def __init__(self, file: ScenarioFile, run: Run) -> None:
+        self._file, self._run = file, run
+        self._scenario = file.scenario(run)
+        self._statistics = {name: Statistics() for name, record in self._scenario.record.items()
+                            if record.value}
+        self._readings: dict[str, Any] = dict.fromkeys(self._scenario.record)
+        self._fault: ScenarioError | None = None
+        self._models: dict[str, tuple[Any, RecordEntry]] = {}  # records of what is in the world
+
+    def columns(self) -> dict[str, float | None]:
+        """Simulate; return what was recorded."""
+        scenario, locate = self._scenario, self._file.locate
+        with World.from_file(locate(scenario.world), seed=self._run.seed) as world:
+            for model in scenario.models:
+                world.spawn(model.text or locate(model.file), model.name, model.pose.pose(),
+                            arguments=model.xacro_arguments())
+            self._topics = Topics(world)
+            for name, record in scenario.record.items():
+                self._open(world, name, record)
+            self._advance(world)
+        found: dict[str, float | None] = {}
+        for name, statistics in self._statistics.items():
+            found |= statistics.columns(name)
+        return found
+
+    def _open(self, world: World, name: str, record: RecordEntry) -> None:
+        """Begin to record."""
+        with _within(f"record '{name}'"):
+            if record.topic:
+                for output in self._topics.outputs(record.topic):
+                    output.connect(partial(self._receive, name, record))
+                return
+            model = world.model(record.model)
+            if record.joint:
+                self._models[name] = model.joint(record.joint), record
+            else:
+                self._models[name] = model.link(record.link) if record.link else model, record
+
+    def _receive(self, name: str, record: RecordEntry, reading: object) -> None:
+        """Record a reading of a topic; the world would log an exception, and go on."""
+        try:
+            self._take(name, record, reading)
+        except ScenarioError as error:
+            self._fault = self._fault or error
+
+    def _take(self, name: str, record: RecordEntry, reading: object) -> None:
+        """Record a reading."""
+        if not record.value:
+            self._readings[name] = reading
+            return
+        with _within(f"record '{name}'"):
+            value = self._readings[name] = value_at(reading, record.value)
+        self._statistics[name].add(value)
+
+    def _advance(self, world: World) -> None:
+        """Run to the end, with commands and records in between; the policy acts first."""
+        scenario = self._scenario
+        steps = _StepsOf(scenario, world)
+        policy = scenario.policy and load_policy(scenario.policy, self._file.folder, self._run)
+        for step in steps.all:
+            world.run(step - world.clock.steps)
+            if self._fault:
+                raise self._fault
+            if step in steps.ticks or step == steps.end:
+                for name, (thing, record) in self._models.items():
+                    self._take(name, record, _state(thing))
+            if step == steps.end:
+                break
+            if callable(policy) and step in steps.ticks:
+                self._act(policy, world.time)
+            for index in steps.commands.get(step, ()):
+                command = scenario.commands[index]
+                with _within(f'commands[{index}]'):
+                    self._topics.send(command.topic, command.message)
+
+    def _act(self, policy: Any, time: float) -> None:  # noqa: ANN401  a user's function
+        where = f"the policy '{self._scenario.policy}' at {time:g} s"
+        try:
+            commands = policy(time, dict(self._readings))
+        except Exception as error:
+            raise PolicyError(f'{where} raised {in_words(error)}') from error
+        if not isinstance(commands, Mapping | None):
+            raise PolicyError(f'{where} returned {commands!r}; it returns messages by topic')
+        for topic, message in (commands or {}).items():
+            with _within(f"{where}, topic '{topic}'"):
+                self._topics.send(topic, message)
+
+
+class _StepsOf:
+    """The steps at which something is done in a run."""
+
+    def __init__(self, scenario: Scenario, world: World) -> None:
+        size = world.physics.step_size
+        self.end = max(1, round(scenario.duration / size))
+        count = math.ceil(scenario.duration / max(scenario.period, size))
+        self.ticks = {tick for index in range(count)
+                      if (tick := round(index * scenario.period / size)) < self.end}
+        self.commands: dict[int, list[int]] = {}  # indices of the commands
+        for index, command in sorted(enumerate(scenario.commands), key=lambda one: one[1].at):
+            self.commands.setdefault(round(command.at / size), []).append(index)
+        self.all = sorted({*self.ticks, self.end, *self.commands})
+
+
+def _state(thing: Model | Link | Joint) -> Odometry | JointReading:
+    state = thing.state()
+    return JointReading(*state) if isinstance(thing, Joint) else Odometry(*state)
+
+
+@contextlib.contextmanager
+def _within(place: str) -> Iterator[None]:
+    """Name the place of the scenario in an error."""
+    try:
+        yield
+    except (SimError, ValueError) as error:
+        raise ScenarioError(f'{place}: {error}') from None
+
+
+@contextlib.contextmanager
+def _logged_errors() -> Iterator[list[str]]:
+    """Yield a list of the library's errors in the log, which is silent meanwhile."""
+    errors: list[str] = []
+    handler = logging.Handler(logging.ERROR)
+    handler.emit = lambda record: errors.append(record.getMessage())  # type: ignore[method-assign]
+    logger = logging.getLogger(_LIBRARY)
+    handlers, logger.handlers, propagate = logger.handlers, [handler], logger.propagate
+    logger.propagate = False
+    try:
+        yield errors
+    finally:
+        logger.handlers, logger.propagate = handlers, propagate

@@ -1,0 +1,105 @@
+"""Rows in files: complete at any time, kept, in order, and no worse for a full disk."""
+
+import resource
+import signal
+
+import pytest
+from pyarrow import parquet
+from support.batches import pushed_ball
+
+from rosbots_description.batch import ScenarioError, ScenarioFile
+from rosbots_description.batch.simulation import empty_row
+from rosbots_description.batch.table import Table
+
+
+@pytest.fixture
+def file():
+    return ScenarioFile(pushed_ball(parameters={
+        'force': {'grid': [float(number) for number in range(50)]}}))
+
+
+def rows(file, *numbers):
+    return [{**empty_row(file, file.parameters.run(number)), 'outcome': 'passed', 'x_end': 1.5}
+            for number in numbers]
+
+
+@pytest.fixture
+def full_disk():
+    """Yield a function that forbids files of more than some bytes."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    yield lambda most: resource.setrlimit(
+        resource.RLIMIT_FSIZE, (most if most >= 0 else limits[0], limits[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    signal.signal(signal.SIGXFSZ, handler)
+
+
+def test_flushed_rows_can_be_read_at_any_time(file, tmp_path):
+    table = Table(file, tmp_path)
+    for row in rows(file, 3, 1):
+        table.add(row)
+        table.flush()
+    found = parquet.read_table(tmp_path / 'rows')
+    assert found.column('run').to_pylist() == [3, 1]
+    assert found.schema.field('force').type == 'double'
+
+
+def test_finished_rows_are_one_file_in_order(file, tmp_path):
+    table = Table(file, tmp_path)
+    for row in rows(file, 3, 1, 2):
+        table.add(row)
+    table.flush()
+    table.finish()
+    assert [path.name for path in tmp_path.iterdir()] == ['rows.parquet']
+    found = parquet.read_table(tmp_path / 'rows.parquet')
+    assert found.equals(table.table())
+    assert found.column('run').to_pylist() == [1, 2, 3]
+
+
+def test_rows_of_before_are_kept(file, tmp_path):
+    first = Table(file, tmp_path)
+    first.add(rows(file, 4)[0])
+    first.flush()
+    second = Table(file, tmp_path)
+    assert list(second.rows) == [4]
+    second.add(rows(file, 2)[0])
+    second.flush()
+    second.finish()
+    assert list(Table(file, tmp_path).rows) == [2, 4]
+
+
+def test_a_file_without_content_is_no_obstacle(file, tmp_path):
+    (tmp_path / 'rows').mkdir()
+    (tmp_path / 'rows' / '000007.parquet').touch()
+    table = Table(file, tmp_path)
+    table.add(rows(file, 0)[0])
+    table.flush()
+    assert list(Table(file, tmp_path).rows) == [0]
+
+
+def test_rows_of_another_scenario_are_not_mixed_in(file, tmp_path):
+    table = Table(file, tmp_path)
+    table.add(rows(file, 0)[0])
+    table.finish()
+    with pytest.raises(ScenarioError, match='holds the rows of another scenario'):
+        Table(ScenarioFile(pushed_ball()), tmp_path)
+
+
+def test_a_folder_that_cannot_be_made_is_named(file, tmp_path):
+    (tmp_path / 'taken').touch()
+    with pytest.raises(ScenarioError, match=r'rows cannot be written to .*taken'):
+        Table(file, tmp_path / 'taken')
+
+
+def test_rows_wait_for_a_full_disk(file, tmp_path, full_disk):
+    table = Table(file, tmp_path)
+    table.add(rows(file, 0)[0])
+    full_disk(100)
+    table.flush()
+    assert table.fault == f'rows cannot be written to {tmp_path / "rows"}: File too large'
+    assert list((tmp_path / 'rows').iterdir()) == []
+    table.add(rows(file, 1)[0])
+    full_disk(-1)
+    table.flush()
+    assert table.fault == ''
+    assert list(Table(file, tmp_path).rows) == [0, 1]
