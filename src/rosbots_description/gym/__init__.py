@@ -10,11 +10,13 @@ from .registration import register_envs
 
 if TYPE_CHECKING:
     from .env import SimEnv
+    from .parallel import ParallelEnv, make_parallel
     from .randomisation import Randomisation
 
-__all__ = ['Randomisation', 'SimEnv', 'register_envs']
+__all__ = ['ParallelEnv', 'Randomisation', 'SimEnv', 'make_parallel', 'register_envs']
 
-_HOMES = {'Randomisation': 'randomisation', 'SimEnv': 'env'}
+_HOMES = {'ParallelEnv': 'parallel', 'Randomisation': 'randomisation', 'SimEnv': 'env',
+          'make_parallel': 'parallel'}
 
 
 def __getattr__(name: str) -> object:

@@ -11,6 +11,7 @@ from gymnasium import spaces
 from ..sim import Model, Pose, SimError, World, yaw_of
 from .actions import Actions, Limits
 from .observations import observed
+from .parent_watch import end_with_parent
 from .pictures import Pictures
 from .placement import Place, Range, move, move_freely
 from .randomisation import Randomisation
@@ -75,6 +76,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         if render_mode is not None and render_mode not in self.metadata['render_modes']:
             raise ValueError(f"render_mode is '{render_mode}'; it is one of "
                              f"{', '.join(self.metadata['render_modes'])}, or None")
+        end_with_parent()
         self.render_mode = render_mode
         self._opened = lambda: World.from_file(
             world, package_path=package_path, model_path=model_path)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from ...sim import World, yaw_of
 from ...sim.description import Box
 from ..env import Info, Observation
+from ..parallel import make_parallel
 from ..placement import Place
 from .driving import BUMPED, Driving
 
@@ -89,3 +91,6 @@ class FollowLine(Driving):
     def truth(self) -> Info:
         """Add the distance from the line, and the way driven along it [m]."""
         return {**super().truth(), 'line_distance': self._apart, 'driven': self._driven}
+
+
+make_vec = partial(make_parallel, FollowLine)

@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..env import Info, Observation
 from ..observations import box
+from ..parallel import make_parallel
 from .driving import BUMPED, Driving
 
 REACHED = 0.4  # [m] distance to the goal at which it is reached
@@ -60,3 +62,6 @@ class GoToGoal(Driving):
 
     def _distance(self) -> float:
         return math.dist(self.pose[:2], self.goal)
+
+
+make_vec = partial(make_parallel, GoToGoal)

@@ -3,11 +3,13 @@
 import heapq
 import math
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 from ...sim import World
 from ...sim.description import Box
 from ..env import Info, Observation
+from ..parallel import make_parallel
 from .driving import BUMPED, Driving
 
 GOAL = (8.0, 6.0)  # [m] the green spot, outside the only door
@@ -93,3 +95,6 @@ def _cell(x: float, y: float) -> Cell:
 
 def _middle(cell: Cell) -> tuple[float, float]:
     return cell[0] * _CELL, cell[1] * _CELL
+
+
+make_vec = partial(make_parallel, Maze)

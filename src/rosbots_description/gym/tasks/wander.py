@@ -1,9 +1,11 @@
 """See as much of the rooms as possible without touching anything."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 from ..env import Info, Observation
+from ..parallel import make_parallel
 from .driving import BUMPED, Driving
 
 CELL = 0.5  # [m] edge of the squares that are visited
@@ -43,3 +45,6 @@ class Wander(Driving):
     def _cell(self) -> tuple[int, int]:
         x, y, _ = self.pose
         return round(x / CELL), round(y / CELL)
+
+
+make_vec = partial(make_parallel, Wander)
