@@ -2,7 +2,7 @@
 
 from .camera import EYE, OVERVIEW, TARGET, look_at
 from .gl import BYTES, Lens, Wants
-from .gltf import visual_gltf
+from .gltf import Look, visual_gltf
 from .image_capture import ImageCapture, Picture
 from .render_process import NoRendererError, RenderError
 from .sunlit_meshes import SunlitMeshes
@@ -14,6 +14,7 @@ __all__ = [
     'TARGET',
     'ImageCapture',
     'Lens',
+    'Look',
     'NoRendererError',
     'Picture',
     'RenderError',

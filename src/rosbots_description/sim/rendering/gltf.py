@@ -9,6 +9,8 @@ import logging
 import math
 import struct
 from collections.abc import Iterator
+from dataclasses import replace
+from enum import Enum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,13 +29,23 @@ logger = logging.getLogger(__name__)
 MAX_IMAGE_BYTES = 50_000_000
 _FLOAT, _UNSIGNED_INT = 5126, 5125  # component types
 _VERTICES, _INDICES = 34962, 34963  # targets of buffer views
+_LINES, _TRIANGLES = 1, 4  # modes of primitives
+_CLEAR = 0.35  # alpha of what is transparent, as a fraction of its own
+
+
+class Look(Enum):
+    """How visuals are drawn."""
+
+    SOLID = 'solid'
+    TRANSPARENT = 'transparent'
+    WIREFRAME = 'wireframe'
 
 
 class _Part(NamedTuple):
-    """Triangles of one material; without normals they are shaded flat."""
+    """Triangles of one material, or lines; without normals they are shaded flat."""
 
     vertices: FloatArray  # (n, 3)
-    faces: IntArray  # (m, 3), numbers of vertices
+    faces: IntArray  # numbers of vertices: (m, 3), or (m, 2) of lines
     normals: FloatArray | None  # (n, 3)
     texcoords: FloatArray | None  # (n, 2), from the lower left corner of the image
     image: str  # path
@@ -41,14 +53,14 @@ class _Part(NamedTuple):
     reflection: Reflection
 
 
-def visual_gltf(visual: Visual) -> bytes:
+def visual_gltf(visual: Visual, look: Look = Look.SOLID) -> bytes:
     """Return a visual as a .glb file in the frame of the visual [m].
 
     Raises:
         ModelError: its mesh cannot be read.
     """
     parts, scale = _parts(visual)
-    return _File(scale, parts).content()
+    return _File(scale, [_drawn(part, look) for part in parts]).content()
 
 
 def _parts(visual: Visual) -> tuple[list[_Part], Vector]:
@@ -69,6 +81,16 @@ def _parts(visual: Visual) -> tuple[list[_Part], Vector]:
             scale = (2.0 * radius, 2.0 * radius, length)
     vertices, faces, normals = UNIT_SURFACES[type(visual.geometry)]()
     return [_Part(vertices, faces, normals, None, '', material.rgba, material.reflection)], scale
+
+
+def _drawn(part: _Part, look: Look) -> _Part:
+    if look is Look.TRANSPARENT:
+        return part._replace(rgba=(*part.rgba[:3], _CLEAR * part.rgba[3]))
+    if look is Look.WIREFRAME:
+        edges = np.sort(part.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        return part._replace(faces=np.unique(edges, axis=0), normals=None, texcoords=None, image='',
+                             reflection=replace(part.reflection, lit=False))
+    return part
 
 
 def _mesh_part(part: MeshPart, material: Material | None) -> _Part:
@@ -121,6 +143,7 @@ class _File:
             attributes['TEXCOORD_0'] = self._array(part.texcoords * (1, -1) + (0, 1), 'VEC2')
         self._materials.append(_material(part, image))
         return {'attributes': attributes, 'indices': self._indices(part.faces),
+                'mode': _TRIANGLES if part.faces.shape[1] == 3 else _LINES,
                 'material': len(self._materials) - 1}
 
     def _array(self, values: FloatArray, kind: str) -> int:

@@ -20,7 +20,7 @@ from rosbots_description.sim.description import (
     gazebo_material,
 )
 from rosbots_description.sim.meshes.loader import MeshData, MeshPart
-from rosbots_description.sim.rendering import gltf, visual_gltf
+from rosbots_description.sim.rendering import Look, gltf, visual_gltf
 
 
 @pytest.fixture
@@ -34,9 +34,9 @@ def covered(tmp_path, monkeypatch):
     return Mesh('m.dae', (1.0, 2.0, 1.0))
 
 
-def read(geometry, material=None):
+def read(geometry, material=None, look=Look.SOLID):
     """Return the tree and the arrays (function of an accessor's number) of a visual's file."""
-    content = visual_gltf(Visual('v', geometry, material=material))
+    content = visual_gltf(Visual('v', geometry, material=material), look)
     magic, version, length, size = struct.unpack_from('<4sIII', content)
     assert (magic, version, length) == (b'glTF', 2, len(content))
     tree, data = json.loads(content[20:20 + size]), content[28 + size:]
@@ -100,6 +100,28 @@ def test_colours_are_linear_and_what_glows_or_shines_through_does():
     assert material['emissiveFactor'] == [1.0, 0.0, 0.0]
     assert material['alphaMode'] == 'BLEND'
     assert 'KHR_materials_unlit' in material['extensions']
+
+
+def test_what_is_transparent_keeps_its_colour_and_image(covered, tmp_path):
+    Image.new('RGB', (2, 2)).save(tmp_path / 'p.bmp')
+    tree, _ = read(covered, look=Look.TRANSPARENT)
+    (material,) = tree['materials']
+    assert material['alphaMode'] == 'BLEND'
+    assert material['pbrMetallicRoughness']['baseColorFactor'][3] == pytest.approx(0.35)
+    assert 'baseColorTexture' in material['pbrMetallicRoughness']
+
+
+def test_a_wireframe_has_each_edge_once():
+    tree, array = read(Box((1.0, 2.0, 3.0)), look=Look.WIREFRAME)
+    (primitive,) = tree['meshes'][0]['primitives']
+    assert primitive['mode'] == 1  # lines
+    assert set(primitive['attributes']) == {'POSITION'}
+    points, ends = array(primitive['attributes']['POSITION']), array(primitive['indices'])
+    lines = [tuple(sorted((tuple(points[a]), tuple(points[b])))) for a, b in ends.reshape(-1, 2)]
+    assert len({tuple(sorted(line)) for line in ends.reshape(-1, 2).tolist()}) == len(lines)
+    along = [line for line in set(lines) if sum(a != b for a, b in zip(*line, strict=True)) == 1]
+    assert len(along) == 12  # the others are diagonals of its sides
+    assert 'KHR_materials_unlit' in tree['materials'][0]['extensions']
 
 
 def test_what_shines_is_smoother_than_what_does_not():
