@@ -27,6 +27,7 @@ class Browser:
         self.keys = {}  # what is bound to each
         self.idle_keys = set()  # those of them that do nothing now
         self.controls = {}  # uuid -> [type, properties]
+        self.parents = {}  # uuid of a control -> that of what it is in
         self.send(CAMERA)
 
     def __enter__(self):
@@ -84,6 +85,11 @@ class Browser:
                    'ray_origin': [0.0, 0.0, 0.0], 'ray_direction': [1.0, 0.0, 0.0],
                    'screen_pos': [0.5, 0.5], 'modifier': None, 'owner': ''})
 
+    def choose_when_there(self, label, value):
+        """Set the value of a control that is about to come."""
+        self.wait_until(lambda: self.control(label))
+        self.choose(label, value)
+
     def control(self, label):
         """Return the number of the control of that label; None if there is none."""
         return next((uuid for uuid, (_, props) in self.controls.items()
@@ -93,6 +99,15 @@ class Browser:
         """Return the texts that are shown."""
         return [props['_markdown'] for kind, props in self.controls.values()
                 if kind == 'GuiMarkdownMessage' and props.get('visible', True)]
+
+    def tables(self):
+        """Return the HTML that is shown, in one."""
+        return ''.join(props['content'] for kind, props in self.controls.values()
+                       if kind == 'GuiHtmlMessage' and props.get('visible', True))
+
+    def value(self, label):
+        """Return the value of the control of that label."""
+        return self.controls[self.control(label)][1]['value']
 
     def _take(self, message):
         kind, name = message['type'], message.get('name')
@@ -110,8 +125,12 @@ class Browser:
             self.nodes[name][2] = message['wxyz']
         elif kind == 'GuiUpdateMessage' and message['uuid'] in self.controls:
             self.controls[message['uuid']][1].update(message['updates'])
+        elif kind == 'GuiRemoveMessage':
+            self.controls.pop(message['uuid'], None)
         elif kind.startswith('Gui') and 'props' in message:
-            self.controls[message['uuid']] = [kind, message['props']]
+            self.parents[message['uuid']] = message.get('container_uuid')
+            self.controls[message['uuid']] = [
+                kind, message['props'] | {'value': message.get('value')}]
         elif name is not None and 'props' in message and kind != 'SceneNodeUpdateMessage':
             self.nodes[name] = [kind, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
 

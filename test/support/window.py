@@ -1,7 +1,20 @@
 """What the window's page is tested with: a simulator that remembers, and what it would show."""
 
-from rosbots_description.sim.core import Pose, SimError
+from rosbots_description.sim.core import Pose, SimError, Twist
 from rosbots_description.sim.description import Box, ShownLink, ShownModel, ShownMotion, Visual
+
+
+class FakeContacts:
+    """Contacts that a test shows."""
+
+    def __init__(self):
+        self.show = None
+
+    def open(self, show):
+        self.show = show
+
+    def close(self):
+        self.show = None
 
 
 class FakeSimulator:
@@ -11,14 +24,20 @@ class FakeSimulator:
         self.told = []
         self.change = self.motion = None
         self.fault = ''
+        self.where = Pose(), Twist()
         self.topics = ()
-        self.view = self.time = self.robots = self
+        self.view = self.time = self.robots = self.inspection = self
+        self.contacts = FakeContacts()
 
     def open(self, change, motion):
         self.change, self.motion = change, motion
 
     def close(self):
         self.change = self.motion = None
+
+    def state(self, model, link):
+        self.told.append(('state', model, link))
+        return self.where
 
     def drive_topics(self):
         return self.topics

@@ -1,17 +1,13 @@
 """The controls of time: play, pause, steps, resets, speed; and the clock."""
 
-import logging
 from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
 import viser
 
-from ..sim.core import SimError
 from ..sim.description import SceneChange, ShownMotion
-from .panel import Panel
-
-logger = logging.getLogger(__name__)
+from .panel import Panel, attempt
 
 PERIOD = 0.2  # [s, wall] between two clocks shown
 WINDOW = 1.0  # [s, wall] over which the real-time factor is taken
@@ -115,11 +111,7 @@ class Bar(Panel):
         self._do(self._time.unpause if self._paused else self._time.pause)
 
     def _do(self, command: Callable[[], None]) -> None:
-        try:
-            command()
-        except SimError as error:
-            logger.warning('%s', error)
-            self._complain(str(error))
+        attempt(command, self._complain)
 
 
 def _time(seconds: float) -> str:

@@ -28,19 +28,24 @@ class Models(Panel):
         """Return the pose of a link's frame in the world."""
         return self._poses.get(link.number, link.pose)
 
-    def pose(self, model: str) -> Pose:
-        """Return the pose of a model's frame in the world.
+    def pose(self, model: str, link: str | None = None) -> Pose:
+        """Return the pose of a model's frame in the world, or of that of one of its links.
 
         Raises:
             KeyError: there is no such model.
         """
         shown = self._models[model]
+        for one in shown.links:
+            if one.name == link:
+                return self.link_pose(one)
         return compose(self.link_pose(shown.links[0]), inverse(shown.canonical_pose))
 
     def apply(self, change: SceneChange) -> None:
         """Take in models that came, changed or went."""
-        gone = list(self._models) if change.reset else change.removed
-        for name in gone:
+        if change.reset:  # its numbers may be those of another simulator
+            self._models.clear()
+            self._poses.clear()
+        for name in change.removed:
             if shown := self._models.pop(name, None):
                 for link in shown.links:
                     self._poses.pop(link.number, None)

@@ -12,7 +12,7 @@ from .selection import Selection
 
 COLOUR = (255, 140, 0)
 WIDTH = 2.0  # of its lines [pixels]
-GAP = 0.01  # between the box and what it is around [m]
+GAP = 0.003  # between the box and what it is around [m]
 # Edges of a box: pairs of opposite ends along each axis, of a cube from -1 to 1.
 _ENDS = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
 EDGES = np.array([(one, other) for one in _ENDS for other in _ENDS

@@ -11,12 +11,19 @@ import viser
 from ..sim.description import SceneChange, ShownMotion
 from .bar import Bar, TimeControl
 from .camera_keys import CameraKeys
+from .change import ChangePanel, Inspection
+from .contacts import Contacts, ContactsPanel
 from .drive import DrivePanel, Robots
+from .follow import FollowPanel
+from .history import History
+from .inspector import Inspector
 from .models import Models
 from .outline import Outline
 from .panel import Panel
 from .scene import SceneView
 from .selection import Selection
+from .show import ShowPanel
+from .tree import ModelTree
 
 logger = logging.getLogger(__name__)
 
@@ -51,6 +58,14 @@ class Simulator(Protocol):
     def robots(self) -> Robots:
         """Its robots."""
 
+    @property
+    def inspection(self) -> Inspection:
+        """Its models and links."""
+
+    @property
+    def contacts(self) -> Contacts:
+        """What touches in it."""
+
 
 class Page:
     """Shows a world to all browsers that are connected; without one it does not look at it."""
@@ -71,12 +86,24 @@ class Page:
         self._scene = SceneView(site, self.selection.click)
         outline = Outline(site.scene, models, self.selection)
         self._bar = Bar(site.gui, simulator.time, self._notify)
+        history = History(site.gui, self._notify)
         keys = CameraKeys(site.gui)
         tabs = site.gui.add_tab_group()
         with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
             drive = DrivePanel(site.gui, simulator.robots, keys)
+        with tabs.add_tab('Models', viser.Icon.LIST_TREE):
+            inspector = Inspector(
+                site.gui, simulator.inspection, models, self.selection, self._lock)
+            change = ChangePanel(
+                site.gui, simulator.inspection, models, self.selection, history, self._notify)
+            tree = ModelTree(site.gui, models, self.selection, self._lock)
+        with tabs.add_tab('Show', viser.Icon.EYE):
+            follow = FollowPanel(site, models, self.selection)
+            show = ShowPanel(site, self._scene, models, self.selection, self._lock)
+            contacts = ContactsPanel(site, simulator.contacts, self._lock)
         self._panels: tuple[Panel, ...] = (
-            models, self._scene, self.selection, outline, self._bar, drive)
+            models, self._scene, self.selection, outline, self._bar, history, drive,
+            inspector, change, tree, follow, show, contacts)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 

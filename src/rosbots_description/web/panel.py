@@ -1,6 +1,21 @@
-"""What every panel of the page is told of."""
+"""What every panel of the page is told of, and how it gives commands."""
 
+import logging
+from collections.abc import Callable
+
+from ..sim.core import SimError
 from ..sim.description import SceneChange, ShownMotion
+
+logger = logging.getLogger(__name__)
+
+
+def attempt(command: Callable[[], None], complain: Callable[[str], None]) -> None:
+    """Carry out a command; if it is refused, complain with the reason."""
+    try:
+        command()
+    except SimError as error:
+        logger.warning('%s', error)
+        complain(str(error))
 
 
 class Panel:

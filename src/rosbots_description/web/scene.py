@@ -11,7 +11,7 @@ import viser
 
 from ..sim.core import UP, ModelError, Pose, Vector, compose
 from ..sim.description import Plane, SceneChange, SceneSpec, ShownLink, ShownModel, ShownMotion
-from ..sim.rendering import visual_gltf
+from ..sim.rendering import Look, visual_gltf
 from .bounds import corners
 from .lights import add_light, rgb_bytes
 from .nodes import link_node, model_node, node, place, pose_of, wxyz
@@ -43,6 +43,7 @@ class SceneView(Panel):
         self._frames: dict[int, viser.FrameHandle] = {}
         self._lights: Mapping[str, object] = {}
         self._scene: SceneSpec | None = None
+        self._look = Look.SOLID
         site.scene.configure_default_lights(enabled=False)
 
     def apply(self, change: SceneChange) -> None:
@@ -70,6 +71,15 @@ class SceneView(Panel):
             for number, pose in motion.poses.items():
                 if number in self._frames:
                     place(self._frames[number], pose)
+
+    def draw_as(self, look: Look) -> None:
+        """Draw all visuals but planes solid, transparent, or as wires."""
+        if look is not self._look:
+            self._look = look
+            with self._site.atomic():
+                for shown in self._models.values():
+                    for link in shown.model.links:
+                        self._add_visuals(link, shown.model.name)
 
     def start_view(self) -> tuple[Vector, Vector]:
         """Return eye and target [m] of a view of everything, from ahead at the right."""
@@ -113,21 +123,21 @@ class SceneView(Panel):
         shown = _Shown(model, scene.add_frame(model_node(model.name), show_axes=False), {})
         self._models[model.name] = shown
         for link in model.links:
-            path = link_node(model.name, link.name)
             shown.links[link.number] = scene.add_frame(
-                path, show_axes=False, position=link.pose.position, wxyz=wxyz(link.pose))
-            self._add_visuals(path, link, model.name)
+                link_node(model.name, link.name), show_axes=False,
+                position=link.pose.position, wxyz=wxyz(link.pose))
+            self._add_visuals(link, model.name)
 
-    def _add_visuals(self, path: str, link: ShownLink, model: str) -> None:
+    def _add_visuals(self, link: ShownLink, model: str) -> None:
         for number, visual in enumerate(link.visuals):
-            name = f'{path}/{number} {node(visual.name)}'
+            name = f'{link_node(model, link.name)}/{number} {node(visual.name)}'
+            plane = visual.geometry if isinstance(visual.geometry, Plane) else None
             try:
-                content = visual_gltf(visual)
+                content = visual_gltf(visual, self._look if plane is None else Look.SOLID)
             except ModelError as error:
                 logger.warning("visual '%s' of model '%s' is not shown: %s", visual.name, model,
                                error)
                 continue
-            plane = visual.geometry if isinstance(visual.geometry, Plane) else None
             shape = self._site.scene.add_glb(
                 name, content, position=visual.pose.position, wxyz=wxyz(visual.pose),
                 cast_shadow=plane is None)

@@ -1,5 +1,7 @@
 """The simulator as the window in the browser sees it."""
 
+from .contacts import RosContacts
+from .inspection import RosInspection
 from .robots import RosRobots
 from .time_control import RosTimeControl
 from .view import RosView
@@ -12,3 +14,5 @@ class GazeboSimulator:
         self.view = RosView()
         self.time = RosTimeControl()
         self.robots = RosRobots()
+        self.inspection = RosInspection()
+        self.contacts = RosContacts()

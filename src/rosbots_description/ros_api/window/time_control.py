@@ -23,7 +23,7 @@ class RosTimeControl:
     def step(self, steps: int) -> None:
         """Pause and make so many steps."""
         self.pause()
-        call('step', Step, timeout=STEP_TIMEOUT, steps=steps)
+        call('step', Step, STEP_TIMEOUT, steps=steps)
 
     def reset_world(self) -> None:
         """Return every model to its spawn pose; time is kept."""

@@ -1,0 +1,159 @@
+"""Fields to change what is selected, by the services that a script would use."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Protocol, TypeVar
+
+import viser
+
+from ..sim.core import Pose, Twist, Vector, from_rpy, to_rpy
+from ..sim.description import SceneChange, ShownLink
+from .descriptions import chosen_links, friction, scoped_name
+from .history import History
+from .inspector import States
+from .models import Models
+from .panel import Panel, attempt
+from .selection import Selection
+
+NONE: Vector = (0.0, 0.0, 0.0)
+STEP = 0.001  # of all fields
+Value = TypeVar('Value')
+
+
+class Inspection(States, Protocol):
+    """Reads and changes models and links; each raises SimError with a sentence if it is refused.
+
+    A link of None is the whole model.
+    """
+
+    def set_state(self, model: str, link: str | None, pose: Pose, twist: Twist) -> None:
+        """Set pose and velocity in the world."""
+
+    def set_mass(self, model: str, link: str, mass: float, gravity: bool) -> None:
+        """Set a link's mass [kg], its inertia in proportion, and whether gravity acts on it."""
+
+    def set_friction(self, name: str, mu: float, mu2: float) -> None:
+        """Set the friction coefficients of a collision, or of all in a model or link."""
+
+
+class ChangePanel(Panel):
+    """Fields with the numbers as they were when it was selected, and buttons that set them."""
+
+    def __init__(
+        self, gui: viser.GuiApi, inspection: Inspection, models: Models, selection: Selection,
+        history: History, complain: Callable[[str], None],
+    ) -> None:
+        self._inspection, self._history, self._complain = inspection, history, complain
+        self._models, self._selection = models, selection
+        self._folder = gui.add_folder('Change', expand_by_default=False, visible=False)
+        with self._folder:
+            self._position = gui.add_vector3('Position [m]', NONE, step=STEP)
+            self._angles = gui.add_vector3('Roll, pitch, yaw [rad]', NONE, step=STEP)
+            self._button(gui, 'Set pose', self._set_pose)
+            self._motion = gui.add_folder(None)
+            with self._motion:
+                self._linear = gui.add_vector3('Velocity [m/s]', NONE, step=STEP)
+                self._angular = gui.add_vector3('Turning [rad/s]', NONE, step=STEP)
+                self._button(gui, 'Set velocity', self._set_velocity)
+            self._body = gui.add_folder(None)
+            with self._body:
+                self._mass = gui.add_number('Mass [kg]', 1.0, step=STEP,
+                                            hint='the inertia changes in proportion')
+                self._gravity = gui.add_checkbox('Gravity', True)
+                self._button(gui, 'Set mass', self._set_mass)
+            self._surface = gui.add_folder(None)
+            with self._surface:
+                self._mu = gui.add_number('mu', 1.0, step=STEP)
+                self._mu2 = gui.add_number('mu2', 1.0, step=STEP)
+                self._button(gui, 'Set friction', self._set_friction)
+        selection.on_change(self._select)
+
+    def apply(self, change: SceneChange) -> None:
+        """Show new properties of what is selected."""
+        if any(model.name == self._selection.model for model in change.models):
+            self._fill_properties()
+
+    def _button(
+        self, gui: viser.GuiApi, label: str, command: Callable[[str, str | None], None]
+    ) -> None:
+        def act() -> None:
+            if self._selection.model is not None:
+                command(self._selection.model, self._selection.link)
+
+        gui.add_button(label).on_click(lambda _: attempt(act, self._complain))
+
+    def _select(self) -> None:
+        model, link = self._selection.model, self._selection.link
+        self._folder.visible = model is not None
+        if model is not None:
+            pose = self._models.pose(model, link)
+            _fill(self._position, pose.position)
+            _fill(self._angles, to_rpy(pose.orientation))
+            _fill(self._linear, NONE)
+            _fill(self._angular, NONE)
+            self._fill_properties()
+
+    def _fill_properties(self) -> None:
+        assert self._selection.model is not None
+        model = self._models.all[self._selection.model]
+        links = chosen_links(model, self._selection.link)
+        body = self._only_link()
+        self._motion.visible = not model.static
+        self._body.visible = body is not None and not model.static
+        if body is not None and body.inertial is not None:
+            _fill(self._mass, body.inertial.mass)
+            _fill(self._gravity, body.gravity)
+        pairs = friction(links)
+        self._surface.visible = bool(pairs)
+        if pairs:
+            mu, mu2 = min(pairs)
+            _fill(self._mu, mu)
+            _fill(self._mu2, mu2)
+
+    def _only_link(self) -> ShownLink | None:
+        """Return the selected link, or that of a model which has no other."""
+        model = self._selection.model
+        links = chosen_links(self._models.all[model], self._selection.link) if model else []
+        return links[0] if len(links) == 1 else None
+
+    def _set_pose(self, model: str, link: str | None) -> None:
+        pose = Pose(self._position.value, from_rpy(*self._angles.value))
+        self._set_state(model, link, 'pose', pose, None)
+
+    def _set_velocity(self, model: str, link: str | None) -> None:
+        twist = Twist(self._linear.value, self._angular.value)
+        self._set_state(model, link, 'velocity', None, twist)
+
+    def _set_state(self, model: str, link: str | None, what: str, pose: Pose | None,
+                   twist: Twist | None) -> None:
+        """Set pose or velocity; the other stays."""
+        before = self._inspection.state(model, link)
+        self._inspection.set_state(model, link, pose or before[0], twist or before[1])
+        self._history.add(f"{what} of '{scoped_name(model, link)}'",
+                          partial(self._inspection.set_state, model, link, *before))
+
+    def _set_mass(self, model: str, _link: str | None) -> None:
+        body = self._only_link()
+        if body is not None and body.inertial is not None:
+            self._inspection.set_mass(model, body.name, self._mass.value, self._gravity.value)
+            self._history.add(
+                f"mass of '{scoped_name(model, body.name)}'",
+                partial(self._inspection.set_mass, model, body.name, body.inertial.mass,
+                        body.gravity))
+
+    def _set_friction(self, model: str, link: str | None) -> None:
+        before = [(scoped_name(model, part.name, one.name), one.surface.mu, one.surface.mu2)
+                  for part in chosen_links(self._models.all[model], link)
+                  for one in part.collisions]
+
+        def undo() -> None:
+            for one in before:
+                self._inspection.set_friction(*one)
+
+        name = scoped_name(model, link)
+        self._inspection.set_friction(name, self._mu.value, self._mu2.value)
+        self._history.add(f"friction of '{name}'", undo)
+
+
+def _fill(field: viser.GuiInputHandle[Value], value: Value) -> None:
+    field.value = value  # type: ignore[misc]  # viser's setter has no type

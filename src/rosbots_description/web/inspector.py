@@ -1,0 +1,65 @@
+"""What is selected, in numbers, for as long as it is."""
+
+import threading
+from typing import Protocol
+
+import viser
+
+from ..sim.core import Pose, SimError, Twist
+from ..sim.description import SceneChange
+from .descriptions import parts_html, state_html
+from .models import Models
+from .panel import Panel
+from .selection import Selection
+
+
+class States(Protocol):
+    """Where models and links are, and how they move."""
+
+    def state(self, model: str, link: str | None) -> tuple[Pose, Twist]:
+        """Return pose and velocity of a model, or of one of its links, in the world.
+
+        Raises:
+            SimError: there is none of that name, or no simulator.
+        """
+
+
+class Inspector(Panel):
+    """A table of the state, and lists of joints, collisions and sensors."""
+
+    def __init__(
+        self, gui: viser.GuiApi, states: States, models: Models, selection: Selection,
+        lock: threading.RLock,
+    ) -> None:
+        self._states, self._models, self._selection, self._lock = states, models, selection, lock
+        self._nothing = gui.add_markdown('Click on a model in the scene or below.')
+        self._state = gui.add_html('', visible=False)
+        self._parts = gui.add_html('', visible=False)
+        selection.on_change(self._select)
+
+    def apply(self, change: SceneChange) -> None:
+        """Show new properties of what is selected."""
+        if any(model.name == self._selection.model for model in change.models):
+            self._select()
+
+    def refresh(self) -> None:
+        """Show the state of what is selected."""
+        model, link = self._selection.model, self._selection.link
+        if model is None:
+            return
+        try:
+            pose, twist = self._states.state(model, link)
+        except SimError:
+            return  # it went, or the simulator did, which others say
+        with self._lock:
+            if (model, link) == (self._selection.model, self._selection.link):
+                self._state.content = state_html(self._models.all[model], link, pose, twist)
+
+    def _select(self) -> None:
+        name, link = self._selection.model, self._selection.link
+        self._nothing.visible = name is None
+        self._state.visible = self._parts.visible = name is not None
+        if name is not None:
+            pose = self._models.pose(name, link)
+            self._state.content = state_html(self._models.all[name], link, pose, None)
+            self._parts.content = parts_html(self._models.all[name], link)

@@ -1,0 +1,72 @@
+"""What else is shown in the scene: frames, collision shapes, masses, and how visuals look."""
+
+import threading
+
+import viser
+
+from ..sim.description import SceneChange, ShownModel
+from ..sim.rendering import Look
+from .markers import MARKERS
+from .models import Models
+from .nodes import link_node
+from .panel import Panel
+from .scene import SceneView
+from .selection import Selection
+
+
+class ShowPanel(Panel):
+    """Boxes to check; what is shown of a link is a part of its node and moves along."""
+
+    def __init__(
+        self, site: viser.ViserServer, view: SceneView, models: Models, selection: Selection,
+        lock: threading.RLock,
+    ) -> None:
+        self._site, self._models, self._selection, self._lock = site, models, selection, lock
+        self._shown: dict[str, list[str]] = {}  # nodes, by models
+        gui = site.gui
+        self._look = gui.add_dropdown('Models', [look.value for look in Look])
+        self._look.on_update(lambda _: self._restyle(view))
+        self._only = gui.add_checkbox('Only of what is selected', False)
+        self._boxes = {name: gui.add_checkbox(name, False) for name in MARKERS}
+        for box in (self._only, *self._boxes.values()):
+            box.on_update(lambda _: self._draw_all())
+        selection.on_change(self._select)
+
+    def apply(self, change: SceneChange) -> None:
+        """Show it of models that came or changed."""
+        for name in list(self._shown) if change.reset else change.removed:
+            self._erase(name)
+        for model in change.models:
+            self._draw(model)
+
+    def _select(self) -> None:
+        if self._only.value:
+            self._draw_all()
+
+    def _restyle(self, view: SceneView) -> None:
+        with self._lock:
+            view.draw_as(Look(self._look.value))
+
+    def _draw_all(self) -> None:
+        with self._lock, self._site.atomic():
+            for model in self._models.all.values():
+                self._draw(model)
+
+    def _draw(self, model: ShownModel) -> None:
+        """Show what is checked of a model, and nothing else."""
+        self._erase(model.name)
+        names = [name for name, box in self._boxes.items() if box.value]
+        chosen, only = self._selection.link, self._only.value
+        if not names or (only and model.name != self._selection.model):
+            return
+        shown = self._shown[model.name] = []
+        for link in model.links:
+            if not only or chosen in (None, link.name):
+                for name in names:
+                    path = f'{link_node(model.name, link.name)}/{name}'
+                    MARKERS[name](self._site.scene, path, model, link)
+                    shown.append(path)
+
+    def _erase(self, model: str) -> None:
+        for path in self._shown.pop(model, ()):
+            self._site.scene.remove_by_name(path)  # unless it went with its link

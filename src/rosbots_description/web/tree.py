@@ -1,0 +1,81 @@
+"""The models in the world, and the links of the selected one: what is clicked on is selected."""
+
+import threading
+from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
+
+import viser
+
+from ..sim.description import SceneChange
+from .models import Models
+from .panel import Panel
+from .selection import Selection
+
+MOST = 60  # rows that are shown; what is looked for is found by a part of its name
+
+
+class TreeRow(NamedTuple):
+    """A model, or one of its links."""
+
+    model: str
+    link: str | None
+
+    @property
+    def text(self) -> str:
+        """Return what its button says."""
+        return self.model if self.link is None else f'\u2514 {self.link}'
+
+
+class ModelTree(Panel):
+    """A button for each model, and below the selected one a button for each of its links."""
+
+    def __init__(
+        self, gui: viser.GuiApi, models: Models, selection: Selection, lock: threading.RLock
+    ) -> None:
+        self._gui, self._models, self._selection, self._lock = gui, models, selection, lock
+        self._rows: dict[TreeRow, viser.GuiButtonHandle] = {}
+        self._find = gui.add_text('Find', '', hint='a part of the name')
+        self._find.on_update(lambda _: self._draw())
+        self._folder = gui.add_folder('In the world')
+        self._rest = gui.add_markdown('', visible=False)
+        selection.on_change(self._draw)
+
+    def apply(self, _change: SceneChange) -> None:
+        """Show models that came, and no longer those that went."""
+        self._draw()
+
+    def _draw(self) -> None:
+        with self._lock:
+            wanted = list(self._wanted())
+            for row in self._rows.keys() - set(wanted[:MOST]):
+                self._rows.pop(row).remove()
+            for order, row in enumerate(wanted[:MOST]):
+                if row not in self._rows:
+                    with self._folder:
+                        button = self._gui.add_button(row.text)
+                    button.on_click(partial(self._choose, row))
+                    self._rows[row] = button
+                button = self._rows[row]
+                button.order = float(order)
+                chosen = row == (self._selection.model, self._selection.link)
+                button.color = 'orange' if chosen else 'gray'
+            left = len(wanted) - MOST
+            self._rest.visible = left > 0
+            self._rest.content = f'and {left} more; *Find* shows those with a part of the name'
+
+    def _wanted(self) -> Iterator[TreeRow]:
+        """Return the rows that have what is looked for in their names, the selected model first."""
+        part = self._find.value.lower()
+        selected = self._selection.model
+        for name in sorted(self._models.all, key=lambda name: name != selected):
+            matches = part in name.lower()
+            if matches or name == selected:
+                yield TreeRow(name, None)
+            if name == selected:
+                for link in self._models.all[name].links:
+                    if matches or part in link.name.lower():
+                        yield TreeRow(name, link.name)
+
+    def _choose(self, row: TreeRow, _event: object) -> None:
+        self._selection.choose(*row)

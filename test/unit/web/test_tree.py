@@ -1,0 +1,53 @@
+"""The tree of models: a button for each, of the selected one also for its links."""
+
+import pytest
+from support.window import model
+
+from rosbots_description.sim.description import SceneChange, ShownModel
+from rosbots_description.web import tree
+
+
+def rows(browser):
+    """Return the labels of the buttons in the tree, from the top."""
+    buttons = [props for kind, props in browser.controls.values() if kind == 'GuiButtonMessage'
+               and props['color'] in ('gray', 'orange')]
+    return [props['label'] for props in sorted(buttons, key=lambda props: props['order'])]
+
+
+def robot(name, *links):
+    (link,) = model(name, 1).links
+    return ShownModel(name, tuple(
+        type(link)(number, one, link.pose) for number, one in enumerate(links)))
+
+
+def test_models_come_and_go_and_a_click_selects(browser, simulator, page):
+    simulator.change(SceneChange(True, (model('b', 1), robot('a', 'base', 'wheel'))))
+    browser.wait_until(lambda: rows(browser) == ['b', 'a'])
+    browser.click('a')
+    browser.wait_until(lambda: rows(browser) == ['a', '└ base', '└ wheel', 'b'])
+    browser.click('└ wheel')
+    browser.wait_until(lambda: (page.selection.model, page.selection.link) == ('a', 'wheel'))
+    browser.wait_until(lambda: browser.controls[browser.control('└ wheel')][1]['color'] == 'orange')
+    simulator.change(SceneChange(removed=('a',)))
+    browser.wait_until(lambda: rows(browser) == ['b'])
+
+
+def test_a_large_world_is_searched(browser, simulator, page, monkeypatch):
+    monkeypatch.setattr(tree, 'MOST', 5)
+    simulator.change(SceneChange(True, tuple(model(f'box_{n}', n) for n in range(100))))
+    browser.wait_until(lambda: rows(browser) == [f'box_{n}' for n in range(5)])
+    assert any('and 95 more' in text for text in browser.texts())
+    browser.choose('Find', 'BOX_77')
+    browser.wait_until(lambda: rows(browser) == ['box_77'])
+    page.selection.choose('box_3')
+    browser.wait_until(lambda: rows(browser) == ['box_3', 'box_77'])
+    assert not any('more' in text for text in browser.texts())
+
+
+@pytest.mark.parametrize('part', ['wheel', 'WHEEL'])
+def test_links_of_the_selected_model_are_found(browser, simulator, page, part):
+    simulator.change(SceneChange(True, (robot('a', 'base', 'wheel_left'), model('b', 9))))
+    page.selection.choose('a')
+    browser.wait_until(lambda: browser.control('└ base'))
+    browser.choose('Find', part)
+    browser.wait_until(lambda: rows(browser) == ['a', '└ wheel_left'])
