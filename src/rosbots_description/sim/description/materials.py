@@ -131,4 +131,4 @@ def material_of_colours(
         own.emissive if emissive is None else emissive[:3],
         own.lit,
         own.both_sides,
-    ), base.image)
+    ), base.image, base.script_file)

@@ -49,12 +49,15 @@ class Plane:
 class Mesh:
     """A triangle mesh read from `path` (an absolute file path) and scaled along its axes.
 
-    `uri` is the address in the description, for messages and markers.
+    `uri` is the address in the description, for messages and markers. `submesh` is the part of the
+    file there that `path` holds, '' for all; `is_centred`, whether it was moved to the origin.
     """
 
     path: str
     scale: Vector = (1.0, 1.0, 1.0)
     uri: str = ''
+    submesh: str = ''
+    is_centred: bool = False
 
 
 Geometry = Box | Sphere | Cylinder | Plane | Mesh
@@ -117,13 +120,15 @@ class Material:
 
     Cameras see the reflection and the alpha of `rgba` (red, green, blue, alpha in 0..1); windows
     that know no reflection show `rgba`. `script` is Gazebo's name for it, `image` the path of a
-    texture, which only cameras see.
+    texture, which only cameras see. `script_file` is
+    the path of the script that defines `script`; '' for those that Gazebo itself has.
     """
 
     rgba: Colour = (0.7, 0.7, 0.7, 1.0)
     script: str = ''
     reflection: Reflection = Reflection()
     image: str = ''
+    script_file: str = field(default='', compare=False)
 
     @classmethod
     def plain(cls, rgba: Colour) -> 'Material':

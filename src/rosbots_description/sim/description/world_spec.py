@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..core import IDENTITY, Pose, Vector
-from .element import PluginSpec
+from ..core import IDENTITY, Pose, Twist, Vector
+from .element import Element, PluginSpec
 from .model_spec import Colour, ModelSpec
 from .physics_settings import PhysicsSettings
 
@@ -46,19 +46,29 @@ class SceneSpec:
 
 @dataclass(frozen=True)
 class ModelState:
-    """Poses of a model and its links in a saved world, in the world frame."""
+    """Poses of a model and its links in a saved world, in the world frame.
+
+    In a world that this simulator saved there are also the twists of links, in the world frame,
+    position [rad or m] and velocity [rad/s or m/s] of joints, target velocity and greatest effort
+    [N m or N] of their motors, and the poses of the principal axes of root links.
+    """
 
     name: str
     pose: Pose | None = None
     links: Mapping[str, Pose] = field(default_factory=dict)
+    twists: Mapping[str, Twist] = field(default_factory=dict)
+    joints: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    motors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    axes: Mapping[str, Pose] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class WorldSpec:
     """A whole world. Models are in the order of the file, each with the pose it resets to.
 
-    `states` and `time` [s] are those of a saved world's <state>. `faults` tells which models were
-    left out, and why.
+    `states` and `time` [s] are those of a saved world's <state>. `parts` are elements that nothing
+    here acts on, as they were written; of <scene> what is not in `scene`. `faults` tells which
+    models were left out, and why.
     """
 
     name: str = 'default'
@@ -69,4 +79,5 @@ class WorldSpec:
     plugins: tuple[PluginSpec, ...] = ()
     states: tuple[ModelState, ...] = ()
     time: float = 0.0
+    parts: tuple[Element, ...] = ()
     faults: tuple[str, ...] = ()

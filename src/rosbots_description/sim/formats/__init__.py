@@ -1,8 +1,9 @@
 """Parsers, one folder per format, and a writer of SDF; each error names file and line."""
 
-from .sdf import load_sdf, load_sdf_light, open_world, sdf_of_model
+from .sdf import load_sdf, load_sdf_light, open_world, sdf_of_model, sdf_of_world
 from .urdf import expand_xacro, load_urdf
 
 __all__ = [
     'expand_xacro', 'load_sdf', 'load_sdf_light', 'load_urdf', 'open_world', 'sdf_of_model',
+    'sdf_of_world',
 ]

@@ -185,6 +185,27 @@ class PhysicsEngine(Protocol):
     def set_root_poses(self, body: EngineBody, poses: Mapping[str, Pose]) -> None:
         """Set the poses of root links; their descendants move along, velocities stay."""
 
+    def settle_poses(self, body: EngineBody) -> Mapping[str, Pose]:
+        """Move a model by rounding errors to poses that `match_poses` restores to the last bit.
+
+        Returns:
+            the poses of the principal axes of inertia of root links, which it needs to that end.
+        """
+
+    def match_poses(
+        self, body: EngineBody, axes: Mapping[str, Pose], links: Mapping[str, Pose]
+    ) -> bool:
+        """Move roots by rounding errors, so that they and the links are exactly where they were.
+
+        Roots and joints must have been set; velocities stay.
+
+        Args:
+            axes: what `settle_poses` returned.
+            links: the poses of the links since then.
+        Returns:
+            whether that was possible; else they are there but for rounding errors.
+        """
+
     def set_root_twist(self, body: EngineBody, link: str, twist: Twist) -> None:
         """Set the twist of a root link's origin; joint velocities and fixed roots stay."""
 

@@ -18,10 +18,10 @@ from ..core import (
     from_rpy,
 )
 from ..description import ModelSpec, PhysicsSettings, WorldSpec
-from ..formats import open_world
+from ..formats import open_world, sdf_of_world
 from ..physics import CompiledModel
-from ..resources import find_world, path_directories
-from ..runtime import Joint, Link, Model, add_empty_world, populate
+from ..resources import find_world, path_directories, write_world
+from ..runtime import Joint, Link, Model, add_empty_world, describe, populate
 from .descriptions import Description, Descriptions, Paths
 
 _LIBRARY = Path(__file__).resolve().parents[2]  # holds worlds/
@@ -175,6 +175,26 @@ class World(runtime.World):
             return super().spawn(model, name or model.spec.name, pose)
         spec, own_pose = self._descriptions.read(model, name, arguments or {})
         return super().spawn(spec, spec.name, compose(pose, own_pose))
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> tuple[str, ...]:
+        """Write the world as it stands as a world file, for `from_file`.
+
+        There every pose is the same to the last bit, and the motion goes on. Plugins and sensors
+        begin anew: odometry, noise and commands are not in the file.
+
+        Args:
+            path: ends in .world or .sdf.
+            overwrite: whether there may be a file already.
+        Returns:
+            what of the world is not in the file, in words.
+
+        Raises:
+            SimError: the file exists or cannot be written.
+        """
+        self._require_open()
+        spec = describe(self)
+        write_world(os.path.abspath(path), sdf_of_world(spec), overwrite)
+        return spec.faults
 
     def model(self, name: str) -> Model:
         """Return the model of that name.

@@ -1,5 +1,6 @@
 """Resolve the addresses of files, and open them safely."""
 
+from .new_file import require_world_path, write_world
 from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within
 from .scratch import SharedFile, SharedFiles
@@ -47,8 +48,10 @@ __all__ = [
     'read_file',
     'refuse_parent_folders',
     'regular_state',
+    'require_world_path',
     'root_tag',
     'substitute_in_tree',
     'substitute_packages',
     'within',
+    'write_world',
 ]

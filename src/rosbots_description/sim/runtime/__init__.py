@@ -4,7 +4,7 @@ from .empty_world import add_empty_world
 from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin import Plugin
-from .population import populate
+from .population import describe, populate
 from .saved_state import SavedState
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .sensor import SensorLife
@@ -13,5 +13,5 @@ from .world import WORLD_FRAMES, Entity, World
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'CollisionFrame', 'Entity', 'FrameTransform', 'Hook', 'Joint',
     'JointStates', 'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState',
-    'SensorLife', 'World', 'add_empty_world', 'populate',
+    'SensorLife', 'World', 'add_empty_world', 'describe', 'populate',
 ]

@@ -46,6 +46,11 @@ class ExternalForces(Hook):
         self._forces.append(ExternalForce(target, apply, start_ns, end_ns))
         self._set_due()
 
+    @property
+    def are_pending(self) -> bool:
+        """Whether a force acts, or will."""
+        return bool(self._forces)
+
     def cancel(self, chosen: Callable[[Link | Joint], bool]) -> None:
         """Cancel the forces on targets for which `chosen` is true."""
         self._forces = [force for force in self._forces if not chosen(force.target)]

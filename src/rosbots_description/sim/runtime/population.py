@@ -1,11 +1,13 @@
-"""Populate a world from a `WorldSpec`."""
+"""Populate a world from a `WorldSpec`, and describe it as one."""
 
 import logging
+from collections.abc import Iterator
+from dataclasses import replace
 
 from ..core import SimError
 from ..description import WorldSpec
 from .world import World
-from .world_file_state import apply_state
+from .world_file_state import apply_state, state_of
 
 logger = logging.getLogger(__name__)
 
@@ -23,7 +25,7 @@ def populate(world: World, spec: WorldSpec) -> None:
     """
     world.name = spec.name
     world.set_physics(spec.physics)
-    world.scene = spec.scene
+    world.scene, world.plugins, world.parts = spec.scene, spec.plugins, spec.parts
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins read it
     for model_spec, pose in spec.models:
         try:
@@ -44,3 +46,34 @@ def populate(world: World, spec: WorldSpec) -> None:
                 "world plugin '%s' (%s, line %d) is not run here", plugin.name, plugin.filename,
                 plugin.element.line,
             )
+
+
+def describe(world: World) -> WorldSpec:
+    """Return the world as it stands, for a file from which `populate` makes the same bit for bit.
+
+    To that end moving models are moved by rounding errors, to poses that the engine can be given.
+
+    `faults` tells what the description has not. Plugins and sensors begin anew there: odometry,
+    noise and commands are not part of it.
+    """
+    models = world.models.values()
+    return WorldSpec(
+        world.name,
+        tuple((replace(model.spec, name=model.name), model.initial_pose) for model in models),
+        world.physics,
+        tuple(world.lights.values()),
+        world.scene,
+        world.plugins,
+        tuple(map(state_of, models)),
+        world.clock.now,
+        world.parts,
+        tuple(_missing(world)),
+    )
+
+
+def _missing(world: World) -> Iterator[str]:
+    for model in world.models.values():
+        if model.left_out:
+            yield f"of model '{model.name}' what was left out: {', '.join(model.left_out)}"
+    if world.external_forces.are_pending:
+        yield 'forces and efforts that act for a time'

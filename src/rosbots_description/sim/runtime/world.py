@@ -19,6 +19,7 @@ from ..core import (
     shortened,
 )
 from ..description import (
+    Element,
     LightSpec,
     ModelSpec,
     PhysicsSettings,
@@ -90,6 +91,9 @@ class World:
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightSpec] = {}
         self.scene = SceneSpec()
+        # Of its file, for the one who saves it: nothing here acts on them.
+        self.plugins: tuple[PluginSpec, ...] = ()
+        self.parts: tuple[Element, ...] = ()
         self.listeners: list[Listener] = []
         self.resources = contextlib.ExitStack()  # of others, which end with the world
         self.paused = False

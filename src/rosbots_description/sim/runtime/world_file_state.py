@@ -1,4 +1,4 @@
-"""Apply the <state> of a saved world: derive joint positions from link poses."""
+"""The <state> of a saved world: apply it to a model, and tell it."""
 
 import math
 from collections.abc import Mapping
@@ -7,20 +7,57 @@ from ..core import IDENTITY, Pose, compose, relative
 from ..description import FIXED, PRISMATIC, WORLD, JointSpec, ModelSpec, ModelState
 from .model import Model
 
+_SAME = 1e-6  # [rad or m] between a joint's position and that of its links, at most
+
+
+def state_of(model: Model) -> ModelState:
+    """Return where a model is and how it moves; it is moved by rounding errors before."""
+    axes = model.engine.settle_poses(model.body)
+    links = model.engine.link_states(model.body)
+    return ModelState(
+        model.name,
+        model.pose,
+        {name: pose for name, (pose, _) in links.items()},
+        {} if model.static else {name: twist for name, (_, twist) in links.items()},
+        {name: joint.state() for name, joint in model.joints.items()},
+        {name: joint.motor for name, joint in model.joints.items()},
+        axes,
+    )
+
 
 def apply_state(model: Model, state: ModelState) -> None:
-    """Set a model's root poses and joint positions from a saved world.
+    """Set a model's root poses and joint positions from a saved world, and velocities if told.
 
     A reset still returns it to its spawn pose, as in Gazebo.
     """
+    engine, body = model.engine, model.body
     if state.pose is not None:
         model.set_pose(state.pose)
-    roots = {name: state.links[name] for name in model.body.roots if name in state.links}
+    roots = {name: state.links[name] for name in body.roots if name in state.links}
     if roots:
-        model.engine.set_root_poses(model.body, roots)
+        engine.set_root_poses(body, roots)
+    for name in roots:
+        if name in state.twists:
+            engine.set_root_twist(body, name, state.twists[name])
     for name, position in joint_positions(model.spec, state).items():
         if name in model.joints:
-            model.joints[name].set_position(position)
+            model.joints[name].set_position(*_exact(position, state.joints.get(name)))
+    for name, motor in state.motors.items():
+        if name in model.joints:
+            model.joints[name].set_motor(*motor)  # until a plugin sets it
+    if state.axes:
+        engine.match_poses(body, state.axes, state.links)
+
+
+def _exact(position: float, told: tuple[float, float] | None) -> tuple[float, float]:
+    """Return the position and velocity of a joint, given the position that its links have.
+
+    What is told has the full turns and the last bits; but links moved by an editor are believed.
+    """
+    if told is None:
+        return position, 0.0
+    is_same = abs(math.remainder(told[0] - position, 2.0 * math.pi)) < _SAME
+    return (told[0] if is_same else position), told[1]
 
 
 def joint_positions(spec: ModelSpec, state: ModelState) -> dict[str, float]:

@@ -119,6 +119,11 @@ class Frames:
         return name in self._roots and name not in self._frames
 
 
+def is_posed_elsewhere(pose: etree._Element | None) -> bool:
+    """Tell whether a <pose> names the frame in which it is given."""
+    return bool(_base_of(pose, ''))
+
+
 def _base_of(pose: etree._Element | None, default: str) -> str:
     """Return the frame in which a <pose> is given: `relative_to`, or `frame` before SDF 1.7."""
     if pose is None:

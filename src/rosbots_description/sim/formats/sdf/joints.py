@@ -9,13 +9,14 @@ from ...core import IDENTITY, Pose, Vector, compose, conjugate, fault, relative,
 from ...description import FIXED, PRISMATIC, REVOLUTE, WORLD, JointSpec, LinkSpec
 from ..xml import required_name, scalar
 from .document import SdfDocument
-from .frames import MODEL_FRAME, Frames
+from .frames import MODEL_FRAME, Frames, is_posed_elsewhere
 from .values import (
     boolean_of,
     limit_of,
     not_negative_of,
     number_of,
     numbers_of,
+    pose_in,
     text_of,
     unit_vector_of,
 )
@@ -65,12 +66,20 @@ def read_sdf_joint(
     if child == WORLD:  # a fixed joint may be reversed
         parent, child = child, parent
     frame = frames.place(element, base=_child_frame(element))
-    spec = JointSpec(
-        name, kind, parent, child, pose=relative(frame, frames.pose_of(child, element))
-    )
+    spec = JointSpec(name, kind, parent, child, pose=_pose_in_child(element, child, frame, frames))
     if kind == FIXED:
         return spec
     return _with_motion(spec, document, element, written, frame, frames)
+
+
+def _pose_in_child(
+    element: etree._Element, child: str, frame: Pose, frames: Frames
+) -> Pose:
+    """Return the pose of the joint's frame in its child, as it was written if that is in it."""
+    pose = element.find('pose')
+    if child == text_of(element, 'child') and not is_posed_elsewhere(pose):
+        return pose_in(pose)
+    return relative(frame, frames.pose_of(child, element))
 
 
 def _child_frame(element: etree._Element) -> str:

@@ -10,7 +10,7 @@ from ...core import IDENTITY, Pose, fault, relative
 from ...description import WORLD, Collision, Inertial, LinkSpec, SensorSpec, Visual
 from ..xml import read_sensor, require_mass, required_name, to_element
 from .document import SdfDocument
-from .frames import Frames
+from .frames import Frames, is_posed_elsewhere
 from .shapes import read_collision, read_visual
 from .values import boolean_of, damping_of, number_of, pose_in
 
@@ -96,7 +96,7 @@ def _shapes(
 
 def _pose_in_link(element: etree._Element, frames: Frames, link_pose: Pose) -> Pose:
     pose = element.find('pose')
-    if pose is not None and (pose.get('relative_to') or pose.get('frame')):
+    if is_posed_elsewhere(pose):
         return relative(frames.place(element), link_pose)
     return pose_in(pose)
 

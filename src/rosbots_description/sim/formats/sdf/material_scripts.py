@@ -41,7 +41,7 @@ def script_material(document: SdfDocument, element: etree._Element, name: str) -
             errors='replace'))
         if (body := _body(text, name)) is not None:
             folder = os.path.dirname(path)
-            return _material(body, name, [
+            return _material(body, name, path, [
                 *(place for place in places if os.path.isdir(place)), folder,
                 os.path.join(os.path.dirname(folder), 'textures')])
     return None
@@ -75,7 +75,7 @@ def _body(text: str, name: str) -> str | None:
     return text[head.end():end]
 
 
-def _material(body: str, name: str, folders: list[str]) -> Material:
+def _material(body: str, name: str, path: str, folders: list[str]) -> Material:
     settings: dict[str, str] = {}
     for key, value in _SETTING.findall(body):
         settings.setdefault(key, value)
@@ -85,7 +85,7 @@ def _material(body: str, name: str, folders: list[str]) -> Material:
     return Material((*diffuse, 1.0), name, Reflection(
         _colour(settings, 'ambient', white), diffuse, _colour(settings, 'specular', black),
         shininess[0] if shininess else 0.0, _colour(settings, 'emissive', black)),
-        _image(settings['texture'], name, folders) if 'texture' in settings else '')
+        _image(settings['texture'], name, folders) if 'texture' in settings else '', path)
 
 
 def _colour(settings: dict[str, str], key: str, default: Vector) -> Vector:

@@ -24,10 +24,11 @@ from ...description import (
 from ...description.inertia import impossible, possible, regularised
 from ..xml import required_name, to_element
 from .document import SdfDocument
+from .exact import REDUCED
 from .frames import MODEL_FRAME, Frames
 from .joints import add_joint_frame, as_trees, read_sdf_joint
 from .links import UNIT_INERTIAL, read_link
-from .values import boolean_of, text_of
+from .values import boolean_of, pose_in, text_of
 
 _READ = ('pose', 'link', 'joint', 'frame', 'plugin', 'model', 'include', 'static', 'self_collide')
 _INCLUDE_READ = ('uri', 'name', 'pose', 'static', 'plugin')
@@ -49,6 +50,7 @@ class ModelParts:
     joints: list[tuple[JointSpec, etree._Element]] = field(default_factory=list)
     plugins: list[PluginSpec] = field(default_factory=list)
     nested: dict[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
+    reduced: dict[str, tuple[str, Pose]] = field(default_factory=dict)  # as in `ModelSpec`
     left_out: list[str] = field(default_factory=list)  # parts that were left out
 
 
@@ -78,6 +80,10 @@ def read_model(
         read_link(document, child, frames, parts.static, self_collide)
         for child in element.iterfind('link')
     ]
+    parts.reduced = {
+        required_name(child): (child.get('attached_to', ''), pose_in(child.find('pose')))
+        for child in element.iterfind('frame') if child.get(REDUCED)
+    }
     for model in nested:
         _merge_nested(parts, model, frames.pose_of(model.name, model.element))
     for child in element.iterfind('joint'):
@@ -168,7 +174,8 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     if not parts.static:
         links = _movable(parts, links, {joint.child for joint in joints})
     return ModelSpec(
-        name, tuple(links), joints, tuple(parts.plugins), parts.static, nested=parts.nested,
+        name, tuple(links), joints, tuple(parts.plugins), parts.static,
+        parts.reduced, parts.nested,
         left_out=tuple(dict.fromkeys(parts.left_out)), location=location(parts.element),
     )
 

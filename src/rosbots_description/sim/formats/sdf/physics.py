@@ -12,7 +12,7 @@ from .document import SdfDocument
 from .values import number_of, numbers_of
 
 # Paths of each setting in <physics>; the first one found counts, those of older versions come last.
-_PATHS: dict[str, tuple[str, ...]] = {
+PATHS: dict[str, tuple[str, ...]] = {
     'step_size': ('max_step_size', 'ode/solver/dt'),
     'max_update_rate': ('real_time_update_rate', 'update_rate'),
     'gravity': ('gravity',),
@@ -25,8 +25,8 @@ _PATHS: dict[str, tuple[str, ...]] = {
     'contact_surface_layer': ('ode/constraints/contact_surface_layer',),
     'contact_max_correcting_vel': ('ode/constraints/contact_max_correcting_vel',),
 }
-_FRICTION = 'ode/solver/friction_model'
-_PYRAMID, _CONE = 'pyramid_model', 'cone_model'
+FRICTION = 'ode/solver/friction_model'
+_PYRAMID, CONE = 'pyramid_model', 'cone_model'
 _READ = ('max_step_size', 'real_time_update_rate', 'update_rate', 'gravity', 'max_contacts', 'ode')
 # The rate only limits the speed of the simulation; the solvers' settings have no counterpart here.
 _IDLE = ('real_time_factor', 'bullet', 'simbody', 'dart')
@@ -51,16 +51,16 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
     chosen = next((p for p in choices if p.get('default') in ('1', 'true')), choices[0])
     _check(document, chosen)
     for field in fields(PhysicsSettings):
-        for path in _PATHS.get(field.name, ()):
+        for path in PATHS.get(field.name, ()):
             element = chosen.find(path)
             if element is not None and scalar(element) and field.name not in settings:
                 settings |= _setting(chosen, path, element, field.name)
-    friction = chosen.find(_FRICTION)
+    friction = chosen.find(FRICTION)
     model = _PYRAMID if friction is None else (friction.text or '').strip()
-    if friction is not None and model not in (_PYRAMID, _CONE):
+    if friction is not None and model not in (_PYRAMID, CONE):
         document.notes.warn(
             friction, f"friction_model '{model}' is not supported; {_PYRAMID} is used")
-    return PhysicsSettings(**settings, friction_cone=model == _CONE)
+    return PhysicsSettings(**settings, friction_cone=model == CONE)
 
 
 def _check(document: SdfDocument, physics: etree._Element) -> None:

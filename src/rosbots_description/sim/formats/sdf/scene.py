@@ -7,6 +7,8 @@ from ...description import SceneSpec
 from .document import SdfDocument
 from .values import boolean_of, colour_of, pose_in
 
+READ_OF_SCENE = ('ambient', 'background', 'shadows')
+
 
 def read_scene(document: SdfDocument, world: etree._Element) -> SceneSpec:
     """Return the <scene> of a world; the default if there is none.
@@ -18,7 +20,7 @@ def read_scene(document: SdfDocument, world: etree._Element) -> SceneSpec:
     if element is None:
         return SceneSpec()
     document.notes.check(
-        element, ('ambient', 'background', 'shadows'), ('grid', 'sky', 'fog', 'origin_visual')
+        element, READ_OF_SCENE, ('grid', 'sky', 'fog', 'origin_visual')
     )
     plain = SceneSpec()
     return SceneSpec(

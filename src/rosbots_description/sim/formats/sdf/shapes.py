@@ -140,9 +140,13 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     except AbsentError as error:
         raise ShapeError(str(error).removeprefix(f'{location(uri_element)}: '), uri) from error
     submesh = text_of(element, 'submesh/name')
+    centred = boolean_of(element, 'submesh/center')
     try:
         if submesh:
-            path = submesh_file(path, submesh, boolean_of(element, 'submesh/center'))
+            address = uri if '://' in uri.removeprefix('file://') else f'file://{path}'
+            path = submesh_file(path, submesh, centred)
+            check_mesh(path, scale)
+            return Mesh(path, scale, address, submesh, centred)
         check_mesh(path, scale)
     except ModelError as error:
         raise ShapeError(str(error), uri) from error

@@ -1,11 +1,15 @@
-"""The <state> of a saved world: poses of models and links."""
+"""The <state> of a saved world: poses of models and links; and the motion, if it is ours."""
+
+from dataclasses import replace
 
 from lxml import etree
 
-from ...core import Pose
+from ...core import Pose, Twist, as_quaternion, as_vector
 from ...description import ModelState
+from ..xml import number, numbers
 from .document import SdfDocument
-from .values import pose_in
+from .exact import AXES, EXACT, MOTOR, VELOCITY
+from .values import number_of, numbers_of, pose_in
 
 _NANOSECONDS = 1e9
 _IDLE = ('wall_time', 'real_time', 'iterations', 'light')
@@ -17,11 +21,12 @@ def read_states(
 ) -> tuple[tuple[ModelState, ...], float]:
     """Return the states of the models in a <state>, and its simulated time [s].
 
-    As in Gazebo only poses are applied, not velocities.
+    As in Gazebo only poses are applied, not velocities, unless this simulator wrote the state.
 
     Raises:
-        ModelError: a pose or time is malformed.
+        ModelError: a pose, velocity or time is malformed.
     """
+    exact = element.get(EXACT) is not None
     notes = document.notes
     notes.check(element, ('sim_time', 'model'), _IDLE)
     states = []
@@ -29,9 +34,9 @@ def read_states(
         links: dict[str, Pose] = {}
         _read_model(document, model, '', links)
         pose = model.find('pose')
-        states.append(
-            ModelState(model.get('name', ''), None if pose is None else pose_in(pose), links)
-        )
+        placed = ModelState(
+            model.get('name', ''), None if pose is None else pose_in(pose), links)
+        states.append(_with_motion(placed, model) if exact else placed)
     return tuple(states), _sim_time(element)
 
 
@@ -48,6 +53,40 @@ def _read_model(
             links[prefix + link.get('name', '')] = pose_in(link.find('pose'))
     for inner in element.iterfind('model'):
         _read_model(document, inner, f'{prefix}{inner.get("name", "")}::', links)
+
+
+def _with_motion(state: ModelState, model: etree._Element) -> ModelState:
+    return replace(state, twists=_twists(model), joints=_joints(model), motors=_motors(model),
+                   axes=_axes(model))
+
+
+def _twists(model: etree._Element) -> dict[str, Twist]:
+    numbers = {link.get('name', ''): numbers_of(link, 'velocity', (0.0,) * 6)
+               for link in model.iterfind('link')}
+    return {name: Twist(as_vector(six[:3]), as_vector(six[3:])) for name, six in numbers.items()}
+
+
+def _joints(model: etree._Element) -> dict[str, tuple[float, float]]:
+    return {joint.get('name', ''): (number_of(joint, 'angle', 0.0), number(joint, VELOCITY, 0.0))
+            for joint in model.iterfind('joint')}
+
+
+def _motors(model: etree._Element) -> dict[str, tuple[float, float]]:
+    found = {}
+    for joint in model.iterfind('joint'):
+        if joint.get(MOTOR) is not None:
+            target, most = numbers(joint, MOTOR, count=2)
+            found[joint.get('name', '')] = (target, most)
+    return found
+
+
+def _axes(model: etree._Element) -> dict[str, Pose]:
+    found = {}
+    for link in model.iterfind('link'):
+        if link.get(AXES) is not None:
+            x, y, z, *turn = numbers(link, AXES, count=7)
+            found[link.get('name', '')] = Pose((x, y, z), as_quaternion(turn))
+    return found
 
 
 def _sim_time(element: etree._Element) -> float:

@@ -4,7 +4,7 @@ import math
 
 from lxml import etree
 
-from ...core import IDENTITY, Pose, Vector, as_vector, fault, from_rpy
+from ...core import IDENTITY, Pose, Vector, as_vector, fault
 from ...core import normalise as normalise_quaternion
 from ...description import Colour
 from ..xml import (
@@ -17,6 +17,7 @@ from ..xml import (
     scalar_numbers,
     tag_of,
 )
+from .exact import QUATERNION, is_unit, orientation
 
 # SDF writes "no limit" as 1e16; simulated values stay far below this [rad, m, N, N m].
 _ENDLESS = 1e15
@@ -125,6 +126,8 @@ def unit_vector_of(parent: etree._Element, path: str, default: Vector) -> Vector
     element = parent.find(path)
     if element is not None and largest == 0.0:
         raise fault(element, f'<{path}> has no direction; its numbers must not all be zero')
+    if is_unit(vector):
+        return as_vector(vector)  # as it was written, to the last bit
     # Scale first, so that no square underflows or overflows.
     x, y, z = (x / largest for x in vector)
     length = math.sqrt(x * x + y * y + z * z)
@@ -146,4 +149,4 @@ def pose_in(element: etree._Element | None) -> Pose:
     require_near(element, 'the position', (x, y, z))
     if element.get('degrees', '').lower() in ('true', '1'):
         angles = [math.radians(angle) for angle in angles]
-    return Pose((x, y, z), from_rpy(*angles))
+    return Pose((x, y, z), orientation(as_vector(angles), element.get(QUATERNION)))

@@ -10,15 +10,15 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from ...core import ModelError, Pose, fault
-from ...description import LightSpec, ModelSpec, ModelState, PluginSpec, WorldSpec
+from ...description import Element, LightSpec, ModelSpec, ModelState, PluginSpec, WorldSpec
 from ...resources import MAX_XML_BYTES, FindModel, FindPackage, read_file
-from ..xml import required_name
+from ..xml import required_name, to_element
 from .document import SdfDocument, SdfLibrary
 from .frames import Frames
 from .lights import read_light
 from .models import ModelParts, model_spec, read_include, read_model, read_plugin
 from .physics import read_physics
-from .scene import read_scene, read_user_camera
+from .scene import READ_OF_SCENE, read_scene, read_user_camera
 from .state import read_states
 from .values import text_of
 
@@ -98,6 +98,7 @@ def load_world(
         tuple(content.plugins),
         states,
         time,
+        tuple(_parts(world)),
         tuple(content.faults),
     )
     library.log_notes()
@@ -215,3 +216,15 @@ def _read_plugin(
 _READERS = {
     'model': _read_model, 'include': _read_include, 'light': _read_light, 'plugin': _read_plugin
 }
+
+
+def _parts(world: etree._Element) -> Iterator[Element]:
+    """Yield what is kept for the one who saves the world."""
+    for element in world:
+        if element.tag in (*_IDLE, 'gui'):
+            yield to_element(element)
+        elif element.tag == 'scene':
+            kept = to_element(element)
+            inner = tuple(child for child in kept.children if child.tag not in READ_OF_SCENE)
+            if inner:
+                yield replace(kept, children=inner)

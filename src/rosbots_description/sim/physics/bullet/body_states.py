@@ -4,7 +4,7 @@ Converts conventions: PyBullet's poses are of the centre of mass, ours of the li
 Quaternions are (x, y, z, w) in both.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...core import MAX_COORDINATE, Pose, Twist, Vector, add, compose, cross, rotate, subtract
@@ -12,6 +12,7 @@ from ..engine import JointState, Motion, Wrench
 from .body import Body, Part
 from .body_maker import ANY_SPEED
 from .client import pybullet
+from .exact_poses import ExactPlacement
 from .fast_rotation import FastBodies
 from .solver_iterations import Motor
 
@@ -135,6 +136,37 @@ class BodyStates:
                 pybullet.resetBasePositionAndOrientation(number, *com, self._client)
                 pybullet.resetBaseVelocity(number, *velocity, physicsClientId=self._client)
             self._fast.allow_external_work(part.body)
+
+    def settle_poses(self, body: Body) -> dict[str, Pose]:
+        """Move roots by rounding errors so that `match_poses` restores all links; return axes."""
+        axes = {}
+        for root in body.roots:
+            placement = self._placement(body, root, list(body.parts))
+            if root not in body.fixed_roots:
+                placement.settle()
+                self.placements += 1
+            axes[root] = placement.axes
+        return axes
+
+    def match_poses(
+        self, body: Body, axes: Mapping[str, Pose], links: Mapping[str, Pose]
+    ) -> bool:
+        """Move roots by rounding errors so that principal axes and links are these again."""
+        self.placements += 1
+        matched = True
+        for root in (root for root in body.roots if root in axes):
+            mine = [pose for name, pose in links.items() if self._is_of(body, name, root)]
+            matched &= self._placement(body, root, links).match(axes[root], mine)
+        return matched
+
+    def _placement(self, body: Body, root: str, links: Iterable[str]) -> ExactPlacement:
+        names = [name for name in links if self._is_of(body, name, root)]
+        return ExactPlacement(self._client, body.parts[root],
+                              lambda: [self.link_pose(body, name) for name in names])
+
+    def _is_of(self, body: Body, link: str, root: str) -> bool:
+        """Tell whether a link depends on a root."""
+        return link in body.parts and body.parts[link].body == body.parts[root].body
 
     def set_root_twist(self, body: Body, link: str, twist: Twist) -> None:
         """Set the twist of a root link at its origin, in world axes; joint velocities are kept.

@@ -1,0 +1,128 @@
+"""A saved world, opened again: the same poses bit for bit, and the motion goes on."""
+
+import logging
+import math
+
+import pytest
+from support import LIBRARY, XACRO, box_urdf
+
+from rosbots_description.sim import Pose, SimError, World, from_rpy
+
+WORLDS = sorted(path.stem for path in (LIBRARY / 'worlds').glob('*.world'))
+AHEAD = 300  # steps over which a motion is compared
+SAME = 1e-5  # [m] contacts are found anew; the speed of a body that lies there changes by 5 mm/s
+TURN = from_rpy(0.4, 0.3, 0.2)
+CRATE = f'<robot name="crate">{box_urdf("1 0.6 0.4", 2.0)}</robot>'
+LINK = ('<link name="{}"><pose>{}</pose><inertial><pose>0.1 0.2 0.05 0.3 0.2 0.1</pose><mass>2'
+        '</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz><ixy>0.01</ixy></inertia>'
+        '</inertial></link>')
+ARM = f"""<sdf version="1.6"><model name="arm">{LINK.format('base', '0 0 0 0.1 0.2 0.3')}
+{LINK.format('upper', '0.3 0 0 1 0 0')}{LINK.format('slider', '0 0 0.5 0 1 0')}
+<joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
+<pose>0.1 0.2 0.3 0.3 0.2 0.1</pose><axis><xyz>0.6 0.1 0.3</xyz></axis></joint>
+<joint name="slide" type="prismatic"><parent>upper</parent><child>slider</child>
+<axis><xyz>1 0.2 0</xyz><dynamics><friction>0.1</friction></dynamics></axis></joint>
+</model></sdf>"""
+
+
+def poses(world):
+    """Return the poses of all models and links."""
+    links = [link for model in world.models.values() for link in model.links.values()]
+    return {part.scoped_name: part.pose for part in (*world.models.values(), *links)}
+
+
+def farthest(one, other):
+    """Return the greatest distance between two worlds' links [m]."""
+    there = poses(other)
+    return max(math.dist(pose.position, there[name].position)
+               for name, pose in poses(one).items())
+
+
+def require_same(world, other):
+    assert list(other.models) == list(world.models)
+    assert poses(other) == poses(world)
+    assert (other.time, other.physics, other.scene, other.lights, other.name) == (
+        world.time, world.physics, world.scene, world.lights, world.name)
+    for model in world.models.values():
+        there = other.models[model.name]
+        assert there.initial_pose == model.initial_pose
+        assert {name: joint.state() for name, joint in there.joints.items()} == {
+            name: joint.state() for name, joint in model.joints.items()}
+        for link, again in zip(model.links.values(), there.links.values(), strict=True):
+            if not model.static:
+                assert again.twist.linear == pytest.approx(link.twist.linear, abs=1e-12)
+                assert again.twist.angular == pytest.approx(link.twist.angular, abs=1e-12)
+
+
+@pytest.mark.parametrize('name', WORLDS)
+def test_a_robot_drives_on_where_it_was_saved(name, tmp_path, caplog):
+    with World.from_file(name) as world:
+        robot = world.spawn(XACRO, 'rosbots', z=0.5)
+        world.run(seconds=0.7)
+        robot.plugin('diff_drive').command(0.6, 0.4)
+        world.run(1337)
+        caplog.clear()
+        assert world.save(tmp_path / 'saved.world') == ()
+        with World.from_file(tmp_path / 'saved.world') as other:
+            errors = [record for record in caplog.records if record.levelno >= logging.ERROR]
+            assert errors == []
+            require_same(world, other)
+            assert [plugin.spec.name for plugin in other.model('rosbots').plugins] == [
+                plugin.spec.name for plugin in robot.plugins]
+            other.model('rosbots').plugin('diff_drive').command(0.6, 0.4)
+            world.run(AHEAD)
+            other.run(AHEAD)
+            assert farthest(world, other) < SAME
+
+
+def test_bodies_in_flight_keep_their_poses_over_many_saves(tmp_path):
+    with World.empty() as world:
+        arm = world.spawn(ARM, pose=Pose((0.0, 0.0, 30.0), TURN))
+        crate = world.spawn(CRATE, pose=Pose((5.0, 0.0, 40.0), TURN))
+        crate.set_twist(crate.twist._replace(angular=(3.0, -2.0, 1.0)))
+        arm.joint('turn').set_motor(4.0, 50.0)
+        for turn in range(8):
+            world.run(100)
+            world.save(tmp_path / f'{turn}.world')
+            with World.from_file(tmp_path / f'{turn}.world') as other:
+                require_same(world, other)
+                other.save(tmp_path / 'again.world', overwrite=True)
+                with World.from_file(tmp_path / 'again.world') as third:
+                    assert poses(third) == poses(world)
+
+
+def test_a_reset_returns_models_to_where_they_were_spawned(tmp_path):
+    with World.empty() as world:
+        world.spawn(CRATE, 'another', pose=Pose((1.0, 2.0, 3.0), TURN))
+        world.run(500)
+        world.model('ground_plane').set_pose(Pose((0.0, 0.0, -0.5), TURN))
+        world.save(tmp_path / 'saved.world')
+        with World.from_file(tmp_path / 'saved.world') as other:
+            require_same(world, other)
+            other.reset_simulation()
+            assert other.time == 0.0
+            assert math.dist(other.model('another').pose.position, (1.0, 2.0, 3.0)) < 1e-12
+
+
+def test_poses_that_are_changed_by_hand_are_believed(tmp_path):
+    path = tmp_path / 'saved.world'
+    with World.empty() as world:
+        world.spawn(CRATE, pose=Pose((1.0, 2.0, 3.0)))
+        world.run(100)
+        z = repr(world.model('crate').pose.position[2])
+        world.save(path)
+    path.write_text(path.read_text().replace(z, '7.5'))
+    with World.from_file(path) as other:
+        assert other.model('crate').pose.position[2] == pytest.approx(7.5)
+
+
+def test_what_is_not_in_the_file_is_named(tmp_path):
+    sensor = '<gazebo reference="base"><sensor type="sonar" name="s"/></gazebo>'
+    with World.empty() as world:
+        crate = world.spawn(CRATE.replace('</robot>', f'{sensor}</robot>'))
+        assert world.save(tmp_path / 'a.world') == () if not crate.left_out else True
+        world.apply_wrench(next(iter(crate.links.values())), (1.0, 0.0, 0.0))
+        found = world.save(tmp_path / 'b.world')
+        assert found[-1] == 'forces and efforts that act for a time'
+        with pytest.raises(SimError, match='exists already'):
+            world.save(tmp_path / 'b.world')

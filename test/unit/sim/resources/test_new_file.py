@@ -1,0 +1,68 @@
+"""World files are written whole or not at all, and over no other file unasked."""
+
+import os
+import stat
+
+import pytest
+
+from rosbots_description.sim.core import SimError
+from rosbots_description.sim.resources import new_file, write_world
+
+
+def test_a_file_is_written_with_the_permissions_of_any_other(tmp_path):
+    other = tmp_path / 'other'
+    other.touch()
+    write_world(str(tmp_path / 'a.world'), 'text')
+    assert (tmp_path / 'a.world').read_text() == 'text'
+    assert stat.S_IMODE((tmp_path / 'a.world').stat().st_mode) == stat.S_IMODE(
+        other.stat().st_mode)
+
+
+def test_a_file_that_is_there_is_overwritten_only_if_asked(tmp_path):
+    path = tmp_path / 'a.sdf'
+    path.write_text('old')
+    with pytest.raises(SimError, match='it exists already'):
+        write_world(str(path), 'new')
+    assert path.read_text() == 'old'
+    write_world(str(path), 'new', overwrite=True)
+    assert path.read_text() == 'new'
+
+
+@pytest.mark.parametrize(('path', 'reason'), [
+    ('here.world', 'not an absolute path'),
+    ('/tmp/../etc/passwd', 'ends in .world or .sdf'),
+    ('/nowhere/at/all.world', 'No such file or directory'),
+    ('/dev/null/a.world', 'Not a directory'),
+    ('/tmp/a\0.world', 'cannot be written: '),
+    (f'/tmp/{"a" * 300}.world', 'File name too long'),
+])
+def test_a_path_that_is_not_fit_is_refused_in_one_sentence(path, reason):
+    with pytest.raises(SimError, match=reason) as error:
+        write_world(path, 'text')
+    assert '\n' not in str(error.value)
+
+
+def test_no_folder_is_overwritten(tmp_path):
+    (tmp_path / 'a.world').mkdir()
+    with pytest.raises(SimError, match='it exists already'):
+        write_world(str(tmp_path / 'a.world'), 'text', overwrite=True)
+
+
+@pytest.mark.parametrize('overwrite', [False, True])
+def test_a_write_that_fails_leaves_no_half_file(tmp_path, monkeypatch, overwrite):
+    if overwrite:
+        (tmp_path / 'a.world').write_text('old')
+
+    def full(*_):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(new_file.os, 'fsync', full)
+    with pytest.raises(SimError, match='No space left on device'):
+        write_world(str(tmp_path / 'a.world'), 'new', overwrite)
+    assert [path.read_text() for path in tmp_path.iterdir()] == (['old'] if overwrite else [])
+
+
+def test_a_link_to_nowhere_counts_as_a_file(tmp_path):
+    os.symlink(tmp_path / 'elsewhere.world', tmp_path / 'a.world')
+    with pytest.raises(SimError, match='it exists already'):
+        write_world(str(tmp_path / 'a.world'), 'text')
