@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """The command gz, as people type it, acts on the running simulator."""
 
+import os
 import re
 import subprocess
 import sys
+import tempfile
 
 import rospy
 import rostest
 from gazebo_msgs.srv import GetPhysicsProperties
+from rosbots_msgs.srv import SaveWorld
 from simulator import DEADLINE, GROUND, SimulatorTest, proxy
 
 MODEL = """<sdf version="1.6"><model name="any"><link name="body">
@@ -54,6 +57,28 @@ class GzTest(SimulatorTest):
         times = [float(re.search(r'SimTime\[(.+?)\]', line)[1]) for line in lines]
         self.assertEqual(times, sorted(times))
         self.assertLessEqual({'/clock', '/gazebo/model_states'}, set(gz('topic', '-l').split()))
+
+    def test_the_world_is_saved_where_the_user_says(self):
+        self.pause()
+        gz('model', '-s', '-m', 'crate', '-z', '0.5', input=MODEL)
+        save = proxy('save_world', SaveWorld)
+        answer = save('', False)
+        self.assertTrue(answer.success, answer.status_message)
+        self.assertIn('<model name="crate">', answer.sdf)
+        refused = save('crate.world', False)
+        self.assertEqual((refused.success, refused.status_message.partition(';')[0]),
+                         (False, "SaveWorld: Failure - 'crate.world' is not an absolute path"))
+        with tempfile.TemporaryDirectory() as folder:
+            for file, complaint in (('a.world', ''), ('a.world', 'it exists already'),
+                                    ('a.txt', 'ends in .world or .sdf')):
+                ended = subprocess.run(
+                    ['rosrun', 'gazebo_ros', 'save_world', file], cwd=folder, check=False,
+                    capture_output=True, text=True, timeout=3 * DEADLINE)
+                self.assertEqual(ended.returncode, int(bool(complaint)), ended.stderr)
+                self.assertIn(complaint, ended.stderr)
+            self.assertEqual(os.listdir(folder), ['a.world'])
+            with open(f'{folder}/a.world', encoding='utf-8') as file:
+                self.assertEqual(file.read(), answer.sdf)
 
 
 if __name__ == '__main__':

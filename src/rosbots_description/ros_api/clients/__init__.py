@@ -2,5 +2,5 @@
 
 __all__ = [
     'demo', 'gazebo_interface', 'gz', 'joint_follower', 'joint_sliders', 'planar_sample',
-    'server_watch', 'spawn_model', 'velocity_publisher',
+    'save_world', 'server_watch', 'service_program', 'spawn_model', 'velocity_publisher',
 ]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import select
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
-import rosgraph
 import rospy
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import (
@@ -23,36 +20,18 @@ from gazebo_msgs.srv import (
     SetPhysicsProperties,
     SpawnModel,
 )
-from genpy import Message
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from rosbots_msgs.srv import Step
 from std_srvs.srv import Empty
 
-from ...sim.core import SimError, as_quaternion, from_rpy, to_rpy
-from ..transport import (
-    NO_MASTER,
-    has_service,
-    init_node,
-    is_master_running,
-    require_address,
-    topics_of,
-)
+from ...sim.core import as_quaternion, from_rpy, to_rpy
+from ..transport import topics_of
+from . import service_program
 from .model_source import SourceError, canonical_xml, read_file
+from .service_program import NODE, START, Call, CommandError, Lines
 
-DONE, FAILED = 0, 1  # exit codes
-_STDOUT = 1  # the descriptor
-NODE = 'gazebo'  # the simulator, relative to this program's namespace
 PERIOD = 0.2  # of the lines of `gz stats`, as Gazebo's [s, wall]
 SAMPLES = 20  # over which the real-time factor is taken, as in Gazebo
-START = 'start one with: roslaunch gazebo_ros empty_world.launch'
-
-Call = Callable[..., Message]  # (service, type, **request) -> response
-Lines = Iterator[str]  # what a command prints
-
-
-class CommandError(Exception):
-    """A command cannot be done; the message says why."""
-
 
 def run(command: str, flags: argparse.Namespace, ros_arguments: Sequence[str]) -> int:
     """Do a command of gz on the running simulator; return the exit code.
@@ -62,61 +41,8 @@ def run(command: str, flags: argparse.Namespace, ros_arguments: Sequence[str]) -
         flags: see cli.gz; positions in m, angles in rad.
         ros_arguments: ROS remappings.
     """
-    try:
-        _connect(ros_arguments)
-        for line in COMMANDS[command](_call, flags):
-            sys.stdout.write(f'{line}\n')
-            if not _has_reader(_STDOUT):  # as of gz stats | head
-                break
-    except (CommandError, SourceError, SimError) as error:
-        sys.stderr.write(f'gz {command}: {error}\n')
-        return FAILED
-    except NO_MASTER:
-        sys.stderr.write(f'gz {command}: the ROS master has ended\n')
-        return FAILED
-    finally:
-        rospy.signal_shutdown('gz ends')
-    return DONE
-
-
-def _has_reader(descriptor: int) -> bool:
-    """Tell whether what is written there can be read: the other end of a pipe may be closed."""
-    watch = select.poll()
-    watch.register(descriptor, 0)
-    return not watch.poll(0)
-
-
-def _connect(ros_arguments: Sequence[str]) -> None:
-    """Become a node, at once or not at all.
-
-    Raises:
-        CommandError: there is no ROS master.
-        SimError: its address is not valid.
-    """
-    require_address()
-    if not is_master_running('/gz'):
-        raise CommandError(
-            f'there is no ROS master at {rosgraph.get_master_uri()}, and so no simulator; {START}')
-    init_node('gz', ros_arguments, anonymous=True, disable_signals=True, disable_rostime=True,
-              disable_rosout=True)
-
-
-def _call(service: str, service_type: type[Any], **request: object) -> Message:
-    """Return the response of a service of the simulator.
-
-    Raises:
-        CommandError: the service is not there, or reports a failure.
-    """
-    name = rospy.resolve_name(f'{NODE}/{service}')
-    if not has_service(name):
-        raise CommandError(f'there is no simulator with the service {name}; {START}')
-    try:
-        response = rospy.ServiceProxy(name, service_type)(**request)
-    except rospy.ServiceException as error:
-        raise CommandError(f'the call of {name} failed: {error}') from None
-    if not getattr(response, 'success', True):
-        raise CommandError(response.status_message)
-    return response
+    act = COMMANDS[command]
+    return service_program.run(f'gz {command}', lambda call: act(call, flags), ros_arguments)
 
 
 def world(call: Call, flags: argparse.Namespace) -> Lines:

@@ -10,6 +10,7 @@ from . import (  # noqa: F401
     model_setters,
     models,
     physics,
+    saving,
     simulation,
     spawning,
     stepping,

@@ -10,7 +10,7 @@ from gazebo_msgs.srv import GetPhysicsPropertiesResponse
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
 from rosbots_description.cli.gz import parser
-from rosbots_description.ros_api.clients import gz
+from rosbots_description.ros_api.clients import gz, service_program
 from rosbots_description.sim import from_rpy
 
 STATE = SimpleNamespace(
@@ -155,7 +155,7 @@ def test_the_factor_of_time_that_was_reset_is_zero():
 
 def test_a_pipe_whose_other_end_is_closed_has_no_reader():
     read, write = os.pipe()
-    assert gz._has_reader(write)
+    assert service_program._has_reader(write)
     os.close(read)
-    assert not gz._has_reader(write)
+    assert not service_program._has_reader(write)
     os.close(write)
