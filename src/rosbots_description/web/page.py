@@ -23,6 +23,7 @@ from .panel import Panel
 from .scene import SceneView
 from .selection import Selection
 from .show import ShowPanel
+from .start_view import StartView
 from .tree import ModelTree
 
 logger = logging.getLogger(__name__)
@@ -83,7 +84,8 @@ class Page:
         self.selection = Selection(models, self._lock)
         site.gui.add_command('Select nothing', hotkey='escape').on_trigger(
             lambda _: self.selection.choose(None))
-        self._scene = SceneView(site, self.selection.click)
+        self._start = StartView(models)
+        scene = SceneView(site, self.selection.click)
         outline = Outline(site.scene, models, self.selection)
         self._bar = Bar(site.gui, simulator.time, self._notify)
         history = History(site.gui, self._notify)
@@ -99,11 +101,24 @@ class Page:
             tree = ModelTree(site.gui, models, self.selection, self._lock)
         with tabs.add_tab('Show', viser.Icon.EYE):
             follow = FollowPanel(site, models, self.selection)
-            show = ShowPanel(site, self._scene, models, self.selection, self._lock)
+            show = ShowPanel(site, scene, models, self.selection, self._lock)
             contacts = ContactsPanel(site, simulator.contacts, self._lock)
         self._panels: tuple[Panel, ...] = (
-            models, self._scene, self.selection, outline, self._bar, history, drive,
-            inspector, change, tree, follow, show, contacts)
+            models,
+            self._start,
+            scene,
+            self.selection,
+            outline,
+            self._bar,
+            history,
+            drive,
+            inspector,
+            change,
+            tree,
+            follow,
+            show,
+            contacts,
+        )
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 
@@ -148,7 +163,7 @@ class Page:
 
     def _look(self) -> None:
         """Let those who are new look at everything."""
-        eye, target = self._scene.start_view()
+        eye, target = self._start.choose()
         camera = self._site.initial_camera
         camera.position, camera.look_at = eye, target
         for client in self._new:

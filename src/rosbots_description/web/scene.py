@@ -9,12 +9,11 @@ from functools import partial
 import numpy as np
 import viser
 
-from ..sim.core import UP, ModelError, Pose, Vector, compose
+from ..sim.core import UP, ModelError
 from ..sim.description import Plane, SceneChange, SceneSpec, ShownLink, ShownModel, ShownMotion
 from ..sim.rendering import Look, visual_gltf
-from .bounds import corners
 from .lights import add_light, rgb_bytes
-from .nodes import link_node, model_node, node, place, pose_of, wxyz
+from .nodes import link_node, model_node, node, place, wxyz
 from .panel import Panel
 
 logger = logging.getLogger(__name__)
@@ -80,25 +79,6 @@ class SceneView(Panel):
                 for shown in self._models.values():
                     for link in shown.model.links:
                         self._add_visuals(link, shown.model.name)
-
-    def start_view(self) -> tuple[Vector, Vector]:
-        """Return eye and target [m] of a view of everything, from ahead at the right."""
-        low, high = self._bounds()
-        middle, extent = (low + high) / 2.0, float(np.linalg.norm(high - low))
-        eye = middle + max(0.95 * extent, 1.0) * np.array([0.66, -0.62, 0.42])
-        return (eye[0], eye[1], eye[2]), (middle[0], middle[1], middle[2])
-
-    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the lowest and highest corner of all but grounds [m]."""
-        points: list[Vector] = []
-        for shown in self._models.values():
-            for link in shown.model.links:
-                pose = pose_of(shown.links[link.number])
-                points += [compose(pose, Pose(corner)).position
-                           for corner in corners(link.visuals)]
-        if not points:
-            return np.full(3, -1.0), np.full(3, 1.0)
-        return np.min(points, axis=0), np.max(points, axis=0)
 
     def _light(self, change: SceneChange) -> None:
         scene = self._site.scene
