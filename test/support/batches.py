@@ -1,5 +1,9 @@
 """Scenarios for tests of batches."""
 
+import contextlib
+import resource
+import signal
+from collections.abc import Iterator
 from copy import deepcopy
 from typing import Any
 
@@ -28,6 +32,19 @@ def pushed_ball(**changes: Any) -> dict[str, Any]:
         'parameters': {'force': {'grid': [1.0, 3.0]}},
         **changes,
     })
+
+
+@contextlib.contextmanager
+def full_disk(most: int) -> Iterator[None]:
+    """Forbid files of more than `most` bytes, for the length of a `with` statement."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, handler)
 
 
 def only_row(scenario: dict[str, Any], **parameters: Any) -> dict[str, Any]:

@@ -80,7 +80,7 @@ ARROWS = {
     'gym': 'sim sim/plugins sim/rendering sim/sensors',
     'gym/tasks': 'gym sim sim/description',
     'cli':
-        'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web',
+        'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web batch',
     '': '',
 }
 

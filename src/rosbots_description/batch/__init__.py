@@ -8,11 +8,12 @@ from .conditions import Condition
 from .parameters import Parameters, Run
 from .policy import Commands, Policy, load_policy
 from .records import JointReading, Statistics, check_vectors, value_at
-from .runner import Result, run
+from .runner import Progress, Result, run
 from .scenario import ModelEntry, RecordEntry, Scenario, ScenarioError, ScenarioFile
 
 __all__ = [
     'ClusterError', 'Commands', 'Condition', 'JointReading', 'ModelEntry', 'Parameters', 'Policy',
+    'Progress',
     'RecordEntry', 'Result', 'Run', 'Scenario', 'ScenarioError', 'ScenarioFile', 'Statistics',
     'check_vectors', 'load_policy', 'run', 'value_at',
 ]

@@ -8,8 +8,11 @@ import importlib
 import os
 import secrets
 import shutil
+import signal
+import socket
 import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from ..sim import SimError
@@ -20,13 +23,13 @@ from .simulation import empty_row, simulate
 ATTEMPTS = 5  # to make a run whose worker is lost
 MAX_PENDING = 2000  # runs that Ray knows of; a few for each of a thousand processors
 WAIT = 0.2  # longest wait for further rows before those that are there are taken [s, wall]
+CONNECT_TIMEOUT = 10.0  # [s, wall]
 STORE_BYTES = 100_000_000  # of the shared memory for objects; rows do not need it
 _MAX_PLACE = 30  # characters of a folder in which Ray's sockets have names that Linux takes
 # For Ray on this machine alone: only the loopback interface (the switch is named after the systems
 # where it is off by default), only processes that have the token, and no statistics sent.
 _PRIVATE = {'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0', 'RAY_AUTH_MODE': 'token',
-            'RAY_USAGE_STATS_ENABLED': '0',
-            'RAY_AUTH_TOKEN': secrets.token_hex(32)}  # one for this process: Ray reads it once
+            'RAY_USAGE_STATS_ENABLED': '0'}
 
 
 class ClusterError(SimError):
@@ -112,16 +115,26 @@ def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
     """Yield the module ray, connected; disconnect, and end what was started here."""
     if workers is not None and (workers < 1 or address is not None):
         raise ClusterError('workers takes at least 1, or 0 for none, and only without an address')
-    if address is None:
-        with _environment(_PRIVATE), _place() as place:
-            ray = _ray()
-            with _session(ray, num_cpus=workers, include_dashboard=False, _temp_dir=place,
-                          object_store_memory=STORE_BYTES, address='local'):
-                yield ray
-    else:
-        ray = _ray()
+    ray = _ray()
+    _require_listener(address)
+    if address is not None or ray.is_initialized():
         with _session(ray, address=address):
             yield ray
+        return
+    with _place() as place, private_environment(), _session(
+            ray, num_cpus=workers, include_dashboard=False, _temp_dir=place,
+            object_store_memory=STORE_BYTES, address='local'):
+        yield ray
+
+
+def _require_listener(address: str | None) -> None:
+    """Refuse an address at which nothing listens, for which Ray would wait for minutes."""
+    host, _, port = (address or '').removeprefix('ray://').rpartition(':')
+    if host and port.isdecimal():
+        try:
+            socket.create_connection((host.strip('[]'), int(port)), CONNECT_TIMEOUT).close()
+        except (OSError, OverflowError) as error:
+            raise ClusterError(f"no Ray cluster at '{address}': {error}") from None
 
 
 @contextlib.contextmanager
@@ -133,13 +146,28 @@ def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
     try:
         ray.init(log_to_driver=False, configure_logging=False, logging_level='error', **arguments)
     except Exception as error:  # Ray raises many kinds
+        ray.shutdown()
         where = arguments['address']
         what = 'Ray cannot be started' if where == 'local' else f"no Ray cluster at '{where}'"
-        raise ClusterError(f'{what}: {error}') from None
+        raise ClusterError(f'{what}: {str(error).strip().splitlines()[0]}') from None
+    try:
+        with _silent():
+            yield
+    finally:
+        ray.shutdown()
+
+
+@contextlib.contextmanager
+def _silent() -> Iterator[None]:
+    """Keep what Ray says of lost workers, even without `log_to_driver`, from the console."""
+    from ray._private import worker
+
+    say = worker.print_to_stdstream
+    worker.print_to_stdstream = lambda *_arguments, **_options: None
     try:
         yield
     finally:
-        ray.shutdown()
+        worker.print_to_stdstream = say
 
 
 def _ray() -> Any:  # noqa: ANN401  the module
@@ -154,23 +182,45 @@ def _ray() -> Any:  # noqa: ANN401  the module
 
 
 @contextlib.contextmanager
-def _environment(values: dict[str, str]) -> Iterator[None]:
-    """Set those environment variables that are not set."""
-    absent = {name: value for name, value in values.items() if name not in os.environ}
-    os.environ.update(absent)
+def private_environment() -> Iterator[None]:
+    """Set the environment of a Ray that is started here; Ray may have been imported before."""
+    values = {**_PRIVATE, 'RAY_AUTH_TOKEN': secrets.token_hex(32)}
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    _read_environment()
     try:
         yield
     finally:
-        for name in absent:
-            os.environ.pop(name, None)
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+        _read_environment()
+
+
+def _read_environment() -> None:
+    """Let Ray read the environment again, as its own tests do."""
+    from ray import _raylet
+    from ray._private import ray_constants
+
+    ray_constants.ENABLE_RAY_CLUSTER = ray_constants.env_bool(
+        ray_constants.ENABLE_RAY_CLUSTERS_ENV_VAR, True)
+    inner: Any = _raylet  # compiled, without types
+    inner.Config.initialize('')
+    inner.AuthenticationTokenLoader.instance().reset_cache()
 
 
 @contextlib.contextmanager
 def _place() -> Iterator[str]:
-    """Yield a folder for Ray's files and for those of its workers; remove it."""
+    """Yield a folder for Ray's files; remove it, and end the processes that still use it."""
     parent = tempfile.gettempdir()
     made = tempfile.mkdtemp(prefix='rb', dir=parent if len(parent) <= _MAX_PLACE else '/tmp')
     try:
         yield made
     finally:
+        for process in Path('/proc').glob('[0-9]*'):  # Ray leaves some where it could not start
+            with contextlib.suppress(OSError):
+                if made.encode() in (process / 'cmdline').read_bytes():
+                    os.kill(int(process.name), signal.SIGKILL)
         shutil.rmtree(made, ignore_errors=True)

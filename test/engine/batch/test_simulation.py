@@ -4,10 +4,13 @@ import logging
 
 import pytest
 from support import ROOT
-from support.batches import FLOATING, MASS, only_row, pushed_ball
+from support.batches import BALL, FLOATING, MASS, full_disk, only_row, pushed_ball
 
 from rosbots_description.batch import run
 
+BOX_OF_MESH = f'''<robot name="b"><link name="l"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>
+<mesh filename="file://{ROOT}/meshes/wheel.dae"/></geometry></collision></link></robot>'''
 EXAMPLE = ROOT / 'config' / 'scenarios' / 'drive.yaml'
 
 
@@ -149,6 +152,22 @@ def test_the_runs_beside_a_bad_one_are_made():
     scenario = pushed_ball(parameters={'world': {'grid': ['nowhere', 'empty']}, 'force': 3.0},
                            world='$world')
     assert run(scenario, workers=0).outcomes == {'passed': 1, 'failed': 0, 'error': 1}
+
+
+def test_a_full_disk_ends_runs_that_need_files_and_keeps_the_rows(tmp_path):
+    model = tmp_path / 'box.urdf'
+    model.write_text(BOX_OF_MESH)
+    ball = tmp_path / 'ball.urdf'
+    ball.write_text(BALL)
+    scenario = pushed_ball(models=[{'name': 'ball', 'file': '$file'}], commands=[], conditions=[],
+                           parameters={'file': {'grid': [str(model), str(ball)]}})
+    with full_disk(3000):
+        made = run(scenario, workers=0, output=tmp_path / 'out')
+    assert made.outcomes == {'passed': 1, 'failed': 0, 'error': 1}
+    assert 'nothing can be written in' in made.table.to_pylist()[0]['reason']
+    assert made.unwritten == f'rows cannot be written to {tmp_path / "out"}: File too large'
+    again = run(scenario, workers=0, output=tmp_path / 'out')
+    assert (again.unwritten, again.outcomes['passed']) == ('', 2)
 
 
 def test_an_interrupted_batch_is_resumed(tmp_path):

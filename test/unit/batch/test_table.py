@@ -1,11 +1,8 @@
 """Rows in files: complete at any time, kept, in order, and no worse for a full disk."""
 
-import resource
-import signal
-
 import pytest
 from pyarrow import parquet
-from support.batches import pushed_ball
+from support.batches import full_disk, pushed_ball
 
 from rosbots_description.batch import ScenarioError, ScenarioFile
 from rosbots_description.batch.simulation import empty_row
@@ -21,17 +18,6 @@ def file():
 def rows(file, *numbers):
     return [{**empty_row(file, file.parameters.run(number)), 'outcome': 'passed', 'x_end': 1.5}
             for number in numbers]
-
-
-@pytest.fixture
-def full_disk():
-    """Yield a function that forbids files of more than some bytes."""
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    yield lambda most: resource.setrlimit(
-        resource.RLIMIT_FSIZE, (most if most >= 0 else limits[0], limits[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    signal.signal(signal.SIGXFSZ, handler)
 
 
 def test_flushed_rows_can_be_read_at_any_time(file, tmp_path):
@@ -91,15 +77,14 @@ def test_a_folder_that_cannot_be_made_is_named(file, tmp_path):
         Table(file, tmp_path / 'taken')
 
 
-def test_rows_wait_for_a_full_disk(file, tmp_path, full_disk):
+def test_rows_wait_for_a_full_disk(file, tmp_path):
     table = Table(file, tmp_path)
     table.add(rows(file, 0)[0])
-    full_disk(100)
-    table.flush()
+    with full_disk(100):
+        table.flush()
     assert table.fault == f'rows cannot be written to {tmp_path / "rows"}: File too large'
     assert list((tmp_path / 'rows').iterdir()) == []
     table.add(rows(file, 1)[0])
-    full_disk(-1)
     table.flush()
     assert table.fault == ''
     assert list(Table(file, tmp_path).rows) == [0, 1]

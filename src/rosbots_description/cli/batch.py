@@ -1,0 +1,128 @@
+"""Front end of `./rosbots batch`: many runs of one scenario."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import signal
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .program import INTERRUPTED
+
+if TYPE_CHECKING:
+    from ..batch import Progress, Result
+
+PASSED, NOT_PASSED, USAGE = 0, 1, 2  # exit codes
+FOLDER = 'batch_output'
+REASONS = 5  # that are printed, the most frequent ones
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f'{text!r} is not a number of processes')
+    return int(text)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the options."""
+    made = argparse.ArgumentParser(
+        prog='./rosbots batch', description='Make all runs of a scenario; one row each in Parquet.',
+        epilog='The exit code is 0 if all runs passed, 1 if not, 2 if none could be made.')
+    made.add_argument('scenario', metavar='SCENARIO.yaml', help='see doc/batch.md')
+    where = made.add_mutually_exclusive_group()
+    where.add_argument('--workers', type=_count, metavar='N',
+                       help='processes on this machine (default: one per processor); 0 makes the '
+                            'runs in this one, without Ray')
+    where.add_argument('--address', help="of a Ray cluster, or 'auto' for the one of this machine")
+    made.add_argument('--output', type=Path, metavar='DIR',
+                      help=f'for rows.parquet (default: {FOLDER}/SCENARIO); rows that are there '
+                           'are kept')
+    return made
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Make the runs that have no row yet; return the exit code."""
+    options = parser().parse_args(arguments)
+    output = options.output or Path(FOLDER, Path(options.scenario).stem)
+    signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
+    try:
+        from ..batch import ClusterError, ScenarioError, run
+    except ImportError as error:
+        return _fail(f"the Python package {error.name} is not installed; ./rosbots setup or "
+                     "pip install '.[ray]' installs it")
+    done = 0
+
+    def count(rows: int, total: int, repeated: int) -> None:
+        nonlocal done
+        done = rows
+        show(rows, total, repeated)
+
+    try:
+        with _bar() as show:
+            result = run(options.scenario, workers=options.workers, address=options.address,
+                         output=output, progress=count)
+    except (ScenarioError, ClusterError) as error:
+        return _fail(str(error))
+    except (KeyboardInterrupt, SystemExit):
+        _say(f'interrupted; {done} rows are in {output}, and the same command makes the others')
+        return INTERRUPTED
+    return _report(result, output)
+
+
+def _report(result: Result, output: Path) -> int:
+    outcomes = result.outcomes
+    print(f'{result.table.num_rows} runs: {outcomes["passed"]} passed, {outcomes["failed"]} failed,'
+          f' {outcomes["error"]} with an error')
+    if result.repeated:
+        print(f'{result.repeated} were repeated, since their workers were lost')
+    rows = result.table.select(['run', 'outcome', 'reason']).to_pylist()
+    reasons = Counter((row['outcome'], row['reason']) for row in rows if row['reason'])
+    first = {(row['outcome'], row['reason']): row['run'] for row in reversed(rows)}
+    for key, count in reasons.most_common(REASONS):
+        print(f'  {key[0]} {count} x, as run {first[key]}: {key[1]}')
+    if len(reasons) > REASONS:
+        print(f'  and {len(reasons) - REASONS} other reasons')
+    if result.unwritten:
+        return _fail(f'{result.unwritten}; make room and repeat the command', NOT_PASSED)
+    print(f'rows: {output / "rows.parquet"}')
+    return PASSED if outcomes['passed'] == result.table.num_rows else NOT_PASSED
+
+
+@contextlib.contextmanager
+def _bar() -> Iterator[Progress]:
+    """Yield what shows progress, if there is a terminal for it."""
+    if not sys.stderr.isatty():
+        yield lambda _rows, _total, _repeated: None
+        return
+    from rich import progress
+    from rich.console import Console
+
+    columns = (progress.TextColumn('{task.description}'), progress.BarColumn(),
+               progress.MofNCompleteColumn(), progress.TimeRemainingColumn())
+    with progress.Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task('runs', total=None)
+
+        def show(rows: int, total: int, repeated: int) -> None:
+            text = f'runs ({repeated} repeated)' if repeated else 'runs'
+            bar.update(task, completed=rows, total=total, description=text)
+
+        yield show
+
+
+def _fail(sentence: str, code: int = USAGE) -> int:
+    _say(sentence)
+    return code
+
+
+def _say(sentence: str) -> None:
+    sys.stderr.write(f'batch: {sentence}\n')
+
+
+if __name__ == '__main__':
+    from .program import run as run_program
+
+    sys.exit(run_program(main))

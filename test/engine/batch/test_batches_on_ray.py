@@ -1,0 +1,153 @@
+"""Batches on Ray: the same rows whatever the workers, and nothing lost with those that die."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+from pyarrow import parquet
+from support.batches import pushed_ball
+
+from rosbots_description.batch import ClusterError, cluster, run
+from rosbots_description.cli.launched import descendants
+
+pytest.importorskip('ray')
+LISTEN, LOOPBACK = '0A', '0100007F'  # in /proc/net/tcp; ::ffff:127.0.0.1 ends so, too
+PATIENCE = 60.0  # [s, wall] for what takes a few, on a busy machine
+# Ends processes at a defined moment: in the middle of a run, at the first attempt or at each.
+MORTAL = """
+import os, signal
+from pathlib import Path
+
+def make(run):
+    mark = Path(__file__).with_name(f'{{run.number}} ended')
+    def act(time, readings):
+        if time > 0.4 and (run.number in {always} or run.number in {once} and not mark.exists()):
+            mark.touch()
+            for victim in {victims}:
+                os.kill(victim, signal.SIGKILL)
+    return act
+"""
+
+
+def scenario(folder, once=(), always=(), victims='[os.getpid()]'):
+    """Return a scenario of twenty runs, of which some kill `victims`, by default their worker."""
+    (folder / 'policy.py').write_text(MORTAL.format(once=once, always=always, victims=victims))
+    return pushed_ball(policy=f'{folder / "policy.py"}:make', repeat=10, seed=3, parameters={
+        'force': {'grid': [0.5, 3.0]}, 'start': {'uniform': [0.0, 1.0]}},
+        models=[{**pushed_ball()['models'][0], 'pose': {'x': '$start', 'z': 5.0}}],
+        conditions=['x_end - start > 0.5'])
+
+
+@pytest.fixture(autouse=True)
+def scratch():
+    """Assert that Ray leaves no folder behind."""
+    before = set(Path(tempfile.gettempdir()).glob('rb*'))
+    yield
+    assert set(Path(tempfile.gettempdir()).glob('rb*')) <= before
+
+
+def test_lost_workers_lose_no_run_but_those_that_always_end_them(tmp_path, capfd):
+    expected = run(scenario(tmp_path), workers=0).table.to_pylist()
+    ours, addresses = os.getpid(), set()
+
+    def look(done, _total, _repeated):
+        if done == 1:
+            addresses.update(listening(descendants(ours)))
+
+    made = run(scenario(tmp_path, once=[3, 7], always=[12]), workers=2, progress=look)
+    rows = made.table.to_pylist()
+    assert made.outcomes == {'passed': 9, 'failed': 10, 'error': 1}
+    assert rows[12]['reason'] == f'the worker ended in each of {cluster.ATTEMPTS} attempts'
+    assert made.repeated == 2 + cluster.ATTEMPTS - 1
+    assert rows[:12] + rows[13:] == expected[:12] + expected[13:]
+    assert addresses
+    assert all(address.endswith(LOOPBACK) for address in addresses)
+    assert capfd.readouterr() == ('', '')
+
+
+def listening(processes):
+    """Return the addresses at which processes listen, in hexadecimal."""
+    addresses, sockets = {}, set()
+    for version in ('tcp', 'tcp6'):
+        for line in Path(f'/proc/net/{version}').read_text().splitlines()[1:]:
+            _, local, _, state, *_, inode = line.split()[:10]
+            if state == LISTEN:
+                addresses[f'socket:[{inode}]'] = local.partition(':')[0]
+    for process in processes:
+        with contextlib.suppress(FileNotFoundError):  # it ends meanwhile
+            sockets |= {os.readlink(file) for file in Path(f'/proc/{process}/fd').iterdir()}
+    return {address for inode, address in addresses.items() if inode in sockets}
+
+
+def test_a_lost_machine_of_several_loses_no_run(tmp_path, monkeypatch):
+    expected = run(scenario(tmp_path), workers=0).table
+    with tempfile.TemporaryDirectory(prefix='rb') as place, cluster.private_environment():
+        Path(place, 'ray').mkdir()  # for what Cluster writes
+        monkeypatch.setenv('RAY_TMPDIR', place)
+        monkeypatch.setenv('RAY_health_check_period_ms', '500')  # by default it takes 15 s
+        from ray.cluster_utils import Cluster
+
+        several = Cluster(initialize_head=True, head_node_args={
+            'num_cpus': 0, 'include_dashboard': False, 'include_log_monitor': False,
+            'no_monitor': True, 'temp_dir': place, 'object_store_memory': cluster.STORE_BYTES})
+        try:
+            for _ in range(2):
+                several.add_node(num_cpus=1, object_store_memory=cluster.STORE_BYTES)
+            all_of_it = '[os.getppid(), os.getpid()]'  # what Ray has there, and the worker
+            doomed = scenario(tmp_path, once=[7], victims=all_of_it)
+            made = run(doomed, address=several.address)
+        finally:
+            several.shutdown()
+    assert made.repeated >= 1
+    assert made.table.equals(expected)
+
+
+def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
+    endless = scenario(tmp_path) | {'repeat': 5000}
+    path = tmp_path / 'endless.yaml'
+    path.write_text(yaml.safe_dump(endless))
+    command = subprocess.Popen(
+        [sys.executable, '-m', 'rosbots_description.cli.batch', str(path), '--workers', '1',
+         '--output', str(tmp_path / 'rows')], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
+    try:
+        end = time.monotonic() + PATIENCE
+        while not list(tmp_path.glob('rows/rows/*.parquet')) and time.monotonic() < end:
+            time.sleep(0.05)
+        processes = descendants(command.pid)
+        assert processes
+        command.send_signal(signal.SIGINT)
+        printed, said = command.communicate(timeout=PATIENCE)
+    finally:
+        command.kill()
+    assert (command.returncode, printed) == (130, '')
+    rows = parquet.read_table(tmp_path / 'rows' / 'rows').num_rows
+    assert said == (f'batch: interrupted; {rows} rows are in {tmp_path / "rows"}, and the same '
+                    'command makes the others\n')
+    end = time.monotonic() + PATIENCE
+    while (left := [one for one in processes if Path(f'/proc/{one}').exists()]):
+        assert time.monotonic() < end, left
+        time.sleep(0.05)
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    ({'workers': -1}, 'workers takes at least 1, or 0 for none'),
+    ({'workers': 2, 'address': 'auto'}, 'only without an address'),
+    ({'address': '127.0.0.1:1'}, "no Ray cluster at '127.0.0.1:1': "),
+])
+def test_a_cluster_that_is_not_there_is_named(arguments, said):
+    with pytest.raises(ClusterError, match=said):
+        run(pushed_ball(), **arguments)
+
+
+def test_without_ray_one_sentence_says_what_to_do(monkeypatch):
+    monkeypatch.setitem(sys.modules, 'ray', None)
+    with pytest.raises(ClusterError, match='the Python package ray is not installed'):
+        run(pushed_ball(), workers=2)
