@@ -66,8 +66,8 @@ ARROWS = {
         'sim/core sim/description sim/runtime sim/rendering '
         'ros_api/server ros_api/messages ros_api/transport',
     'ros_api/clients':
-        'sim/core sim/description sim/resources sim/rendering ros_api/messages ros_api/transport '
-        'ros_api/views',
+        'sim/core sim/description sim/public sim/resources sim/rendering sim/runtime '
+        'ros_api/messages ros_api/transport ros_api/views batch',
     'ros_api/window':
         'sim/core sim/description sim/resources sim/formats '
         'ros_api/messages ros_api/transport ros_api/clients',

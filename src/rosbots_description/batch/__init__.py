@@ -6,14 +6,14 @@ A run needs no ROS. Ray, which only `run` imports, spreads runs over processes a
 from .cluster import ClusterError
 from .conditions import Condition
 from .parameters import Parameters, Run
-from .policy import Commands, Policy, load_policy
+from .policy import Commands, Policy, PolicyError, commands_of, load_policy
 from .records import JointReading, Statistics, check_vectors, value_at
 from .runner import Progress, Result, run
 from .scenario import ModelEntry, RecordEntry, Scenario, ScenarioError, ScenarioFile
 
 __all__ = [
     'ClusterError', 'Commands', 'Condition', 'JointReading', 'ModelEntry', 'Parameters', 'Policy',
-    'Progress',
+    'PolicyError', 'Progress',
     'RecordEntry', 'Result', 'Run', 'Scenario', 'ScenarioError', 'ScenarioFile', 'Statistics',
-    'check_vectors', 'load_policy', 'run', 'value_at',
+    'check_vectors', 'commands_of', 'load_policy', 'run', 'value_at',
 ]

@@ -54,6 +54,24 @@ def load_policy(address: str, folder: str, run: Run) -> Policy:
     return policy
 
 
+def commands_of(
+    policy: Policy, address: str, time: float, readings: Mapping[str, Any]
+) -> Commands:
+    """Return the commands of a policy at a time [s].
+
+    Raises:
+        PolicyError: it raised, or returned anything else.
+    """
+    where = f"the policy '{address}' at {time:g} s"
+    try:
+        commands = policy(time, dict(readings))
+    except Exception as error:
+        raise PolicyError(f'{where} raised {in_words(error)}') from error
+    if not isinstance(commands, Mapping | None):
+        raise PolicyError(f'{where} returned {commands!r}; it returns messages by topic')
+    return commands or {}
+
+
 def in_words(error: BaseException) -> str:
     """Return an exception's type and text, and the line of a user's file that raised it."""
     trace, line = error.__traceback__, ''

@@ -3,14 +3,14 @@
 import contextlib
 import logging
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
 from ..sim import Joint, Link, Model, Odometry, SimError, World
 from ..sim.core import one_line
 from .parameters import Run
-from .policy import PolicyError, in_words, load_policy
+from .policy import Policy, PolicyError, commands_of, in_words, load_policy
 from .records import JointReading, Statistics, value_at
 from .scenario import RecordEntry, Scenario, ScenarioError, ScenarioFile
 from .topics import Topics
@@ -108,7 +108,8 @@ class _Simulation:
         """Run to the end, with commands and records in between; the policy acts first."""
         scenario = self._scenario
         steps = _StepsOf(scenario, world)
-        policy = scenario.policy and load_policy(scenario.policy, self._file.folder, self._run)
+        policy = load_policy(scenario.policy, self._file.folder, self._run) \
+            if scenario.policy else None
         for step in steps.all:
             world.run(step - world.clock.steps)
             if self._fault:
@@ -118,23 +119,17 @@ class _Simulation:
                     self._take(name, record, _state(thing))
             if step == steps.end:
                 break
-            if callable(policy) and step in steps.ticks:
+            if policy and step in steps.ticks:
                 self._act(policy, world.time)
             for index in steps.commands.get(step, ()):
                 command = scenario.commands[index]
                 with _within(f'commands[{index}]'):
                     self._topics.send(command.topic, command.message)
 
-    def _act(self, policy: Any, time: float) -> None:  # noqa: ANN401  a user's function
-        where = f"the policy '{self._scenario.policy}' at {time:g} s"
-        try:
-            commands = policy(time, dict(self._readings))
-        except Exception as error:
-            raise PolicyError(f'{where} raised {in_words(error)}') from error
-        if not isinstance(commands, Mapping | None):
-            raise PolicyError(f'{where} returned {commands!r}; it returns messages by topic')
-        for topic, message in (commands or {}).items():
-            with _within(f"{where}, topic '{topic}'"):
+    def _act(self, policy: Policy, time: float) -> None:
+        address = self._scenario.policy
+        for topic, message in commands_of(policy, address, time, self._readings).items():
+            with _within(f"the policy '{address}' at {time:g} s, topic '{topic}'"):
                 self._topics.send(topic, message)
 
 

@@ -19,6 +19,7 @@ from .layouts import (
     TransformLayout,
     floats,
 )
+from .readings import read_reading
 from .shown_scene import (
     contacts_message,
     motion_message,
@@ -33,6 +34,6 @@ __all__ = [
     'ImuLayout', 'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'PointCloudLayout',
     'RequestError', 'TransformLayout', 'contacts_message', 'fill_pose', 'fill_transform',
     'fill_twist', 'floats', 'motion_message', 'read_contacts', 'read_motion', 'read_pose',
-    'read_transform', 'read_twist', 'read_vector', 'require_finite', 'scene_change',
+    'read_reading', 'read_transform', 'read_twist', 'read_vector', 'require_finite', 'scene_change',
     'scene_message', 'stamp',
 ]

@@ -1,5 +1,6 @@
 """The public API: a world with its file formats, plugins and engine."""
 
+from .descriptions import Descriptions
 from .world import World
 
-__all__ = ['World']
+__all__ = ['Descriptions', 'World']

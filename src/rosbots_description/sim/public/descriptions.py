@@ -21,6 +21,7 @@ from ..resources import (
 
 Paths = Iterable[str | os.PathLike[str]]
 Description = str | os.PathLike[str]
+_TEXT = 'the text'  # the source of a description that is given as such
 
 
 class Descriptions:
@@ -52,23 +53,38 @@ class Descriptions:
         given = os.fspath(description)
         if given.startswith('model://'):
             name = name or below_model_path(given).partition('/')[0]
+        text, source, tag = self.text(given, arguments)
+        load = load_urdf if tag == 'robot' else load_sdf
+        return load(text, name or own_name(text, source), source=source,
+                    find_package=self._packages_of(source), find_model=self.find_model)
+
+    def text(
+        self, description: Description, arguments: Mapping[str, str]
+    ) -> tuple[str | bytes, str, str]:
+        """Return the XML of a model, with xacro expanded; where it is from; and its root's tag.
+
+        Raises:
+            ModelError: it cannot be read, or is not a model.
+        """
+        given = os.fspath(description)
+        if given.startswith('model://'):
             given = f'<sdf version="1.7"><world name="w"><include><uri>{escape(given)}</uri>' \
                 '</include></world></sdf>'
         text: str | bytes
         if given.lstrip('\ufeff \t\r\n').startswith('<'):
-            text, source, find_package = given, 'the text', self.packages()
+            text, source = given, _TEXT
         else:
             source = self._path(given)
-            find_package = self.packages(source)
-            text = expand_xacro(source, arguments, find_package) if source.endswith('.xacro') \
-                else read_file(source, MAX_XML_BYTES, 'model file')
+            text = expand_xacro(source, arguments, self.packages(source)) \
+                if source.endswith('.xacro') else read_file(source, MAX_XML_BYTES, 'model file')
         tag = root_tag(text)
         if tag not in ('robot', 'sdf', 'gazebo'):
             raise ModelError(f'{source}: it is not a model; a model is XML whose root element is '
                              f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}')
-        load = load_urdf if tag == 'robot' else load_sdf
-        return load(text, name or own_name(text, source), source=source,
-                    find_package=find_package, find_model=self.find_model)
+        return text, source, tag
+
+    def _packages_of(self, source: str) -> PackageSearch:
+        return self.packages(None if source == _TEXT else source)
 
     def _path(self, address: str) -> str:
         """Return the file of an address or a path."""

@@ -1,0 +1,69 @@
+"""Front end of the executable run_scenario: one run of a scenario with the running simulator.
+
+Under rostest it is a test, which passes if all conditions hold.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+import unittest
+from collections.abc import Sequence
+
+from .gzserver import split_remappings
+
+NAME = 'run_scenario'
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the options."""
+    made = argparse.ArgumentParser(
+        prog=NAME, description='Make one run of a scenario with the running simulator.')
+    made.add_argument('scenario', metavar='SCENARIO.yaml', help='see doc/batch.md')
+    made.add_argument('--run', type=int, default=0, metavar='NUMBER',
+                      help='which of its runs; default: 0')
+    return made
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Make the run; return the exit code: 0 if all conditions hold."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    own, remappings = split_remappings(given)
+    test_flags = [one for one in own if one.startswith('--gtest_output') or one == '--text']
+    options = parser().parse_args([one for one in own if one not in test_flags])
+    from ..batch import PolicyError, ScenarioFile
+    from ..ros_api.clients.scenario_run import run_scenario
+    from ..ros_api.transport import AddressError, start_node
+    from ..sim.core import SimError
+
+    class ScenarioTest(unittest.TestCase):
+        """The run, as rostest takes it."""
+
+        def test_conditions_hold(self) -> None:
+            try:
+                row = run_scenario(file, options.run)
+            except (SimError, PolicyError) as error:
+                self.fail(str(error))
+            for name, value in row.items():
+                print(f'{name}: {value}')
+
+    try:
+        file = ScenarioFile.read(options.scenario)
+        if not 0 <= options.run < file.parameters.runs:
+            return _fail(f'there is no run {options.run}; it has {file.parameters.runs}, from 0')
+        start_node(NAME, remappings)
+    except (SimError, AddressError) as error:
+        return _fail(str(error))
+    if test_flags:
+        # By its name in a string: the tests have a folder of that name.
+        importlib.import_module('rostest').rosrun(
+            'rosbots_simulator', NAME, ScenarioTest, [sys.argv[0], *test_flags])
+        return 0
+    result = unittest.TextTestRunner().run(ScenarioTest('test_conditions_hold'))
+    return 0 if result.wasSuccessful() else 1
+
+
+def _fail(sentence: str) -> int:
+    sys.stderr.write(f'{NAME}: {sentence}\n')
+    return 2
