@@ -9,8 +9,15 @@ from pathlib import Path
 
 import rospy
 import rostest
-from gazebo_msgs.srv import DeleteModel, GetPhysicsProperties, GetWorldProperties, SpawnModel
+from gazebo_msgs.srv import (
+    DeleteModel,
+    GetLinkProperties,
+    GetPhysicsProperties,
+    GetWorldProperties,
+    SpawnModel,
+)
 from geometry_msgs.msg import Twist
+from rosbots_msgs.srv import GetFriction
 from server_process import ServerProcess
 from simulator import pose, proxy, wait_until
 from terminal import Terminal
@@ -64,6 +71,8 @@ class GzwebTest(unittest.TestCase):
                 self.follow_a_ball(browser)
                 self.control_time(browser)
                 self.drive(browser)
+                self.change_a_ball(browser)
+                self.show_contacts(browser)
                 server.process.kill()
                 browser.wait_until(lambda: any('does not answer' in text
                                                for text in browser.texts()))
@@ -77,7 +86,9 @@ class GzwebTest(unittest.TestCase):
         window.process.send_signal(signal.SIGINT)
         wait_until(lambda: window.process.poll() is not None, 'the end')
         self.assertEqual(window.process.returncode, 0)
-        self.assertEqual(window.shown().split('\r\n')[1:], [''])  # it said the address only
+        refusal, *rest = window.shown().split('\r\n')[1:]
+        self.assertIn('mass is -1.0', refusal)
+        self.assertEqual([line for line in rest if line not in ('', '\x1b[0m')], [])
 
     def follow_a_ball(self, browser):
         spawned = proxy('spawn_urdf_model', SpawnModel)('ball', BALL, '', pose(z=3.0), '')
@@ -118,6 +129,35 @@ class GzwebTest(unittest.TestCase):
         self.assertEqual([(one.linear.x, one.angular.z) for one in commands],
                          [(0.5, 0.0), (0.0, 0.0)])
         subscriber.unregister()
+
+    def change_a_ball(self, browser):
+        browser.click('ball')
+        browser.wait_until(lambda: f'{LINK}/selected' in browser.nodes)
+        browser.choose('Position [m]', [2.0, 1.0, 4.0])
+        browser.click('Set pose')
+        browser.wait_until(lambda: browser.nodes[LINK][1][:2] == [2.0, 1.0])
+        browser.wait_until(lambda: '2.000' in browser.tables())  # by get_model_state
+        browser.choose('Mass [kg]', 2.5)
+        browser.click('Set mass')
+        properties = proxy('get_link_properties', GetLinkProperties)
+        browser.wait_until(lambda: properties('ball::body').mass == 2.5)
+        self.assertEqual(properties('ball::body').ixx, 2.5)
+        browser.choose('mu', 0.25)
+        browser.click('Set friction')
+        friction = proxy('get_friction', GetFriction)
+        browser.wait_until(lambda: friction('ball').mu == (0.25,))
+        browser.choose('Mass [kg]', -1.0)
+        browser.click('Set mass')
+        browser.wait_until(lambda: any(
+            m['type'] == 'NotificationShowMessage' and 'mass is -1.0; link' in str(m)
+            for m in browser.messages))
+
+    def show_contacts(self, browser):
+        browser.choose('Contacts and forces', True)
+        browser.wait_until(lambda: '/contacts/forces' in browser.nodes)
+        self.assertEqual(subscribed(), TOPICS | {'/gazebo/view/contacts'})
+        browser.choose('Contacts and forces', False)
+        browser.wait_until(lambda: subscribed() == TOPICS)
 
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')

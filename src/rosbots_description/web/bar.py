@@ -7,7 +7,7 @@ from typing import Protocol
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
-from .panel import Panel, attempt
+from .panel import Panel, attempt, fill
 
 PERIOD = 0.2  # [s, wall] between two clocks shown
 WINDOW = 1.0  # [s, wall] over which the real-time factor is taken
@@ -68,7 +68,7 @@ class Bar(Panel):
         factor = change.max_update_rate * change.step_size
         name = next((name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None)
         if name is not None and self._speed.value != name:
-            self._speed.value = name  # type: ignore[misc]  # viser's setter has no type
+            fill(self._speed, name)
 
     def move(self, motion: ShownMotion) -> None:
         """Show times, and whether time runs."""

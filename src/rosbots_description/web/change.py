@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import viser
 
@@ -12,12 +12,11 @@ from .descriptions import chosen_links, friction, scoped_name
 from .history import History
 from .inspector import States
 from .models import Models
-from .panel import Panel, attempt
+from .panel import Panel, attempt, fill
 from .selection import Selection
 
 NONE: Vector = (0.0, 0.0, 0.0)
 STEP = 0.001  # of all fields
-Value = TypeVar('Value')
 
 
 class Inspection(States, Protocol):
@@ -87,10 +86,10 @@ class ChangePanel(Panel):
         self._folder.visible = model is not None
         if model is not None:
             pose = self._models.pose(model, link)
-            _fill(self._position, pose.position)
-            _fill(self._angles, to_rpy(pose.orientation))
-            _fill(self._linear, NONE)
-            _fill(self._angular, NONE)
+            fill(self._position, pose.position)
+            fill(self._angles, to_rpy(pose.orientation))
+            fill(self._linear, NONE)
+            fill(self._angular, NONE)
             self._fill_properties()
 
     def _fill_properties(self) -> None:
@@ -101,14 +100,13 @@ class ChangePanel(Panel):
         self._motion.visible = not model.static
         self._body.visible = body is not None and not model.static
         if body is not None and body.inertial is not None:
-            _fill(self._mass, body.inertial.mass)
-            _fill(self._gravity, body.gravity)
+            fill(self._mass, float(body.inertial.mass))
+            fill(self._gravity, body.gravity)
         pairs = friction(links)
         self._surface.visible = bool(pairs)
         if pairs:
-            mu, mu2 = min(pairs)
-            _fill(self._mu, mu)
-            _fill(self._mu2, mu2)
+            for field, value in zip((self._mu, self._mu2), min(pairs), strict=True):
+                fill(field, float(value))  # viser casts what is typed to the type that is there
 
     def _only_link(self) -> ShownLink | None:
         """Return the selected link, or that of a model which has no other."""
@@ -153,7 +151,3 @@ class ChangePanel(Panel):
         name = scoped_name(model, link)
         self._inspection.set_friction(name, self._mu.value, self._mu2.value)
         self._history.add(f"friction of '{name}'", undo)
-
-
-def _fill(field: viser.GuiInputHandle[Value], value: Value) -> None:
-    field.value = value  # type: ignore[misc]  # viser's setter has no type

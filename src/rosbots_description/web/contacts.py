@@ -8,10 +8,11 @@ import numpy as np
 import viser
 
 from ..sim.description import ShownContact
-from .panel import Panel
+from .panel import Panel, fill
 
 POINT, FORCE = (40, 90, 255), (20, 170, 60)
 SIZE = 0.02  # of a point [m]
+LENGTH = 0.5  # about that of the greatest force at first [m]
 WIDTH = 3.0  # of the line of a force [pixels]
 
 
@@ -36,7 +37,7 @@ class ContactsPanel(Panel):
         self._nodes: tuple[viser.PointCloudHandle, viser.LineSegmentsHandle] | None = None
         self._box = site.gui.add_checkbox('Contacts and forces', False)
         self._scale = site.gui.add_number(
-            'Force per metre [N]', 50.0, min=0.001, step=0.001,
+            'Force per metre [N]', 1.0, min=0.001, step=0.001,
             hint='a force as large as this is shown as a line of 1 m')
         self._box.on_update(lambda _: self._switch())
 
@@ -60,6 +61,11 @@ class ContactsPanel(Panel):
                 self._clear()
             self._is_open = wanted
 
+    def _set_scale(self, greatest: float) -> None:
+        """Let the greatest force have a length that can be seen well."""
+        if greatest > 0.0:
+            fill(self._scale, float(f'{greatest / LENGTH:.1g}'))
+
     def _clear(self) -> None:
         if self._nodes is not None:
             for one in self._nodes:
@@ -75,8 +81,11 @@ class ContactsPanel(Panel):
                 return
             points = np.array([one.position for one in contacts])
             # Of the two opposite forces, that on the upper body is seen best.
-            forces = np.array([one.force for one in contacts]) / self._scale.value
+            forces = np.array([one.force for one in contacts])
             forces *= np.where(forces[:, 2:] < 0.0, -1.0, 1.0)
+            if self._nodes is None:
+                self._set_scale(float(np.linalg.norm(forces, axis=1).max()))
+            forces /= self._scale.value
             lines = np.stack([points, points + forces], axis=1)
             if self._nodes is None:
                 scene = self._site.scene

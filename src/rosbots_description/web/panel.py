@@ -2,11 +2,16 @@
 
 import logging
 from collections.abc import Callable
+from typing import TypeVar
+
+import viser
 
 from ..sim.core import SimError
 from ..sim.description import SceneChange, ShownMotion
 
 logger = logging.getLogger(__name__)
+
+Value = TypeVar('Value')
 
 
 def attempt(command: Callable[[], None], complain: Callable[[str], None]) -> None:
@@ -16,6 +21,11 @@ def attempt(command: Callable[[], None], complain: Callable[[str], None]) -> Non
     except SimError as error:
         logger.warning('%s', error)
         complain(str(error))
+
+
+def fill(field: viser.GuiInputHandle[Value], value: Value) -> None:
+    """Set the value of a field in all browsers."""
+    field.value = value  # type: ignore[misc]  # viser's setter has no type
 
 
 class Panel:

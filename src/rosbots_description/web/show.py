@@ -24,7 +24,7 @@ class ShowPanel(Panel):
         self._site, self._models, self._selection, self._lock = site, models, selection, lock
         self._shown: dict[str, list[str]] = {}  # nodes, by models
         gui = site.gui
-        self._look = gui.add_dropdown('Models', [look.value for look in Look])
+        self._look = gui.add_dropdown('Visuals', [look.value for look in Look])
         self._look.on_update(lambda _: self._restyle(view))
         self._only = gui.add_checkbox('Only of what is selected', False)
         self._boxes = {name: gui.add_checkbox(name, False) for name in MARKERS}

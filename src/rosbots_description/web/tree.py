@@ -62,7 +62,8 @@ class ModelTree(Panel):
                 button.color = 'orange' if chosen else 'gray'
             left = len(wanted) - MOST
             self._rest.visible = left > 0
-            self._rest.content = f'and {left} more; *Find* shows those with a part of the name'
+            if left > 0:
+                self._rest.content = f'and {left} more; *Find* shows those with a part of the name'
 
     def _wanted(self) -> Iterator[TreeRow]:
         """Return the rows that have what is looked for in their names, the selected model first."""

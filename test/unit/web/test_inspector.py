@@ -44,6 +44,8 @@ def world(browser, simulator):
 def visible(browser, label):
     """Return whether a button, and the folders around it, are shown."""
     uuid = browser.control(label)
+    if uuid is None:
+        return False
     while uuid in browser.controls:
         if not browser.controls[uuid][1]['visible']:
             return False

@@ -96,9 +96,9 @@ def test_a_box_has_the_inertia_that_it_shows():
 def test_visuals_are_drawn_in_another_way_but_grounds(browser, simulator, look):
     simulator.change(SceneChange(True, (model('a', 1), model('ground', 2, Plane()))))
     browser.wait_until(lambda: '/models/ground/link/0 v/grid' in browser.nodes)
-    browser.choose('Models', look)
+    browser.choose('Visuals', look)
     for value in (look, 'solid'):
-        browser.choose('Models', value)
+        browser.choose('Visuals', value)
         before = len(files(browser, '/models/a'))
         browser.wait_until(lambda before=before: len(files(browser, '/models/a')) > before)
     assert len(set(files(browser, '/models/a'))) == 2
@@ -122,14 +122,22 @@ def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, si
     points = site.scene.get_handle_by_name('/contacts/points')
     lines = site.scene.get_handle_by_name('/contacts/forces')
     assert np.allclose(points.points, [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)])
-    # 50 N are 1 m; both point up, as on the upper bodies.
-    assert np.allclose(lines.points[:, 1] - lines.points[:, 0], [(0.0, 0.0, 0.2), (-0.1, 0.0, 0.2)])
+    # The greatest force is half a metre long; both point up, as on the upper bodies.
+    assert browser.value('Force per metre [N]') == 20.0
+    assert np.allclose(lines.points[:, 1] - points.points, [(0.0, 0.0, 0.5), (-0.25, 0.0, 0.5)])
     simulator.contacts.show([ShownContact((3.0, 0.0, 0.0), (0.0, 0.0, 1.0), up)])
     assert np.allclose(points.points, [(3.0, 0.0, 0.0)])
+    browser.choose('Force per metre [N]', 5.0)
+    browser.wait_until(lambda: length_after(simulator, lines, up) == pytest.approx(2.0))
     simulator.contacts.show([])
     browser.wait_until(lambda: '/contacts/points' not in browser.nodes)
     browser.choose('Contacts and forces', False)
     browser.wait_until(lambda: simulator.contacts.show is None)
+
+
+def length_after(simulator, lines, force):
+    simulator.contacts.show([ShownContact((3.0, 0.0, 0.0), (0.0, 0.0, 1.0), force)])
+    return float(np.linalg.norm(lines.points[0, 1] - lines.points[0, 0]))
 
 
 def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
