@@ -77,7 +77,8 @@ ARROWS = {
         'ros_api/reconfigure ros_api/views',
     'batch': 'sim sim/core sim/plugins',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
-    'gym': 'sim sim/plugins sim/rendering sim/sensors',
+    'gym':
+        'sim sim/description sim/plugins sim/rendering sim/runtime sim/sensors web',
     'gym/tasks': 'gym sim sim/description',
     'cli':
         'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web batch',

@@ -1,24 +1,26 @@
 """A world with one robot as an environment of Gymnasium."""
 
+import importlib.util
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from ..sim import Model, Pose, SimError, World, yaw_of
-from .actions import Actions, Limits
-from .observations import observed
+from ..sim import Model, Pose, SimError, World
+from .actions import Limits
 from .parent_watch import end_with_parent
-from .pictures import Pictures
-from .placement import Place, Range, move, move_freely
+from .placement import Place, Range
 from .randomisation import Randomisation
+from .stage import Setting, Stage
+
+if TYPE_CHECKING:
+    from .window import Window
 
 ROSBOTS = 'package://rosbots_description/urdf/rosbots.xacro'
 _ABOVE = Pose((0.0, 0.0, 0.5))
-_NANOSECONDS = 1_000_000_000
 
 Observation = dict[str, Any]
 Info = dict[str, Any]
@@ -33,7 +35,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
     bit, in any process and after any other episodes.
     """
 
-    metadata: dict[str, Any] = {'render_modes': ['rgb_array'], 'render_fps': 10}  # noqa: RUF012
+    metadata: dict[str, Any] = {'render_modes': ['rgb_array', 'web'], 'render_fps': 10}  # noqa: RUF012
 
     def __init__(
         self,
@@ -49,6 +51,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         settle: float = 1.0,
         randomise: Randomisation | None = None,
         render_mode: str | None = None,
+        web_port: int = 0,
         package_path: Sequence[str | os.PathLike[str]] = (),
         model_path: Sequence[str | os.PathLike[str]] = (),
     ) -> None:
@@ -66,7 +69,8 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             period: of control [s, simulated], a multiple of the world's step size.
             settle: time before the first episode, in which the robot comes to rest [s, simulated].
             randomise: what differs between episodes; by default only the noise of sensors.
-            render_mode: one of the metadata's, or None.
+            render_mode: 'rgb_array', 'web' or None; see `render`.
+            web_port: of the page, 0 for any that is free.
             package_path: folders to search for package:// addresses.
             model_path: folders to search for model:// addresses.
         Raises:
@@ -78,36 +82,21 @@ class SimEnv(gymnasium.Env[Observation, Any]):
                              f"{', '.join(self.metadata['render_modes'])}, or None")
         end_with_parent()
         self.render_mode = render_mode
-        self._opened = lambda: World.from_file(
-            world, package_path=package_path, model_path=model_path)
-        self._spawned = robot, pose, dict(arguments or {})
-        self._limits, self._sensors, self._settle = actions, sensors, settle
         self._randomise = randomise or Randomisation()
-        self.world: World = self._opened()
+        self._stage = Stage(Setting(
+            world, robot, pose, dict(arguments or {}), actions, sensors, settle, package_path,
+            model_path))
         try:
-            self._load()
-            self._steps = _whole_steps(period, self.world)
-            parts = {one.name: one.space for one in self._parts}
-            self.observation_space = spaces.Dict({**parts, **(more or {})})
+            self._randomise.require(self.world, self.robot)
+            self._steps = self._stage.whole_steps(period)
+            self._window = open_window(self.world, web_port) if render_mode == 'web' else None
         except BaseException:
-            self.world.close()
+            self._stage.close()
             raise
-        self.period = period
+        parts = {one.name: one.space for one in self._stage.observed}
+        self.observation_space = spaces.Dict({**parts, **(more or {})})
+        self.action_space = self._stage.actions.space
         self.metadata = {**self.metadata, 'render_fps': max(1, round(1.0 / period))}
-
-    def _load(self) -> None:
-        """Spawn the robot, let it come to rest, and save the state that episodes start from."""
-        robot, pose, arguments = self._spawned
-        self.robot: Model = self.world.spawn(robot, pose=pose, arguments=arguments)
-        self._actions = Actions(self.world, self.robot, self._limits)
-        self.action_space = self._actions.space
-        self._pictures = Pictures(self.world, self.robot)
-        self._parts = observed(self.robot, self._sensors)
-        self._randomise.require(self.world, self.robot)
-        self.world.run(seconds=self._settle)
-        self._floor = frozenset(self.world.touching(self.robot))
-        self._start = self.world.save_state()
-        self._started_ns = self.world.clock.now_ns
         self._ready = False
 
     # What a task defines.
@@ -123,7 +112,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
 
     def observe(self) -> Observation:
         """Return the observation of the world as it is now; a task adds the parts in `more`."""
-        return {one.name: one.read() for one in self._parts}
+        return {one.name: one.read() for one in self._stage.observed}
 
     def score(self, observation: Observation, action: Any) -> tuple[float, bool]:  # noqa: ANN401
         """Return the reward of a control period, and whether it ended the episode.
@@ -137,20 +126,28 @@ class SimEnv(gymnasium.Env[Observation, Any]):
 
     def truth(self) -> Info:
         """Return what is true of the world now, for `info`: time [s], pose (x, y, yaw) [m, rad]."""
-        return {'time': (self.world.clock.now_ns - self._started_ns) / _NANOSECONDS,
-                'pose': np.array(self.pose)}
+        return {'time': self._stage.time, 'pose': np.array(self.pose)}
 
     # What a task can ask.
 
     @property
-    def pose(self) -> tuple[float, float, float]:
+    def world(self) -> World:
+        """Return the world of this episode."""
+        return self._stage.world
+
+    @property
+    def robot(self) -> Model:
+        """Return the robot of this episode."""
+        return self._stage.robot
+
+    @property
+    def pose(self) -> Place:
         """Return the robot's true x, y [m] and yaw [rad]."""
-        (x, y, _), orientation = self.robot.pose
-        return x, y, yaw_of(orientation)
+        return self._stage.pose
 
     def place(self, x: float, y: float, yaw: float) -> None:
         """Move the robot to x, y [m] and a yaw [rad]; height, roll and pitch stay."""
-        move(self.robot, (x, y, yaw))
+        self._stage.place((x, y, yaw))
 
     def place_freely(self, xs: Range, ys: Range) -> Place:
         """Move the robot to a random place, with any yaw, where it overlaps nothing; return it.
@@ -160,11 +157,11 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         Raises:
             SimError: no free place was found.
         """
-        return move_freely(self.world, self.robot, self._floor, self.np_random, xs, ys)
+        return self._stage.place_freely(self.np_random, xs, ys)
 
     def bumps(self) -> bool:
         """Tell whether the robot touches a model that it did not touch at rest."""
-        return any(name not in self._floor for name in self.world.touching(self.robot))
+        return self._stage.bumps()
 
     # What Gymnasium defines.
 
@@ -178,18 +175,20 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             options: of the task.
         """
         super().reset(seed=seed)
-        self._require_open()
-        self.world.restore(self._start)
+        self._stage.restore()
         drawn = self._randomise.apply(self.world, self.robot, self.np_random)
         self.begin(options or {})
         self._ready = True
+        if self._window is not None:
+            self._window.show(self.world)
         return self.observe(), {**self.truth(), 'randomised': drawn}
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, Info]:  # noqa: ANN401
         """Drive for a control period.
 
         Returns:
-            observation, reward, whether the task has ended, whether the episode is truncated, info.
+            observation, reward, whether the task has ended, whether the episode is truncated
+            because numbers of the world were no longer finite, and info.
 
         Raises:
             ValueError: the action has the wrong shape, or a number in it is not finite.
@@ -197,36 +196,46 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         """
         if not self._ready:
             raise gymnasium.error.ResetNeeded('call reset() before step()')
-        self._actions.give(action)
-        self.world.run(self._steps)
+        self._stage.actions.give(action)
+        advance = self.world.run if self._window is None else self._window.run
+        advance(self._steps)
         observation = self.observe()
         reward, terminated = self.score(observation, action)
-        return observation, float(reward), bool(terminated), False, self.truth()
+        return (observation, float(reward), bool(terminated), self._stage.has_diverged,
+                self.truth())
 
     def render(self) -> Any:  # noqa: ANN401
-        """Return a picture (480, 640, 3) of the robot in its world, with render_mode 'rgb_array'.
+        """Return what `render_mode` asks for.
+
+        By 'rgb_array' a picture (480, 640, 3) of the robot in its world. By 'web' the address of a
+        page on this machine, which shows every step; while somebody looks, time runs at the speed
+        that is chosen there. None otherwise.
 
         Raises:
             SimError: nothing can be drawn on this machine.
         """
-        self._require_open()
-        return self._pictures.take() if self.render_mode == 'rgb_array' else None
+        if self._window is not None:
+            return self._window.address
+        return self._stage.pictures.take() if self.render_mode == 'rgb_array' else None
 
     def close(self) -> None:
         """Free the world; idempotent."""
         self._ready = False
-        self.world.close()
+        self._stage.close()
+        if self._window is not None:
+            self._window.close()
+            self._window = None
 
-    def _require_open(self) -> None:
-        if getattr(self.world, '_closed', False):
-            raise SimError('this environment is closed; make another one')
 
+def open_window(world: World, port: int) -> 'Window':
+    """Return a page that shows a world.
 
-def _whole_steps(period: float, world: World) -> int:
-    """Return the steps of a control period."""
-    step_ns = world.clock.step_ns
-    steps = round(period * _NANOSECONDS / step_ns) if 0.0 < period < np.inf else 0
-    if steps < 1 or abs(steps * step_ns - period * _NANOSECONDS) > 0.5:
-        raise ValueError(f'period is {period} s; it must be a multiple of the step size of the '
-                         f'world, {step_ns / _NANOSECONDS:g} s')
-    return steps
+    Raises:
+        SimError: viser is not installed, or the port is in use.
+    """
+    if importlib.util.find_spec('viser') is None:
+        raise SimError("render_mode 'web' needs the Python package viser; "
+                       "pip install 'rosbots_description[web]' installs it")
+    from .window import Window
+
+    return Window(world, port)

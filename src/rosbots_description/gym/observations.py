@@ -59,6 +59,13 @@ def observed(robot: Model, names: Sequence[str] | None) -> list[Observed]:
     return found
 
 
+def forget(robot: Model) -> None:
+    """Forget the readings that sensors have sent; until the next one they are read as they are."""
+    for sensor in robot.sensors:
+        if isinstance(sensor, Sensor):
+            sensor.readings.latched = None
+
+
 def _all(robot: Model) -> Iterator[Observed]:
     for plugin in robot.plugins:
         if isinstance(plugin, Drive):

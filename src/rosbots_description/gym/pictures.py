@@ -12,13 +12,13 @@ _EYE = (-2.2, -2.8, 3.2)  # [m] from the robot
 
 
 class Pictures:
-    """Draws the world in a process of its own, which starts with the first picture."""
+    """Pictures of a robot in its world, by a process that starts with the first of them."""
 
     def __init__(self, world: World, robot: Model) -> None:
         self._capture, self._robot = ImageCapture(world), robot
 
     def take(self) -> NDArray[np.uint8]:
-        """Return a picture (height, width, 3) of the robot in its world.
+        """Return a picture (height, width, 3).
 
         Raises:
             SimError: nothing can be drawn on this machine; the message says why.

@@ -56,16 +56,16 @@ class Simulator(Protocol):
         """Its clock."""
 
     @property
-    def robots(self) -> Robots:
-        """Its robots."""
+    def robots(self) -> Robots | None:
+        """Its robots, if they can be driven."""
 
     @property
-    def inspection(self) -> Inspection:
-        """Its models and links."""
+    def inspection(self) -> Inspection | None:
+        """Its models and links, if they can be changed."""
 
     @property
-    def contacts(self) -> Contacts:
-        """What touches in it."""
+    def contacts(self) -> Contacts | None:
+        """What touches in it, if that can be seen."""
 
 
 class Page:
@@ -86,39 +86,31 @@ class Page:
             lambda _: self.selection.choose(None))
         self._start = StartView(models)
         scene = SceneView(site, self.selection.click)
-        outline = Outline(site.scene, models, self.selection)
         self._bar = Bar(site.gui, simulator.time, self._notify)
         history = History(site.gui, self._notify)
         keys = CameraKeys(site.gui)
+        self._panels: list[Panel] = [
+            models, self._start, scene, self.selection,
+            Outline(site.scene, models, self.selection), self._bar, history]
         tabs = site.gui.add_tab_group()
-        with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
-            drive = DrivePanel(site.gui, simulator.robots, keys)
+        if simulator.robots is not None:
+            with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
+                self._panels.append(DrivePanel(site.gui, simulator.robots, keys))
         with tabs.add_tab('Models', viser.Icon.LIST_TREE):
-            inspector = Inspector(
-                site.gui, simulator.inspection, models, self.selection, self._lock)
-            change = ChangePanel(
-                site.gui, simulator.inspection, models, self.selection, history, self._notify)
-            tree = ModelTree(site.gui, models, self.selection, self._lock)
+            if simulator.inspection is not None:
+                self._panels += [
+                    Inspector(
+                        site.gui, simulator.inspection, models, self.selection, self._lock),
+                    ChangePanel(
+                        site.gui, simulator.inspection, models, self.selection, history,
+                        self._notify)]
+            self._panels.append(ModelTree(site.gui, models, self.selection, self._lock))
         with tabs.add_tab('Show', viser.Icon.EYE):
-            follow = FollowPanel(site, models, self.selection)
-            show = ShowPanel(site, scene, models, self.selection, self._lock)
-            contacts = ContactsPanel(site, simulator.contacts, self._lock)
-        self._panels: tuple[Panel, ...] = (
-            models,
-            self._start,
-            scene,
-            self.selection,
-            outline,
-            self._bar,
-            history,
-            drive,
-            inspector,
-            change,
-            tree,
-            follow,
-            show,
-            contacts,
-        )
+            self._panels += [
+                FollowPanel(site, models, self.selection),
+                ShowPanel(site, scene, models, self.selection, self._lock)]
+            if simulator.contacts is not None:
+                self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 

@@ -8,10 +8,11 @@ from .population import describe, populate
 from .saved_state import SavedState
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .sensor import SensorLife
+from .shown_world import ShownWorld
 from .world import WORLD_FRAMES, Entity, World
 
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'CollisionFrame', 'Entity', 'FrameTransform', 'Hook', 'Joint',
     'JointStates', 'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState',
-    'SensorLife', 'World', 'add_empty_world', 'describe', 'populate',
+    'SensorLife', 'ShownWorld', 'World', 'add_empty_world', 'describe', 'populate',
 ]

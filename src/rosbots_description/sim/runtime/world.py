@@ -103,6 +103,7 @@ class World:
         # such as pictures, and these are given out when they are there.
         self.is_paced = False
         self.seed = 0  # of the noise of sensors; any number, from the next reading on
+        self.rebuilds = 0  # of the engine, since the world was opened
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
         self.engine = make_engine(self.physics)
@@ -280,6 +281,7 @@ class World:
 
     def rebuild(self, diverged: list[Model]) -> None:
         """Rebuild the engine; `diverged` models restart at their spawn pose, others continue."""
+        self.rebuilds += 1
         motions = {
             model.name: self.engine.motion(model.body)
             for model in self.models.values()

@@ -5,9 +5,9 @@ from dataclasses import replace
 from support import urdf_spec
 from support.fake_engine import FakeEngine
 
-from rosbots_description.ros_api.views.scene import ShownWorld
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description import LightSpec, Sphere
+from rosbots_description.sim.runtime.shown_world import ShownWorld
 from rosbots_description.sim.runtime.world import World
 
 BALL = urdf_spec('<link name="ball"><inertial><mass value="1"/>'

@@ -1,0 +1,114 @@
+"""An environment in the browser: its own world, its own pace, and nothing while nobody looks."""
+
+import threading
+import time
+import urllib.request
+
+import numpy as np
+import pytest
+
+from rosbots_description.gym import SimEnv
+from rosbots_description.sim import SimError
+
+DEADLINE = 30.0  # [s, wall]
+DRIVE = np.array([0.5, 0.2])
+
+
+class Drive(SimEnv):
+    """Nothing to do."""
+
+    def score(self, _observation, _action):
+        return 0.0, False
+
+
+class Viewer:
+    """Remembers what a page is shown."""
+
+    def __init__(self):
+        self.changes, self.motions = [], []
+
+    def look(self, view):
+        view.open(self.changes.append, self.motions.append)
+
+
+@pytest.fixture
+def env():
+    made = Drive(render_mode='web', settle=0.2)
+    yield made
+    made.close()
+
+
+def test_page_is_served_on_this_machine(env):
+    assert env.render().startswith('http://127.0.0.1:')
+    with urllib.request.urlopen(env.render(), timeout=DEADLINE) as page:
+        assert page.status == 200
+        assert b'<html' in page.read().lower()
+
+
+def test_who_looks_is_shown_the_world_and_its_motion(env):
+    viewer = Viewer()
+    env.reset(seed=0)
+    env.step(DRIVE)
+    viewer.look(env._window.view)
+    env._window.time.set_speed(0.0)
+    env.step(DRIVE)
+    (change,) = viewer.changes
+    assert change.reset
+    assert [model.name for model in change.models] == ['ground_plane', 'rosbots']
+    assert len(viewer.motions) == 4  # 30 frames a second
+    assert viewer.motions[-1].time == pytest.approx(0.4)
+    assert len(viewer.motions[-1].poses) >= 3
+    env._window.view.close()
+    env.step(DRIVE)
+    assert len(viewer.motions) == 4
+
+
+def test_time_is_paced_while_somebody_looks(env):
+    env.reset(seed=0)
+    Viewer().look(env._window.view)
+    begin = time.monotonic()
+    for _ in range(5):
+        env.step(DRIVE)
+    assert time.monotonic() - begin > 0.3  # of 0.5 s; the first frames may come at once
+
+
+def test_pause_and_steps_hold_the_environment_and_do_not_change_it(env):
+    viewer, controls = Viewer(), env._window.time
+    plain = Drive(settle=0.2)
+    plain.reset(seed=0)
+    expected = [plain.step(DRIVE)[0]['odometry'].tobytes() for _ in range(2)]
+    plain.close()
+    env.reset(seed=0)
+    viewer.look(env._window.view)
+    controls.set_speed(0.0)
+    controls.pause()
+    found = []
+    thread = threading.Thread(
+        target=lambda: found.extend(env.step(DRIVE)[0]['odometry'].tobytes() for _ in range(2)))
+    thread.start()
+    controls.step(30)
+    end = time.monotonic() + DEADLINE
+    while (not viewer.motions or viewer.motions[-1].time < 0.23) and time.monotonic() < end:
+        time.sleep(0.01)
+    assert viewer.motions[-1].time == pytest.approx(0.23)
+    assert viewer.motions[-1].paused
+    assert found == []
+    env._window.view.close()  # who leaves lets it go on
+    thread.join(DEADLINE)
+    assert found == expected
+
+
+def test_reset_is_up_to_the_program(env):
+    for refused in (env._window.time.reset_world, env._window.time.reset_simulation):
+        with pytest.raises(SimError, match='the program'):
+            refused()
+    assert env._window.robots.drive_topics() == ()
+
+
+def test_port_in_use_and_missing_viser_are_named(env, monkeypatch):
+    port = int(env.render().rstrip('/').rpartition(':')[2])
+    with pytest.raises(SimError, match=f'port {port}'):
+        Drive(render_mode='web', web_port=port, settle=0.1)
+    monkeypatch.setattr('importlib.util.find_spec', lambda _name: None)
+    with pytest.raises(SimError, match="needs the Python package viser; pip install"):
+        Drive(render_mode='web', settle=0.1)
