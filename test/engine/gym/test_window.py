@@ -2,10 +2,10 @@
 
 import threading
 import time
-import urllib.request
 
 import numpy as np
 import pytest
+from support.browser import Browser
 
 from rosbots_description.gym import SimEnv
 from rosbots_description.sim import SimError
@@ -38,11 +38,22 @@ def env():
     made.close()
 
 
-def test_page_is_served_on_this_machine(env):
+def test_browser_is_shown_the_robot_and_pauses_the_program(env):
     assert env.render().startswith('http://127.0.0.1:')
-    with urllib.request.urlopen(env.render(), timeout=DEADLINE) as page:
-        assert page.status == 200
-        assert b'<html' in page.read().lower()
+    env.reset(seed=0)
+    with Browser(env.render()) as browser:
+        end = time.monotonic() + DEADLINE
+        while '/models/rosbots' not in browser.nodes and time.monotonic() < end:
+            env.step(DRIVE)
+            browser.read()
+        assert {'/models/rosbots', '/models/ground_plane'} <= browser.nodes.keys()
+        assert env._window.view.is_open
+        browser.click('Pause')
+        browser.wait_until(lambda: env._window.time.paused)
+    end = time.monotonic() + DEADLINE
+    while env._window.view.is_open and time.monotonic() < end:
+        time.sleep(0.01)
+    env.step(DRIVE)
 
 
 def test_who_looks_is_shown_the_world_and_its_motion(env):
