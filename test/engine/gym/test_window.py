@@ -113,7 +113,6 @@ def test_reset_is_up_to_the_program(env):
     for refused in (env._window.time.reset_world, env._window.time.reset_simulation):
         with pytest.raises(SimError, match='the program'):
             refused()
-    assert env._window.robots.drive_topics() == ()
 
 
 def test_port_in_use_and_missing_viser_are_named(env, monkeypatch):
