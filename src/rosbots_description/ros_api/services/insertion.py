@@ -17,14 +17,15 @@ from rosbots_msgs.srv import (
     InsertModelResponse,
 )
 
+from ...sim.core.arrays import FloatArray
 from ...sim.description import LightSpec
-from ...sim.formats import sdf_of_model
+from ...sim.formats import copy_of_model
 from ...sim.resources import model_names, own_name
 from ...sim.runtime import World
 from ..messages import fill_pose, require_finite
 from ..server import Server
 from .model_setters import set_model_configuration
-from .placement import placed
+from .placement import box_around, placed
 from .registry import EXTENSIONS, refuse, service
 from .spawning import PreparedModel, read_description, spawn_model
 
@@ -37,6 +38,7 @@ class _Insertion:
 
     name: str
     prepared: PreparedModel | LightSpec
+    box: FloatArray | None  # around the model
     request: InsertModelRequest
 
 
@@ -52,16 +54,18 @@ def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertMod
         name, request.model_xml, request.robot_namespace, request.initial_pose, ''))
     if isinstance(prepared, SpawnModelResponse):
         return _response(prepared)
-    return _Insertion(name, prepared, request)
+    box = (box_around(prepared.model.spec, prepared.pose)
+           if isinstance(prepared, PreparedModel) else None)
+    return _Insertion(name, prepared, box, request)
 
 
 @service('insert_model', InsertModel, prepare=_read, registers=True, table=EXTENSIONS)
 def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
     """Spawn a model or light that was prepared."""
-    prepared, request = insertion.prepared, insertion.request
-    if isinstance(prepared, PreparedModel):
+    prepared, box, request = insertion.prepared, insertion.box, insertion.request
+    if isinstance(prepared, PreparedModel) and box is not None:
         prepared = replace(prepared, pose=placed(
-            server.world, prepared.model.spec, prepared.pose, request.on_ground, request.beside))
+            server.world, prepared.pose, box, request.on_ground, request.beside))
     response = spawn_model(server, prepared)
     if not response.success:
         return _response(response)
@@ -80,7 +84,7 @@ def get_model_description(
     model = server.world.models.get(request.model_name)
     if model is None:
         return refuse(response, 'GetModelDescription: model does not exist')
-    response.model_xml = sdf_of_model(model.spec)
+    response.model_xml = copy_of_model(model.spec)
     fill_pose(response.pose, model.pose)
     response.joint_names = list(model.joints)
     response.joint_positions = [joint.position for joint in model.joints.values()]

@@ -2,60 +2,83 @@
 
 import contextlib
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...sim.core import ModelError, Pose, compose
 from ...sim.core.arrays import FloatArray
-from ...sim.description import LinkSpec, ModelSpec
-from ...sim.meshes import extent
+from ...sim.description import Geometry, LinkSpec, Mesh, ModelSpec
+from ...sim.meshes import extent, rough_extent
 from ...sim.runtime import World
+
+BoolArray = NDArray[np.bool_]
 
 GAP = 0.05  # [m] between models, horizontally
 DEPTH = 1e-3  # [m] vertically, up to which boxes touch
 RINGS = 12  # of places that are tried, each a model's width wider than the one within
 
 
-def placed(
-    world: World, spec: ModelSpec, pose: Pose, on_ground: bool, beside: bool
-) -> Pose:
-    """Return where a model is to be spawned, by the boxes around its shapes and those of others.
+def box_around(spec: ModelSpec, pose: Pose) -> FloatArray | None:
+    """Return the lowest and the highest corner (2, 3) of the box around a model [m].
+
+    Its joints are at zero. It may take long, as meshes are read. None for what has no end.
 
     Args:
         pose: of the model, in the world.
+    """
+    boxes = [box for _, box in _boxes(
+        ((link, compose(pose, link.pose)) for link in spec.links), extent)]
+    if not boxes:
+        return None
+    return np.array([np.min(boxes, axis=0)[0], np.max(boxes, axis=0)[1]])
+
+
+def placed(world: World, pose: Pose, box: FloatArray, on_ground: bool, beside: bool) -> Pose:
+    """Return where a model is to be spawned.
+
+    Args:
+        pose: of the model, in the world.
+        box: around the model at this pose, see `box_around`.
         on_ground: let the lowest point of the model be at the height of `pose`.
         beside: choose the nearest place that is free, or one on top of what is at `pose`.
     """
-    boxes = _boxes((link, compose(pose, link.pose)) for link in spec.links)
-    if not len(boxes):
-        return pose
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     shift = np.zeros(3)
     if on_ground:
-        shift[2] = pose.position[2] - low[2]
+        shift[2] = pose.position[2] - box[0, 2]
     if beside:
-        shift += _way(low + shift, high + shift, _others(world))
+        shift += _Obstacles(world).way_around(box + shift)
     x, y, z = np.add(pose.position, shift).tolist()
     return Pose((x, y, z), pose.orientation)
 
 
-def _way(low: FloatArray, high: FloatArray, others: FloatArray) -> FloatArray:
-    """Return the shortest way on which a box comes free of others (n, 2, 3) [m]."""
-    width = max(*(high - low)[:2], GAP)
-    for way in _ways(width + GAP):
-        met = _met(low + way, high + way, others)
-        if not met.any():
-            return way
-    tops = others[_met(low, high, others), 1, 2]
-    return np.array([0.0, 0.0, tops.max() - low[2]])
+class _Obstacles:
+    """Boxes around all shapes in the world."""
 
+    def __init__(self, world: World) -> None:
+        found = list(_boxes(((link.spec, link.pose) for model in world.models.values()
+                             for link in model.links.values()), rough_extent))
+        self._boxes = np.reshape([box for _, box in found], (-1, 2, 3))
+        # Within the box around a mesh there may be room, as in a building.
+        self._hollow = np.array([isinstance(shape, Mesh) for shape, _ in found], bool)
 
-def _met(low: FloatArray, high: FloatArray, others: FloatArray) -> FloatArray:
-    """Tell which boxes another one meets."""
-    gap = np.array([GAP, GAP, -DEPTH])
-    met: FloatArray = ((low - gap < others[:, 1]) & (high + gap > others[:, 0])).all(axis=1)
-    return met
+    def way_around(self, box: FloatArray) -> FloatArray:
+        """Return the shortest way on which a box (2, 3) comes free, up if there is no other [m]."""
+        width = max(*(box[1] - box[0])[:2], GAP)
+        for way in _ways(width + GAP):
+            if not self._met(box + way).any():
+                return way
+        top = self._boxes[self._met(box), 1, 2].max()
+        return np.array([0.0, 0.0, top - box[0, 2]])
+
+    def _met(self, box: FloatArray) -> BoolArray:
+        """Tell which boxes another one meets (n)."""
+        low, high = box
+        gap = np.array([GAP, GAP, -DEPTH])
+        met = (low - gap < self._boxes[:, 1]) & (high + gap > self._boxes[:, 0])
+        within = (low + DEPTH > self._boxes[:, 0]) & (high < self._boxes[:, 1])
+        return np.asarray(met.all(axis=1) & ~(self._hollow & within.all(axis=1)))
 
 
 def _ways(width: float) -> Iterator[FloatArray]:
@@ -66,19 +89,13 @@ def _ways(width: float) -> Iterator[FloatArray]:
             yield ring * width * np.array([math.cos(angle), math.sin(angle), 0.0])
 
 
-def _others(world: World) -> FloatArray:
-    """Return the boxes around all shapes in the world (n, 2, 3) [m]."""
-    return _boxes((link.spec, link.pose) for model in world.models.values()
-                  for link in model.links.values())
-
-
-def _boxes(links: Iterable[tuple[LinkSpec, Pose]]) -> FloatArray:
-    """Return boxes around the shapes of links at these poses (n, 2, 3) [m]."""
-    found = []
+def _boxes(
+    links: Iterable[tuple[LinkSpec, Pose]], around: Callable[[Geometry, Pose], FloatArray | None]
+) -> Iterator[tuple[Geometry, FloatArray]]:
+    """Yield the shapes of links at these poses, with boxes around them (2, 3) [m]."""
     for link, pose in links:
         for shape in link.collisions or link.visuals:
             with contextlib.suppress(ModelError):  # a mesh that has gone
-                box = extent(shape.geometry, compose(pose, shape.pose))
+                box = around(shape.geometry, compose(pose, shape.pose))
                 if box is not None:
-                    found.append(box)
-    return np.reshape(found, (-1, 2, 3))
+                    yield shape.geometry, box

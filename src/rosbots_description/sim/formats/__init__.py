@@ -1,9 +1,17 @@
 """Parsers, one folder per format, and a writer of SDF; each error names file and line."""
 
-from .sdf import load_sdf, load_sdf_light, open_world, sdf_of_model, sdf_of_world
+from .sdf import (
+    copy_of_model,
+    load_sdf,
+    load_sdf_light,
+    open_world,
+    sdf_of_light,
+    sdf_of_model,
+    sdf_of_world,
+)
 from .urdf import expand_xacro, load_urdf
 
 __all__ = [
-    'expand_xacro', 'load_sdf', 'load_sdf_light', 'load_urdf', 'open_world', 'sdf_of_model',
-    'sdf_of_world',
+    'copy_of_model', 'expand_xacro', 'load_sdf', 'load_sdf_light', 'load_urdf', 'open_world',
+    'sdf_of_light', 'sdf_of_model', 'sdf_of_world',
 ]

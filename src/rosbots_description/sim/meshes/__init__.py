@@ -2,7 +2,7 @@
 
 from ..resources import SharedFile
 from .engine_files import EngineFiles
-from .extent import extent
+from .extent import extent, rough_extent
 from .loader import MeshPart, check_mesh, load_readers, read_mesh, visual_parts
 from .stl import read_stl
 from .submesh import submesh_file
@@ -17,6 +17,7 @@ __all__ = [
     'load_readers',
     'read_mesh',
     'read_stl',
+    'rough_extent',
     'submesh_file',
     'support_points',
     'visual_parts',

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ..core import Pose, rotate
+from ..core import Pose, compose, rotate
 from ..core.arrays import FloatArray
 from ..description import Box, Cylinder, Geometry, Mesh, Plane, Sphere
-from .loader import read_mesh
+from .loader import mesh_ends, read_mesh
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -36,6 +36,16 @@ def extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
         case Plane():
             return None
     return _stacked(pose.position - reach, pose.position + reach)
+
+
+def rough_extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
+    """Return the same, but for a mesh what is around the box around it: no file is read again."""
+    if isinstance(geometry, Mesh):
+        low, high = mesh_ends(geometry.path) * geometry.scale
+        x, y, z = ((low + high) / 2.0).tolist()
+        width, depth, height = np.abs(high - low).tolist()
+        return extent(Box((width, depth, height)), compose(pose, Pose((x, y, z))))
+    return extent(geometry, pose)
 
 
 def _stacked(low: FloatArray, high: FloatArray) -> FloatArray:

@@ -88,9 +88,20 @@ def check_mesh(path: str, scale: tuple[float, float, float] = (1.0, 1.0, 1.0)) -
     Raises:
         ModelError: the message names the file and its fault.
     """
-    reach = _check(str(path), *_state(path)) * max(map(abs, scale))
+    reach = float(np.abs(mesh_ends(path)).max()) * max(map(abs, scale))
     if reach > MAX_LENGTH:
         raise _fault(path, f'reaches {reach:g} m far; at most {MAX_LENGTH:g} m are accepted')
+
+
+def mesh_ends(path: str) -> FloatArray:
+    """Return the lowest and the highest corner (2, 3) of the box around a mesh file [m].
+
+    Those of thousands of files are remembered.
+
+    Raises:
+        ModelError: as `read_mesh`.
+    """
+    return _ends(str(path), *_state(path))
 
 
 def read_mesh(path: str) -> MeshData:
@@ -129,9 +140,10 @@ def _state(path: str) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=4096)
-def _check(path: str, mtime_ns: int, size: int) -> float:
-    """Return how far from its origin a mesh reaches along an axis [m]."""
-    return max(float(np.abs(p.vertices).max()) for p in _read(path, mtime_ns, size).parts)
+def _ends(path: str, mtime_ns: int, size: int) -> FloatArray:
+    parts = [part.vertices for part in _read(path, mtime_ns, size).parts]
+    return np.array([np.min([part.min(axis=0) for part in parts], axis=0),
+                     np.max([part.max(axis=0) for part in parts], axis=0)])
 
 
 @lru_cache(maxsize=16)

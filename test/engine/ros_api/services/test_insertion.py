@@ -56,9 +56,12 @@ def test_model_stands_on_the_ground_however_it_is_turned(bench):
 
 def test_robot_stands_on_its_wheels(bench, world):
     robot = world.spawn(robot_spec(), 'robot', IDENTITY)
+    spec = robot.spec
     text = bench.call('get_model_description', GetModelDescriptionRequest('robot')).model_xml
     world.delete('robot')
     robot = insert(bench, text)
+    assert robot.spec.links == spec.links
+    assert robot.spec.reduced == spec.reduced  # plugins may name these links
     height = robot.pose.position[2]
     world.run(500)
     # It has neither fallen nor risen.
@@ -85,6 +88,15 @@ def test_on_a_floor_there_is_room_and_above_what_fills_all_places_too(bench):
     assert insert(bench, BOX).pose.position == (0.0, 0.0, 0.5)
     insert(bench, WALL.format('80 80 1'), initial_pose=pose(z=3.0), beside=False)
     assert insert(bench, BOX, initial_pose=pose(z=3.0)).pose.position == (0.0, 0.0, 4.5)
+
+
+def test_within_a_building_of_one_mesh_there_is_room(bench, tmp_path):
+    walls = tmp_path / 'walls.obj'  # two triangles, 8 m apart
+    walls.write_text('v -4 -4 0\nv -4 4 0\nv -4 0 3\nv 4 -4 0\nv 4 4 0\nv 4 0 3\n'
+                     'f 1 2 3\nf 4 5 6\n')
+    building = WALL.replace('<box><size>{}</size></box>', f'<mesh><uri>file://{walls}</uri></mesh>')
+    insert(bench, building)
+    assert insert(bench, BOX).pose.position == (0.0, 0.0, 0.5)
 
 
 def test_without_on_ground_and_beside_the_pose_is_as_given(bench):

@@ -7,7 +7,7 @@ import pytest
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.description import Box, Cylinder, Mesh, Plane, Sphere
-from rosbots_description.sim.meshes import extent
+from rosbots_description.sim.meshes import extent, rough_extent
 
 ROOT = math.sqrt(0.5)
 TIP = """solid s
@@ -44,6 +44,17 @@ def test_box_around_a_mesh_is_that_of_its_vertices(tmp_path):
         (0.0, 0.0, 1.0), from_rpy(math.pi, 0.0, 0.0)))
     assert low == pytest.approx((0.0, -2.0, -5.0))
     assert high == pytest.approx((1.0, 0.0, 1.0))
+
+
+def test_rough_box_around_a_mesh_is_that_around_its_box(tmp_path):
+    path = tmp_path / 'tip.stl'
+    path.write_text(TIP)
+    pose = Pose((0.0, 0.0, 1.0), from_rpy(math.pi / 4.0, 0.0, 0.0))
+    low, high = rough_extent(Mesh(str(path), (1.0, 1.0, -1.0)), pose)
+    assert low == pytest.approx((0.0, 0.0, 1.0 - 3.0 * ROOT))
+    assert high == pytest.approx((1.0, 5.0 * ROOT, 1.0 + 2.0 * ROOT))
+    box = Box((1.0, 2.0, 3.0))
+    assert rough_extent(box, pose) == pytest.approx(extent(box, pose))
 
 
 def test_plane_has_no_end():

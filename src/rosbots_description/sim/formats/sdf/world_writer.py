@@ -46,6 +46,13 @@ def sdf_of_world(spec: WorldSpec) -> str:
     return text_of_document(root)
 
 
+def sdf_of_light(spec: LightSpec) -> str:
+    """Return an SDF document with one light."""
+    root = new_document()
+    _add_light(root, spec)
+    return text_of_document(root)
+
+
 def _add_physics(world: etree._Element, physics: PhysicsSettings) -> None:
     put(world, 'gravity', physics.gravity)
     element = etree.SubElement(world, 'physics', name='default_physics', default='1', type='ode')
@@ -63,8 +70,8 @@ def _add_scene(world: etree._Element, scene: SceneSpec) -> None:
         put(element, field, getattr(scene, field))
 
 
-def _add_light(world: etree._Element, spec: LightSpec) -> None:
-    light = etree.SubElement(world, 'light', name=spec.name, type=spec.type)
+def _add_light(parent: etree._Element, spec: LightSpec) -> None:
+    light = etree.SubElement(parent, 'light', name=spec.name, type=spec.type)
     put_pose(light, spec.pose)
     put(light, 'cast_shadows', spec.cast_shadows)
     put(light, 'diffuse', spec.diffuse)

@@ -66,6 +66,16 @@ def sdf_of_model(spec: ModelSpec, pose: Pose = IDENTITY) -> str:
     return text_of_document(root)
 
 
+def copy_of_model(spec: ModelSpec) -> str:
+    """Return an SDF document from which this simulator reads the same model.
+
+    It has the names of reduced links, and numbers that only this simulator reads.
+    """
+    root = new_document()
+    add_model(root, spec, IDENTITY)
+    return text_of_document(root)
+
+
 def add_model(parent: etree._Element, spec: ModelSpec, pose: Pose) -> None:
     """Add a <model> to a document or world.
 
