@@ -12,6 +12,7 @@ import rostest
 from gazebo_msgs.srv import (
     DeleteModel,
     GetLinkProperties,
+    GetModelState,
     GetPhysicsProperties,
     GetWorldProperties,
     SpawnModel,
@@ -33,6 +34,7 @@ BALL = """<robot name="ball"><link name="body">
   <collision><geometry><sphere radius="0.5"/></geometry></collision>
 </link></robot>"""
 LINK = '/models/ball/body'
+UPLOAD = 'Upload URDF, xacro or SDF'
 
 
 def subscribed():
@@ -73,6 +75,7 @@ class GzwebTest(unittest.TestCase):
                 self.drive(browser)
                 self.change_a_ball(browser)
                 self.show_contacts(browser)
+                self.edit(browser)
                 server.process.kill()
                 browser.wait_until(lambda: any('does not answer' in text
                                                for text in browser.texts()))
@@ -86,9 +89,12 @@ class GzwebTest(unittest.TestCase):
         window.process.send_signal(signal.SIGINT)
         wait_until(lambda: window.process.poll() is not None, 'the end')
         self.assertEqual(window.process.returncode, 0)
-        refusal, *rest = window.shown().split('\r\n')[1:]
-        self.assertIn('mass is -1.0', refusal)
-        self.assertEqual([line for line in rest if line not in ('', '\x1b[0m')], [])
+        # It said the address, and what the simulator refused.
+        said = re.sub(r'\x1b\[\d*m', '', window.shown()).split('\r\n')[1:]
+        refused = [line for line in said if line]
+        self.assertEqual(len(refused), 2, refused)
+        self.assertIn('mass is -1.0', refused[0])
+        self.assertIn('InsertModel: Failure - model_xml, line 5', refused[1])
 
     def follow_a_ball(self, browser):
         spawned = proxy('spawn_urdf_model', SpawnModel)('ball', BALL, '', pose(z=3.0), '')
@@ -158,6 +164,36 @@ class GzwebTest(unittest.TestCase):
         self.assertEqual(subscribed(), TOPICS | {'/gazebo/view/contacts'})
         browser.choose('Contacts and forces', False)
         browser.wait_until(lambda: subscribed() == TOPICS)
+
+    def edit(self, browser):
+        """Insert, upload, move, delete and undo, on the ground beside the ball."""
+        state = proxy('get_model_state', GetModelState)
+        browser.look_at([2.0, 3.0, 1.0])
+        browser.click('Insert shape')
+        browser.wait_until(lambda: '/models/box/link' in browser.nodes)
+        at = state('box', '').pose.position
+        for found, wanted in ((at.x, 2.0), (at.y, 3.0), (at.z, 0.25)):
+            self.assertAlmostEqual(found, wanted, places=3)
+        browser.upload(UPLOAD, 'bad.urdf', BALL.replace('</link>', '').encode())
+        browser.wait_until(lambda: any(note.startswith('InsertModel: Failure - model_xml, line 5')
+                                       for note in browser.notes()))
+        browser.upload(UPLOAD, 'ball.urdf', BALL.encode())  # another one is there
+        browser.wait_until(lambda: '/models/ball_0/body' in browser.nodes)
+        self.assertGreater(state('ball_0', '').pose.position.z, 0.49)
+        browser.click_node('/models/box/link/0 visual')
+        browser.wait_until(lambda: '/gizmo' in browser.nodes)
+        browser.grab('/gizmo')
+        browser.drag('/gizmo', [-3.0, 1.0, 2.0])
+        browser.wait_until(lambda: abs(state('box', '').pose.position.z - 2.0) < 0.1)
+        browser.let_go('/gizmo')
+        browser.wait_until(lambda: browser.control("Undo: move 'box'"))
+        browser.wait_until(lambda: state('box', '').pose.position.z < 0.3)  # it falls
+        browser.click('Delete')
+        browser.wait_until(lambda: '/models/box/link' not in browser.nodes)
+        browser.click("Undo: delete 'box'")
+        browser.wait_until(lambda: browser.control("Undo: move 'box'"))
+        browser.click("Undo: move 'box'")
+        browser.wait_until(lambda: abs(state('box', '').pose.position.x - 2.0) < 0.01)
 
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')

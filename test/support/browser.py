@@ -79,6 +79,10 @@ class Browser:
         self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
                    'updates': {'value': value}})
 
+    def look_at(self, point):
+        """Turn the camera to a point."""
+        self.send({**CAMERA, 'look_at': point})
+
     def click_node(self, name):
         """Click on a node of the scene."""
         self.send({'type': 'SceneNodeClickMessage', 'name': name, 'instance_index': None,
@@ -89,6 +93,39 @@ class Browser:
         """Set the value of a control that is about to come."""
         self.wait_until(lambda: self.control(label))
         self.choose(label, value)
+    def grab(self, node):
+        """Begin to drag a handle of the scene."""
+        self.send({'type': 'TransformControlsDragStartMessage', 'name': node, 'owner': ''})
+
+    def drag(self, node, position):
+        """Drag it to a position."""
+        self.send({'type': 'TransformControlsUpdateMessage', 'name': node, 'owner': '',
+                   'wxyz': [1.0, 0.0, 0.0, 0.0], 'position': position})
+
+    def let_go(self, node):
+        """Let it go."""
+        self.send({'type': 'TransformControlsDragEndMessage', 'name': node, 'owner': ''})
+
+    def click_ray(self, origin, direction):
+        """Click where a ray goes."""
+        self.send({'type': 'ScenePointerMessage', 'event_type': 'click', 'ray_origin': origin,
+                   'ray_direction': direction, 'screen_pos': [[0.5, 0.5]], 'modifier': None})
+
+    def upload(self, label, name, content, claimed=None):
+        """Upload a file in parts of 1000 bytes, or of as many bytes as claimed."""
+        parts = [content[n:n + 1000] for n in range(0, len(content), 1000)]
+        button = self.control(label)
+        self.send({'type': 'FileTransferStartUpload', 'source_component_uuid': button,
+                   'transfer_uuid': name, 'filename': name, 'mime_type': '',
+                   'part_count': len(parts), 'size_bytes': claimed or len(content)})
+        for number, part in enumerate(parts):
+            self.send({'type': 'FileTransferPart', 'source_component_uuid': button,
+                       'transfer_uuid': name, 'part_index': number, 'content': part})
+
+    def notes(self):
+        """Return what the page has notified of."""
+        return [message['props']['title'] for message in self.messages
+                if message['type'] == 'NotificationShowMessage']
 
     def control(self, label):
         """Return the number of the control of that label; None if there is none."""

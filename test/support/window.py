@@ -1,7 +1,16 @@
 """What the window's page is tested with: a simulator that remembers, and what it would show."""
 
+from functools import partial
+
 from rosbots_description.sim.core import Pose, SimError, Twist
-from rosbots_description.sim.description import Box, ShownLink, ShownModel, ShownMotion, Visual
+from rosbots_description.sim.description import (
+    Box,
+    ModelText,
+    ShownLink,
+    ShownModel,
+    ShownMotion,
+    Visual,
+)
 
 
 class FakeContacts:
@@ -26,8 +35,9 @@ class FakeSimulator:
         self.fault = ''
         self.where = Pose(), Twist()
         self.topics = ()
-        self.view = self.time = self.robots = self.inspection = self
+        self.view = self.time = self.robots = self.inspection = self.hands = self.library = self
         self.contacts = FakeContacts()
+        self.names = []  # of models on the model path
 
     def open(self, change, motion):
         self.change, self.motion = change, motion
@@ -42,12 +52,42 @@ class FakeSimulator:
     def drive_topics(self):
         return self.topics
 
+    def models(self):
+        return self.names
+
+    def parameters(self):
+        return ()
+
+    def model(self, name):
+        return ModelText(name, f'model {name}')
+
+    def parameter(self, name):
+        return ModelText('', name)
+
+    def file(self, name, content):
+        return ModelText('', f'{name}: {content.decode()}')
+
+    def shape(self, spec):
+        return ModelText(spec.name, spec)
+
+    def light(self, spec):
+        return ModelText(spec.name, spec)
+
+    def insert(self, text, on_ground=False, beside=False):
+        self._note('insert', text, on_ground, beside)
+        return f'new {text.name}'
+
+    def describe(self, name):
+        self._note('describe', name)
+        return ModelText(name, 'text', pose=Pose((1.0, 0.0, 0.0)))
+
     def __getattr__(self, name):
-        def note(*arguments):
-            self.told.append((name, *arguments))
-            if self.fault:
-                raise SimError(self.fault)
-        return note
+        return partial(self._note, name)
+
+    def _note(self, name, *arguments):
+        self.told.append((name, *arguments))
+        if self.fault:
+            raise SimError(self.fault)
 
 
 def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):

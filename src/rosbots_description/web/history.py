@@ -1,17 +1,13 @@
 """Undo of the last changes by hand."""
 
-import logging
 import threading
 from collections import deque
 from collections.abc import Callable
 
 import viser
 
-from ..sim.core import SimError
 from ..sim.description import ShownMotion
-from .panel import Panel
-
-logger = logging.getLogger(__name__)
+from .panel import Panel, attempt
 
 MOST = 10  # changes that can be undone
 
@@ -47,11 +43,7 @@ class History(Panel):
                 return
             what, undo = self._changes.pop()
             self._show()
-        try:
-            undo()
-        except SimError as error:
-            logger.warning('%s', error)
-            self._complain(f'Undo: {what}: {error}')
+        attempt(undo, lambda sentence: self._complain(f'Undo: {what}: {sentence}'))
 
     def move(self, motion: ShownMotion) -> None:
         """Forget the changes of a simulator that has ended."""

@@ -15,7 +15,10 @@ from .change import ChangePanel, Inspection
 from .contacts import Contacts, ContactsPanel
 from .drive import DrivePanel, Robots
 from .follow import FollowPanel
+from .gizmo import Gizmo
+from .hands import Hands, HandsPanel
 from .history import History
+from .insert import InsertPanel, Library
 from .inspector import Inspector
 from .models import Models
 from .outline import Outline
@@ -23,6 +26,7 @@ from .panel import Panel
 from .scene import SceneView
 from .selection import Selection
 from .show import ShowPanel
+from .site import Site
 from .start_view import StartView
 from .tree import ModelTree
 
@@ -67,11 +71,19 @@ class Simulator(Protocol):
     def contacts(self) -> Contacts | None:
         """What touches in it, if that can be seen."""
 
+    @property
+    def library(self) -> Library | None:
+        """What can be inserted into it, if anything can."""
+
+    @property
+    def hands(self) -> Hands | None:
+        """What can be done to its models, if anything can."""
+
 
 class Page:
     """Shows a world to all browsers that are connected; without one it does not look at it."""
 
-    def __init__(self, site: viser.ViserServer, simulator: Simulator) -> None:
+    def __init__(self, site: Site, simulator: Simulator) -> None:
         self._site, self._view = site, simulator.view
         self._lock = threading.RLock()
         self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
@@ -105,6 +117,15 @@ class Page:
                         site.gui, simulator.inspection, models, self.selection, history,
                         self._notify)]
             self._panels.append(ModelTree(site.gui, models, self.selection, self._lock))
+        if simulator.hands is not None:
+            with tabs.add_tab('Edit', viser.Icon.TOOL):
+                HandsPanel(
+                    site.gui, models, self.selection, simulator.hands, history, self._notify)
+                if simulator.library is not None:
+                    self._panels.append(InsertPanel(
+                        site, simulator.library, simulator.hands, history, self._notify))
+            self._panels.append(Gizmo(
+                site.scene, models, self.selection, simulator.hands, history, self._notify))
         with tabs.add_tab('Show', viser.Icon.EYE):
             self._panels += [
                 FollowPanel(site, models, self.selection),

@@ -14,7 +14,7 @@ logger = logging.getLogger(__name__)
 Value = TypeVar('Value')
 
 
-def attempt(command: Callable[[], None], complain: Callable[[str], None]) -> None:
+def attempt(command: Callable[[], object], complain: Callable[[str], None]) -> None:
     """Carry out a command; if it is refused, complain with the reason."""
     try:
         command()

@@ -18,6 +18,7 @@ from urllib.parse import parse_qs, urlsplit
 import rich
 import viser
 import websockets.asyncio.server
+from viser._messages import FileTransferPart, FileTransferPartAck, FileTransferStartUpload
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request, Response
 
@@ -60,6 +61,38 @@ class Site(viser.ViserServer):
         # Viser looks for a free port by itself and takes no socket and no guard.
         with mock.patch('websockets.asyncio.server.serve', serve_here):
             super().__init__(host, port, verbose=False)
+
+    @property
+    def is_local(self) -> bool:
+        """Tell whether only this machine is served."""
+        return not self.token
+
+    def limit_uploads(self, most: int, refused: Callable[[str], None]) -> None:
+        """Drop files of more than so many bytes before they fill the memory; viser takes any.
+
+        Args:
+            refused: called with the name of the file; it must not wait.
+        """
+        states = self.gui._current_file_upload_states  # viser's, of files that are on their way
+
+        def drop(message: FileTransferStartUpload | FileTransferPart) -> None:
+            state = states.pop(message.transfer_uuid)
+            size = state['total_bytes']
+            self._websock_server.queue_message(FileTransferPartAck(  # that ends it in the browser
+                message.source_component_uuid, message.transfer_uuid, size, size))
+            refused(state['filename'])
+
+        def start(_client: int, message: FileTransferStartUpload) -> None:
+            if message.transfer_uuid in states and message.size_bytes > most:
+                drop(message)
+
+        def go_on(_client: int, message: FileTransferPart) -> None:
+            state = states.get(message.transfer_uuid)
+            if state is not None and state['transferred_bytes'] > most:
+                drop(message)
+
+        self._websock_server.register_handler(FileTransferStartUpload, start)
+        self._websock_server.register_handler(FileTransferPart, go_on)
 
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to publish this page through viser's servers."""

@@ -2,18 +2,10 @@
 
 import pytest
 from support.browser import Browser
+from support.window import clock
 
 from rosbots_description.sim.core import SimError
-from rosbots_description.sim.description import ShownMotion
-from rosbots_description.web import Site
 from rosbots_description.web.history import History
-
-
-@pytest.fixture
-def site():
-    site = Site('127.0.0.1', 0)
-    yield site
-    site.stop()
 
 
 @pytest.fixture
@@ -24,10 +16,6 @@ def told():
 @pytest.fixture
 def history(site, told):
     return History(site.gui, told.append)
-
-
-def clock(real_time):
-    return ShownMotion(0.0, real_time, 0, False)
 
 
 def test_the_last_change_is_undone_first_by_button_and_key(site, history, told):
@@ -64,9 +52,9 @@ def test_a_refusal_is_shown_and_the_change_before_it_can_be_undone(history, told
 
 
 def test_changes_of_another_simulator_are_forgotten(history, told):
-    history.move(clock(50.0))
+    history.move(clock(real_time=50.0))
     history.add('move', lambda: told.append(1))
-    history.move(clock(51.0))
-    history.move(clock(0.1))  # it was restarted
+    history.move(clock(real_time=51.0))
+    history.move(clock(real_time=0.1))  # it was restarted
     history.undo()
     assert told == []

@@ -1,7 +1,9 @@
 """The simulator as the window in the browser sees it."""
 
 from .contacts import RosContacts
+from .hands import RosHands
 from .inspection import RosInspection
+from .library import RosLibrary
 from .robots import RosRobots
 from .time_control import RosTimeControl
 from .view import RosView
@@ -16,3 +18,5 @@ class GazeboSimulator:
         self.robots = RosRobots()
         self.inspection = RosInspection()
         self.contacts = RosContacts()
+        self.library = RosLibrary()
+        self.hands = RosHands()

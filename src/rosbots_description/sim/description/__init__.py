@@ -25,6 +25,7 @@ from .model_spec import (
     Surface,
     Visual,
 )
+from .model_text import ModelText
 from .physics_settings import PhysicsSettings, check_physics
 from .sensor_spec import SensorSpec
 from .shown_scene import (
@@ -49,7 +50,7 @@ __all__ = [
     'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN',
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
-    'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneChange', 'SceneSpec',
+    'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneChange', 'SceneSpec',
     'SensorSpec', 'ShownContact', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownSensor',
     'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
     'material_of_colours',

@@ -1,0 +1,110 @@
+"""What can be inserted: models of the model path, robot descriptions on parameters, and files."""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import rospkg
+import rospy
+from rosbots_msgs.srv import GetModelLibrary
+
+from ...sim.core import SimError, plain_text
+from ...sim.description import LightSpec, ModelSpec, ModelText
+from ...sim.formats import sdf_of_light, sdf_of_model
+from ...sim.resources import MAX_XML_BYTES, root_tag
+from ..transport import NO_MASTER
+from .calls import call
+
+INCLUDE = ('<sdf version="1.7"><world name="w"><include><uri>model://{}</uri></include></world>'
+           '</sdf>')
+EXPANSION = 20  # of a xacro file, at most [s of processor time]
+MEMORY = 2_000_000_000  # of that [bytes]
+
+
+class RosLibrary:
+    """What can be inserted; a fault is a SimError with a sentence."""
+
+    def __init__(self) -> None:
+        self._urdf: dict[str, bool] = {}  # whether a parameter holds one, by its name
+
+    def models(self) -> list[str]:
+        """Return the names of the models along the simulator's model path; [] if unknown."""
+        try:
+            return list(call('get_model_library', GetModelLibrary).model_names)
+        except SimError:
+            return []
+
+    def parameters(self) -> list[str]:
+        """Return the names of parameters that hold a URDF; [] if unknown.
+
+        Each is read once, when its name is new.
+        """
+        try:
+            names = rospy.get_param_names()
+            self._urdf = {name: self._urdf.get(name) or _holds_urdf(name) for name in names}
+        except NO_MASTER:
+            return []
+        return sorted(name for name, holds in self._urdf.items() if holds)
+
+    def model(self, name: str) -> ModelText:
+        """Return a model of the model path."""
+        return ModelText(name, INCLUDE.format(escape(name)))
+
+    def parameter(self, name: str) -> ModelText:
+        """Return what a parameter holds, in the namespace of the parameter."""
+        try:
+            text = rospy.get_param(name)
+        except (KeyError, *NO_MASTER):
+            raise SimError(f'the parameter {name} is not set any more') from None
+        if not isinstance(text, str):
+            raise SimError(f'the parameter {name} holds no URDF')
+        return ModelText('', text, namespace=name.rpartition('/')[0].lstrip('/'))
+
+    def file(self, name: str, content: bytes) -> ModelText:
+        """Return a URDF or SDF, or what a xacro file expands to, by the name of the file."""
+        if len(content) > MAX_XML_BYTES:
+            raise SimError(f"'{name}' has {len(content)} bytes; {MAX_XML_BYTES} are accepted")
+        if name.lower().endswith('.xacro'):
+            content = _expanded(name, content)
+        try:
+            return ModelText('', plain_text(content, name))
+        except (LookupError, UnicodeDecodeError):
+            raise SimError(f"'{name}' is not text; upload a URDF, xacro or SDF") from None
+
+    def shape(self, spec: ModelSpec) -> ModelText:
+        """Return a model as SDF."""
+        return ModelText(spec.name, sdf_of_model(spec))
+
+    def light(self, spec: LightSpec) -> ModelText:
+        """Return a light as SDF."""
+        return ModelText(spec.name, sdf_of_light(spec))
+
+
+def _holds_urdf(parameter: str) -> bool:
+    value = rospy.get_param(parameter, None)
+    return isinstance(value, str) and root_tag(value) == 'robot'
+
+
+def _expanded(name: str, content: bytes) -> bytes:
+    """Return what the program xacro makes of a file, in a folder of its own."""
+    try:
+        program = Path(rospkg.RosPack().get_path('xacro'), 'xacro')
+    except rospkg.ResourceNotFound:
+        raise SimError(f"'{name}': the package xacro is not there to expand it") from None
+    with tempfile.TemporaryDirectory(prefix='gzweb-') as folder:
+        file = Path(folder, 'upload.xacro')
+        file.write_bytes(content)
+        # It may not use more, whatever its expressions compute.
+        limits = ['prlimit', f'--cpu={EXPANSION}', f'--as={MEMORY}']
+        ended = subprocess.run(
+            [*limits, sys.executable, '-X', 'utf8', str(program), str(file)], check=False,
+            capture_output=True, stdin=subprocess.DEVNULL, cwd=folder)
+    if ended.returncode:
+        said = ended.stderr.decode(errors='replace')
+        said = said.replace(str(file), name).replace(f'{folder}/', '')
+        reasons = (line.removeprefix('error:').strip() for line in said.splitlines())
+        reason = next(filter(None, reasons), 'it takes too much time or memory')
+        raise SimError(f"'{name}': xacro rejects it: {reason}")
+    return ended.stdout

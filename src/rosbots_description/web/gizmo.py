@@ -1,0 +1,132 @@
+"""Handles in the scene by which the selected model is moved and turned."""
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+import viser
+
+from ..sim.core import Pose
+from ..sim.description import SceneChange, ShownMotion
+from .hands import Hands
+from .history import History
+from .models import Models
+from .nodes import place, pose_of, wxyz
+from .panel import Panel, attempt
+from .selection import Selection
+
+NODE = '/gizmo'
+PERIOD = 0.05  # [s, wall] between two commands while dragging
+
+
+class Drag:
+    """Holds a model at a pose, which may be changed by any thread, until it is released.
+
+    The newest pose is sent, at most every `PERIOD`, by a thread of its own: a simulator that
+    answers slowly skips poses. The model is at rest in each.
+    """
+
+    def __init__(self, model: str, pose: Pose, hands: Hands, complain: Callable[[str], None],
+                 ended: Callable[['Drag'], None]) -> None:
+        """Begin; `ended` is called at the end."""
+        self.model, self.start, self.pose = model, pose, pose
+        self.is_done = False  # whether the model was moved to the last pose
+        self._hands, self._complain, self._ended = hands, complain, ended
+        self._released = threading.Event()
+        threading.Thread(target=self._run, daemon=True).start()
+
+    @property
+    def is_released(self) -> bool:
+        """Tell whether the last pose is being sent."""
+        return self._released.is_set()
+
+    def release(self) -> None:
+        """Send the last pose, and end."""
+        self._released.set()
+
+    def _run(self) -> None:
+        attempt(self._follow, self._complain)
+        self._ended(self)
+
+    def _follow(self) -> None:
+        while not self.is_done:
+            last = self._released.wait(PERIOD)
+            self._hands.move(self.model, self.pose)
+            self.is_done = last
+
+
+class Gizmo(Panel):
+    """One for all browsers. The browser that has grabbed it last moves the model."""
+
+    def __init__(self, scene: viser.SceneApi, models: Models, selection: Selection, hands: Hands,
+                 history: History, complain: Callable[[str], None]) -> None:
+        self._scene, self._models, self._selection = scene, models, selection
+        self._hands, self._history, self._complain = hands, history, complain
+        self._lock = threading.Lock()  # of the drag
+        self._drag: Drag | None = None
+        self._owner: int | None = None  # the number of the browser that drags
+        self._handle: viser.TransformControlsHandle | None = None
+        selection.on_change(self._reach)
+
+    def apply(self, _change: SceneChange) -> None:
+        """Follow a model that was spawned anew under its name."""
+        self._follow()
+
+    def move(self, _motion: ShownMotion) -> None:
+        """Follow the model, unless it follows."""
+        self._follow()
+
+    def _follow(self) -> None:
+        model = self._selection.model
+        if self._handle is not None and model is not None and self._drag is None:
+            place(self._handle, self._models.pose(model))
+
+    def _reach(self) -> None:
+        """Be at the model that is selected now."""
+        self._release(self._owner)
+        if self._handle is not None:
+            self._handle.remove()
+            self._handle = None
+        model = self._selection.model
+        if model is not None:
+            pose = self._models.pose(model)
+            self._handle = self._scene.add_transform_controls(
+                NODE, 1.0, fixed=False, depth_test=False, opacity=0.8,
+                position=pose.position, wxyz=wxyz(pose))
+            self._handle.on_update(self._dragged)
+
+    async def _dragged(self, event: viser.TransformControlsEvent) -> None:
+        """Take in what a browser does; on viser's own thread, so it must not wait."""
+        if event.phase == 'start':
+            self._grab(event)
+        elif event.phase == 'update':
+            with self._lock:
+                if self._drag is not None and event.client_id == self._owner:
+                    self._drag.pose = pose_of(event.target)
+        else:
+            self._release(event.client_id)
+
+    def _grab(self, event: viser.TransformControlsEvent) -> None:
+        model = self._selection.model
+        with self._lock:
+            if model is not None and event.target is self._handle:
+                self._owner = event.client_id
+                if self._drag is None or self._drag.is_released:
+                    self._drag = Drag(model, pose_of(event.target), self._hands,
+                                      self._complain, self._end)
+
+    def _release(self, client: int | None) -> None:
+        with self._lock:
+            if self._drag is not None and client == self._owner:
+                self._drag.release()
+
+    def _end(self, drag: Drag) -> None:
+        """Remember the move; called when the last command was answered."""
+        with self._lock:
+            if self._drag is drag:
+                self._drag = self._owner = None
+        if drag.is_done and not np.allclose(
+                [*drag.pose.position, *drag.pose.orientation],
+                [*drag.start.position, *drag.start.orientation]):
+            self._history.add(f"move '{drag.model}'",
+                              lambda: self._hands.move(drag.model, drag.start))
