@@ -42,6 +42,7 @@ def run(
     workers: int | None = None,
     address: str | None = None,
     output: str | os.PathLike[str] | None = None,
+    only: Iterable[int] | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Make all runs of a scenario; one with a row in `output` is not made again.
@@ -55,6 +56,7 @@ def run(
             the runs in this process, without Ray.
         address: of a Ray cluster to use instead, or 'auto'.
         output: a folder for `rows.parquet`; None returns the rows only.
+        only: numbers of the runs to make; None: all of them.
         progress: called after each row.
     Raises:
         ScenarioError: the scenario is not valid, or the folder holds the rows of another one.
@@ -66,8 +68,12 @@ def run(
     except ImportError as error:
         raise ScenarioError(f'no rows without the Python package {error.name}; ./rosbots setup or '
                             "pip install '.[ray]' installs it") from None
-    table, total = Table(file, output), file.parameters.runs
-    missing = [number for number in range(total) if number not in table.rows]
+    table = Table(file, output)
+    wanted = range(file.parameters.runs) if only is None else sorted(set(only))
+    if wanted and not 0 <= wanted[0] <= wanted[-1] < file.parameters.runs:
+        raise ScenarioError(f'the runs have the numbers 0 to {file.parameters.runs - 1}')
+    missing = [number for number in wanted if number not in table.rows]
+    total = len(table.rows) + len(missing)
     repeated = 0
     if missing:
         repeated = _collect(table, _rows(file, missing, workers, address), total, progress)
