@@ -7,7 +7,7 @@ from typing import Protocol
 import viser
 
 from ..sim.core import Pose, Twist, Vector, from_rpy, to_rpy
-from ..sim.description import SceneChange, ShownLink
+from ..sim.description import SceneChange, ShownLink, ShownModel
 from .descriptions import chosen_links, friction, scoped_name
 from .history import History
 from .inspector import States
@@ -73,11 +73,12 @@ class ChangePanel(Panel):
             self._fill_properties()
 
     def _button(
-        self, gui: viser.GuiApi, label: str, command: Callable[[str, str | None], None]
+        self, gui: viser.GuiApi, label: str, command: Callable[[ShownModel, str | None], None]
     ) -> None:
         def act() -> None:
-            if self._selection.model is not None:
-                command(self._selection.model, self._selection.link)
+            model = self._models.all.get(self._selection.model or '')
+            if model is not None:
+                command(model, self._selection.link)
 
         gui.add_button(label).on_click(lambda _: attempt(act, self._complain))
 
@@ -94,33 +95,26 @@ class ChangePanel(Panel):
 
     def _fill_properties(self) -> None:
         assert self._selection.model is not None
-        model = self._models.all[self._selection.model]
-        links = chosen_links(model, self._selection.link)
-        body = self._only_link()
+        model, link = self._models.all[self._selection.model], self._selection.link
+        body = _only_link(model, link)
         self._motion.visible = not model.static
         self._body.visible = body is not None and not model.static
         if body is not None and body.inertial is not None:
             fill(self._mass, float(body.inertial.mass))
             fill(self._gravity, body.gravity)
-        pairs = friction(links)
+        pairs = friction(chosen_links(model, link))
         self._surface.visible = bool(pairs)
         if pairs:
             for field, value in zip((self._mu, self._mu2), min(pairs), strict=True):
                 fill(field, float(value))  # viser casts what is typed to the type that is there
 
-    def _only_link(self) -> ShownLink | None:
-        """Return the selected link, or that of a model which has no other."""
-        model = self._selection.model
-        links = chosen_links(self._models.all[model], self._selection.link) if model else []
-        return links[0] if len(links) == 1 else None
-
-    def _set_pose(self, model: str, link: str | None) -> None:
+    def _set_pose(self, model: ShownModel, link: str | None) -> None:
         pose = Pose(self._position.value, from_rpy(*self._angles.value))
-        self._set_state(model, link, 'pose', pose, None)
+        self._set_state(model.name, link, 'pose', pose, None)
 
-    def _set_velocity(self, model: str, link: str | None) -> None:
+    def _set_velocity(self, model: ShownModel, link: str | None) -> None:
         twist = Twist(self._linear.value, self._angular.value)
-        self._set_state(model, link, 'velocity', None, twist)
+        self._set_state(model.name, link, 'velocity', None, twist)
 
     def _set_state(self, model: str, link: str | None, what: str, pose: Pose | None,
                    twist: Twist | None) -> None:
@@ -130,24 +124,30 @@ class ChangePanel(Panel):
         self._history.add(f"{what} of '{scoped_name(model, link)}'",
                           partial(self._inspection.set_state, model, link, *before))
 
-    def _set_mass(self, model: str, _link: str | None) -> None:
-        body = self._only_link()
+    def _set_mass(self, model: ShownModel, link: str | None) -> None:
+        body = _only_link(model, link)
         if body is not None and body.inertial is not None:
-            self._inspection.set_mass(model, body.name, self._mass.value, self._gravity.value)
+            self._inspection.set_mass(
+                model.name, body.name, self._mass.value, self._gravity.value)
             self._history.add(
-                f"mass of '{scoped_name(model, body.name)}'",
-                partial(self._inspection.set_mass, model, body.name, body.inertial.mass,
+                f"mass of '{scoped_name(model.name, body.name)}'",
+                partial(self._inspection.set_mass, model.name, body.name, body.inertial.mass,
                         body.gravity))
 
-    def _set_friction(self, model: str, link: str | None) -> None:
-        before = [(scoped_name(model, part.name, one.name), one.surface.mu, one.surface.mu2)
-                  for part in chosen_links(self._models.all[model], link)
-                  for one in part.collisions]
+    def _set_friction(self, model: ShownModel, link: str | None) -> None:
+        before = [(scoped_name(model.name, part.name, one.name), one.surface.mu, one.surface.mu2)
+                  for part in chosen_links(model, link) for one in part.collisions]
 
         def undo() -> None:
             for one in before:
                 self._inspection.set_friction(*one)
 
-        name = scoped_name(model, link)
+        name = scoped_name(model.name, link)
         self._inspection.set_friction(name, self._mu.value, self._mu2.value)
         self._history.add(f"friction of '{name}'", undo)
+
+
+def _only_link(model: ShownModel, link: str | None) -> ShownLink | None:
+    """Return the link of that name, or that of a model which has no other."""
+    links = chosen_links(model, link)
+    return links[0] if len(links) == 1 else None
