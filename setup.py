@@ -33,6 +33,6 @@ setup(
     extras_require={'gym': ['PyYAML', 'gymnasium==1.4.0', 'xacro==1.13.3'],
                     'ray': ['PyYAML', 'msgspec==0.22.0', 'pyarrow==23.0.1', 'ray==2.60.0',
                             'rich==14.3.4', 'simpleeval==1.0.8'],
-                    'web': ['rich==14.3.4', 'viser==1.1.1', 'websockets==16.1.1'],
+                    'web': ['av==18.1.0', 'rich==14.3.4', 'viser==1.1.1', 'websockets==16.1.1'],
                     'xacro': ['PyYAML', 'xacro==1.13.3']},
 )

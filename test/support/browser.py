@@ -24,6 +24,7 @@ class Browser:
             additional_headers=headers, max_size=None)
         self.messages = []
         self.nodes = {}  # of the scene: name -> [type, position, wxyz]
+        self.renders = 0  # how many pictures were given
         self.keys = {}  # what is bound to each
         self.idle_keys = set()  # those of them that do nothing now
         self.controls = {}  # uuid -> [type, properties]
@@ -126,6 +127,29 @@ class Browser:
         """Return what the page has notified of."""
         return [message['props']['title'] for message in self.messages
                 if message['type'] == 'NotificationShowMessage']
+
+    def answer_render(self, content):
+        """Give the picture that is asked for, the bytes of a JPEG or PNG; tell if there is one."""
+        asked = [message['render_uuid'] for message in self.messages
+                 if message['type'] == 'GetRenderRequestMessage']
+        if len(asked) == self.renders:
+            return False
+        self.renders = len(asked)
+        self.send({'type': 'GetRenderResponseMessage', 'payload': content,
+                   'render_uuid': asked[-1]})
+        return True
+
+    def download(self):
+        """Return name and content of the file that came last; None if there is none yet."""
+        started = [message for message in self.messages
+                   if message['type'] == 'FileTransferStartDownload']
+        if not started:
+            return None
+        parts = [message['content'] for message in self.messages
+                 if message['type'] == 'FileTransferPart'
+                 and message['transfer_uuid'] == started[-1]['transfer_uuid']]
+        is_whole = len(parts) == started[-1]['part_count']
+        return (started[-1]['filename'], b''.join(parts)) if is_whole else None
 
     def control(self, label):
         """Return the number of the control of that label; None if there is none."""

@@ -35,7 +35,8 @@ class FakeSimulator:
         self.fault = ''
         self.where = Pose(), Twist()
         self.topics = ()
-        self.view = self.time = self.robots = self.inspection = self.hands = self.library = self
+        self.view = self.time = self.robots = self.inspection = self.hands = self.library = \
+            self.worlds = self
         self.contacts = FakeContacts()
         self.names = []  # of models on the model path
 

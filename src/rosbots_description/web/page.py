@@ -28,6 +28,7 @@ from .selection import Selection
 from .show import ShowPanel
 from .site import Site
 from .start_view import StartView
+from .take_away import TakeAwayPanel, Worlds
 from .tree import ModelTree
 
 logger = logging.getLogger(__name__)
@@ -78,6 +79,10 @@ class Simulator(Protocol):
     @property
     def hands(self) -> Hands | None:
         """What can be done to its models, if anything can."""
+
+    @property
+    def worlds(self) -> Worlds | None:
+        """Its world as a file, if it gives that away."""
 
 
 class Page:
@@ -132,6 +137,10 @@ class Page:
                 ShowPanel(site, scene, models, self.selection, self._lock)]
             if simulator.contacts is not None:
                 self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
+        if simulator.worlds is not None:
+            with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
+                # First, as a recording stamps what moves after it.
+                self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 

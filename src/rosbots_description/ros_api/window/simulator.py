@@ -7,6 +7,7 @@ from .library import RosLibrary
 from .robots import RosRobots
 from .time_control import RosTimeControl
 from .view import RosView
+from .worlds import RosWorlds
 
 
 class GazeboSimulator:
@@ -20,3 +21,4 @@ class GazeboSimulator:
         self.contacts = RosContacts()
         self.library = RosLibrary()
         self.hands = RosHands()
+        self.worlds = RosWorlds()

@@ -1,0 +1,156 @@
+"""What one takes away from the page: a picture, a video, a recording, the world."""
+
+import io
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import viser
+from PIL import Image
+
+from ..sim.core import SimError
+from ..sim.description import ShownMotion
+from .panel import Panel
+from .takes import PATIENCE, SceneTake, Take, VideoTake
+
+Click = viser.GuiEvent[viser.GuiButtonHandle]
+Complain = Callable[[str], None]
+
+
+class Worlds(Protocol):
+    """What a simulator knows of world files."""
+
+    def save(self) -> tuple[str, str]:
+        """Return the world as it stands as a world file, and a sentence about it.
+
+        Raises:
+            SimError: the simulator refused or did not answer.
+        """
+
+
+class TakeAwayPanel(Panel):
+    """Downloads for the browser that asks."""
+
+    def __init__(self, site: viser.ViserServer, worlds: Worlds, complain: Complain) -> None:
+        self._worlds, self._complain = worlds, complain
+        gui = site.gui
+        self._button('World', viser.Icon.WORLD_DOWNLOAD, self._save_world, gui,
+                     'a world file: everything as it is now')
+        self._button('Picture', viser.Icon.CAMERA, self._save_picture, gui,
+                     'what this browser shows, as PNG')
+        self._takes = (
+            TakeButton(gui, 'video', 'video.mp4', 'what this browser shows, as MP4',
+                       VideoTake, complain),
+            TakeButton(gui, 'recording', 'recording.html',
+                       'the scene as it moves, as a page that needs no simulator',
+                       lambda _: SceneTake(site), complain))
+
+    def close(self) -> None:
+        """End what is recorded for nobody."""
+        for take in self._takes:
+            take.drop()
+
+    def move(self, motion: ShownMotion) -> None:
+        """Let recordings go on."""
+        for take in self._takes:
+            take.move(motion)
+
+    def refresh(self) -> None:
+        """Hand over what has reached its greatest length."""
+        for take in self._takes:
+            take.hand_over_if_full()
+
+    def _button(self, label: str, icon: Any, act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
+                gui: viser.GuiApi, hint: str) -> None:
+        def click(event: Click) -> None:
+            if event.client is not None:
+                try:
+                    act(event.client)
+                except SimError as error:
+                    self._complain(str(error))
+
+        gui.add_button(label, icon=icon, hint=hint).on_click(click)
+
+    def _save_world(self, client: viser.ClientHandle) -> None:
+        text, sentence = self._worlds.save()
+        client.send_file_download('saved.world', text.encode(), save_immediately=True)
+        client.add_notification('World', sentence, auto_close_seconds=8.0)
+
+    def _save_picture(self, client: viser.ClientHandle) -> None:
+        camera = client.camera
+        try:
+            shown = client.get_render(
+                camera.image_height, camera.image_width, transport_format='png', timeout=PATIENCE)
+        except (TimeoutError, RuntimeError) as error:
+            raise SimError(f'the browser gave no picture: {error}') from error
+        made = io.BytesIO()
+        Image.fromarray(shown).save(made, 'PNG')
+        client.send_file_download('picture.png', made.getvalue(), save_immediately=True)
+
+
+class TakeButton:
+    """Starts and stops a take for one browser at a time."""
+
+    def __init__(self, gui: viser.GuiApi, called: str, file: str, hint: str,
+                 make: Callable[[viser.ClientHandle], Take], complain: Complain) -> None:
+        self._called, self._file, self._make, self._complain = called, file, make, complain
+        self._lock = threading.Lock()
+        self._running: tuple[Take, viser.ClientHandle] | None = None
+        self._button = gui.add_button('', icon=viser.Icon.PLAYER_RECORD, hint=hint)
+        self._button.on_click(self._click)
+        self._label()
+
+    def move(self, motion: ShownMotion) -> None:
+        """Take in a motion."""
+        with self._lock:
+            if self._running is not None:
+                self._running[0].move(motion)
+
+    def hand_over_if_full(self) -> None:
+        """End a take that has reached its greatest length."""
+        running = self._running
+        if running is not None and running[0].is_full:
+            self._complain(f'The {self._called} is as long as it can be, and ends.')
+            threading.Thread(target=self._hand_over, daemon=True).start()
+
+    def drop(self) -> None:
+        """End a take that nobody waits for."""
+        running = self._stop()
+        if running is not None:
+            threading.Thread(target=running[0].finish, daemon=True).start()
+
+    def _click(self, event: Click) -> None:
+        if event.client is None:
+            return
+        if self._running is not None:
+            self._hand_over()
+            return
+        try:
+            with self._lock:
+                self._running = (self._make(event.client), event.client)
+        except ImportError as error:
+            self._complain(f"No {self._called}: the Python package '{error.name}' is not "
+                           'installed; ./rosbots setup does that.')
+        self._label()
+
+    def _stop(self) -> tuple[Take, viser.ClientHandle] | None:
+        with self._lock:
+            running, self._running = self._running, None
+        self._label()
+        return running
+
+    def _hand_over(self) -> None:
+        running = self._stop()
+        if running is None:  # somebody else stopped it, too
+            return
+        take, client = running
+        content = take.finish()
+        if content:
+            client.send_file_download(self._file, content, save_immediately=True)
+        else:
+            self._complain(f'The browser gave no pictures, so there is no {self._called}.')
+
+    def _label(self) -> None:
+        is_running = self._running is not None
+        self._button.label = f'{"Stop the" if is_running else "Record a"} {self._called}'
+        self._button.color = 'red' if is_running else None

@@ -1,0 +1,136 @@
+"""What the page gives a browser to keep: world, picture, video, recording."""
+
+import base64
+import io
+import re
+import sys
+import time
+from functools import partial
+
+import av
+import msgspec
+import numpy as np
+import zstandard
+from PIL import Image
+from support.browser import Browser
+from support.window import clock, model
+
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import SceneChange
+from rosbots_description.web import takes
+
+SIZE = (100, 100)  # [pixels] of the browser's picture
+
+
+def image(kind, colour):
+    made = io.BytesIO()
+    Image.new('RGB', SIZE, colour).save(made, kind)
+    return made.getvalue()
+
+
+def notes(browser):
+    return [message['props']['title'] for message in browser.messages
+            if message['type'] == 'NotificationShowMessage']
+
+
+def download(browser, file):
+    browser.wait_until(lambda: (browser.download() or ('',))[0] == file)
+    return browser.download()[1]
+
+
+def test_the_world_is_downloaded_as_the_simulator_wrote_it(browser, simulator):
+    simulator.save = lambda: ('<sdf/>', 'saved 3 models')
+    browser.wait_until(lambda: browser.control('World'))
+    browser.click('World')
+    assert download(browser, 'saved.world') == b'<sdf/>'
+
+
+def test_a_world_that_cannot_be_saved_is_told(browser, simulator):
+    simulator.fault = 'the simulator does not answer'
+    browser.wait_until(lambda: browser.control('World'))
+    browser.click('World')
+    browser.wait_until(lambda: notes(browser) == ['the simulator does not answer'])
+
+
+def test_a_picture_has_the_size_and_the_colours_of_the_browser(browser):
+    browser.wait_until(lambda: browser.control('Picture'))
+    browser.click('Picture')
+    browser.wait_until(partial(browser.answer_render, image('PNG', (200, 100, 50))))
+    shown = Image.open(io.BytesIO(download(browser, 'picture.png')))
+    assert (shown.size, shown.getpixel((5, 5))[:3]) == (SIZE, (200, 100, 50))
+
+
+def test_a_video_has_the_frames_of_the_browser_in_their_time(browser):
+    browser.wait_until(lambda: browser.control('Record a video'))
+    browser.click('Record a video')
+    begin = time.monotonic()
+    for colour in ('red', 'lime', 'blue'):
+        browser.wait_until(partial(browser.answer_render, image('JPEG', colour)))
+    browser.wait_until(lambda: browser.control('Stop the video'))
+    browser.click('Stop the video')
+    browser.wait_until(lambda: browser.answer_render(image('JPEG', 'blue')) or browser.download())
+    with av.open(io.BytesIO(download(browser, 'video.mp4'))) as video:
+        frames = list(video.decode(video=0))
+    colours = [np.argmax(frame.to_ndarray(format='rgb24').mean(axis=(0, 1))) for frame in frames]
+    assert colours == sorted(colours)
+    assert {0, 1, 2} == set(colours)
+    assert frames[0].time == 0.0
+    assert 1.5 / takes.RATE < frames[-1].time < time.monotonic() - begin
+    browser.wait_until(lambda: browser.control('Record a video'))
+
+
+def test_a_recording_plays_the_scene_without_a_server(browser, simulator):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    browser.wait_until(lambda: browser.control('Record a recording'))
+    browser.click('Record a recording')
+    browser.wait_until(lambda: browser.control('Stop the recording'))
+    for moment in (0.0, 0.25, 1.5):
+        simulator.motion(clock(real_time=7.0 + moment, _1=Pose((moment, 0.0, 0.0))))
+    browser.click('Stop the recording')
+    recorded = scene_of(download(browser, 'recording.html').decode())
+    assert recorded['durationSeconds'] == 1.5
+    places = [(moment, message['position'][0]) for moment, message in recorded['messages']
+              if message['type'] == 'SetPositionMessage' and message['name'] == '/models/a/link']
+    assert places[-2:] == [(0.25, 0.25), (1.5, 1.5)]
+
+
+def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page, monkeypatch):
+    monkeypatch.setattr(takes, 'LONGEST', 2.0)
+    browser.wait_until(lambda: browser.control('Record a recording'))
+    browser.click('Record a recording')
+    browser.wait_until(lambda: browser.control('Stop the recording'))
+    simulator.motion(clock(real_time=1.0))
+    page.poll()
+    assert browser.control('Stop the recording')
+    simulator.motion(clock(real_time=3.5))
+    page.poll()
+    assert scene_of(download(browser, 'recording.html').decode())['durationSeconds'] == 2.5
+    assert 'The recording is as long as it can be, and ends.' in notes(browser)
+
+
+def test_takes_end_with_the_last_browser(site, simulator, page):
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: browser.control('Record a recording'))
+        browser.click('Record a recording')
+        browser.click('Record a video')
+        browser.wait_until(lambda: browser.control('Stop the recording')
+                           and browser.control('Stop the video'))
+    with Browser(site.address) as other:
+        other.wait_until(lambda: other.control('Record a recording')
+                         and other.control('Record a video'))
+    assert site._websock_server._record_handles == []
+
+
+def test_without_pyav_the_page_says_so(browser, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'av', None)
+    browser.wait_until(lambda: browser.control('Record a video'))
+    browser.click('Record a video')
+    browser.wait_until(lambda: any("'av' is not installed" in note for note in notes(browser)))
+
+
+def scene_of(page):
+    """Return what a recorded page plays."""
+    content = base64.b64decode(re.search(r'__VISER_EMBED_DATA__="(.+?)"', page)[1])
+    inner = zstandard.ZstdDecompressor().decompressobj().decompress(content[8:])
+    length = int.from_bytes(inner[:8], 'little')
+    return msgspec.msgpack.decode(inner[8:8 + length])
