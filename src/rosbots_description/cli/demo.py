@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import signal
 import socket
 import sys
@@ -33,6 +34,7 @@ _MODEL = 'rosbots'
 PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
 _START = 30.0  # [s] wall time for the simulator to start on a slow machine
 _SPAWN = 30.0  # [s] wall time for one spawn.launch
+_POLL = 0.1  # [s] wall time between two looks at a log
 _LANDED = -0.10  # [m] the wheels touch the ground when base_footprint is at -0.12
 _INTERRUPTED = 130  # exit code
 
@@ -53,12 +55,14 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog='./rosbots demo', description=__doc__)
     parser.add_argument('--output', type=Path, default=Path('demo_output'), metavar='FOLDER',
                         help='where pictures and logs go; default: %(default)s')
+    parser.add_argument('--web', action='store_true',
+                        help='show it in a browser as well; in a terminal it stays until Enter')
     arguments = parser.parse_args(argv)
     # SIGTERM and SIGHUP end the demo and all its processes, as Ctrl-C does
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.default_int_handler)
     try:
-        _run(arguments.output)
+        _run(arguments.output, arguments.web)
     except KeyboardInterrupt:
         print('\ndemo: interrupted; all its processes have ended', file=sys.stderr)
         return _INTERRUPTED
@@ -69,9 +73,11 @@ def main(argv: list[str] | None = None) -> int:
     return 0
 
 
-def _run(folder: Path) -> None:
+def _run(folder: Path, web: bool) -> None:
     """Run all steps in order.
 
+    Args:
+        web: whether to show the world in a browser.
     Raises:
         DemoError, OSError: a step failed.
     """
@@ -84,13 +90,16 @@ def _run(folder: Path) -> None:
     with ExitStack() as stack:
         _say('starting the simulator with an empty world')
         server = stack.enter_context(Launched(
-            ['gazebo_ros', 'empty_world.launch', 'gui:=false', 'server_required:=true'],
+            ['gazebo_ros', 'empty_world.launch', 'gui:=false', 'server_required:=true',
+             f'web:={str(web).lower()}', 'web_port:=0'],
             folder / 'simulator.log', environment))
         try:
             client = DemoClient(_MODEL, _START, lambda: server.running)
         except TimeoutError as error:
             raise DemoError(f'{error}: {server.error()}') from error
         stack.callback(client.close)
+        if web:
+            _say(window_line(server.log))
         _say('spawning the robot')
         _spawn(client, folder / 'spawn.log', environment)
         _say(f'driving it for {sum(segment.duration for segment in DRIVE):g} s: '
@@ -103,7 +112,25 @@ def _run(folder: Path) -> None:
         if client.present():
             raise DemoError('the robot is still there after it was deleted')
         _spawn(client, folder / 'second_spawn.log', environment)
-    _report(rows, folder)
+        _report(rows, folder)
+        if web and sys.stdin.isatty():
+            input('The browser shows the robot until you press Enter. ')
+
+
+def window_line(log: Path, timeout: float = _START) -> str:
+    """Return what gzweb says first: its address, or why there is none.
+
+    Args:
+        log: of the launch file.
+        timeout: [s, wall]
+    """
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        said = re.findall(r'^gzweb: (.+)', log.read_text(errors='replace'), re.MULTILINE)
+        if said:
+            return str(said[0])
+        time.sleep(_POLL)
+    return f'there is no window in the browser after {timeout:g} s (see {log})'
 
 
 def _private_environment(folder: Path) -> dict[str, str]:
