@@ -128,7 +128,8 @@ def scan(x, y, directions):
     with np.errstate(divide='ignore', invalid='ignore'):
         distance = (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / cross
         share = (start[:, 0] * ray[..., 1] - start[:, 1] * ray[..., 0]) / cross
-    return np.min(np.where((distance > 0) & (share >= 0) & (share <= 1), distance, np.inf), axis=1)
+    meets = (distance > 0) & (np.abs(share - 0.5) < 0.5 + 1e-9)  # in a corner, too
+    return np.min(np.where(meets, distance, np.inf), axis=1)
 
 
 def clearance(x, y):
