@@ -43,7 +43,7 @@ class History(Panel):
                 return
             what, undo = self._changes.pop()
             self._show()
-        attempt(undo, lambda sentence: self._complain(f'Undo: {what}: {sentence}'))
+        attempt(undo, lambda reason: self._complain(f'Undo: {what}: {reason}'))
 
     def move(self, motion: ShownMotion) -> None:
         """Forget the changes of a simulator that has ended."""

@@ -3,7 +3,7 @@
 import pytest
 from support.browser import Browser
 
-from rosbots_description.web import Site, drive
+from rosbots_description.web import drive
 from rosbots_description.web.camera_keys import CameraKeys
 from rosbots_description.web.drive import DrivePanel
 
@@ -21,13 +21,6 @@ class FakeRobots:
 
     def drive(self, *command):
         self.commands.append(command)
-
-
-@pytest.fixture
-def site():
-    site = Site('127.0.0.1', 0)
-    yield site
-    site.stop()
 
 
 @pytest.fixture
