@@ -5,6 +5,7 @@ import viser
 
 from ..sim.description import SceneChange, ShownLink
 from .bounds import corners
+from .descriptions import chosen_links
 from .models import Models
 from .nodes import link_node
 from .panel import Panel
@@ -12,6 +13,7 @@ from .selection import Selection
 
 COLOUR = (255, 140, 0)
 WIDTH = 2.0  # of its lines [pixels]
+MOST = 200  # links of one model that get a box
 GAP = 0.003  # between the box and what it is around [m]
 # Edges of a box: pairs of opposite ends along each axis, of a cube from -1 to 1.
 _ENDS = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
@@ -38,9 +40,8 @@ class Outline(Panel):
         self._shown = []
         model, chosen = self._selection.model, self._selection.link
         if model is not None:
-            for link in self._models.all[model].links:
-                if chosen in (None, link.name):
-                    self._add(f'{link_node(model, link.name)}/selected', link)
+            for link in chosen_links(self._models.all[model], chosen)[:MOST]:
+                self._add(f'{link_node(model, link.name)}/selected', link)
 
     def _add(self, name: str, link: ShownLink) -> None:
         points = corners(link.visuals)
