@@ -7,7 +7,6 @@ demo draws its own two; `web.png` needs Chromium. The default is all of them, in
 map_while_driving.launch.
 """
 
-import io
 import os
 import re
 import signal
@@ -22,8 +21,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from chromium import Chromium
+from chromium import chromium, picture
 from PIL import Image
+from selenium.webdriver.common.by import By
 
 from rosbots_description.cli import demo
 from rosbots_description.cli.launched import Launched
@@ -58,7 +58,7 @@ BROWSER: dict[str, Steps] = {'web.png': [
     (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
      'Successfully spawned entity'),
 ]}
-PAGE = (1200, 787)  # [pixels]; Chromium keeps 87 for itself
+PAGE = (1200, 700)  # [pixels]
 LOADING = 30.0  # [s, wall] for all meshes, drawn in software
 DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
 
@@ -129,11 +129,17 @@ def picture_in_browser(steps: Steps, folder: Path) -> Image.Image:
     with started(steps, folder):
         log = (folder / '0.log').read_text(errors='replace')
         address = re.findall(r'the world is at (\S+)', log)[-1]
-        with Chromium(address, PAGE, folder / 'profile') as page:
-            page.wait_for("document.body.innerText.includes('Iterations')", START)
-            page.evaluate(f'document.querySelectorAll("{NOTICE}").forEach(b => b.click())')
+        with chromium(PAGE) as browser:
+            browser.get(address)
+            end = time.monotonic() + START
+            while 'Iterations' not in browser.find_element(By.TAG_NAME, 'body').text:
+                if time.monotonic() > end:
+                    raise PictureError(f'no page at {address} within {START:g} s')
+                time.sleep(POLL_PERIOD)
+            for button in browser.find_elements(By.CSS_SELECTOR, NOTICE):
+                button.click()
             time.sleep(LOADING)
-            return Image.open(io.BytesIO(page.picture()))
+            return picture(browser)
 
 
 @contextmanager

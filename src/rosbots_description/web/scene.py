@@ -19,7 +19,7 @@ from .panel import Panel
 logger = logging.getLogger(__name__)
 
 SKY, HORIZON = (96, 150, 210), (222, 232, 242)  # without a background of the world's own
-GRID_HEIGHT = 0.001  # [m] above a ground
+GRID_HEIGHT = 0.004  # [m] above a ground; at 0.001 renderers draw the ground in front, by view
 
 
 @dataclass
