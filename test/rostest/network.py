@@ -64,7 +64,7 @@ OUR_TOPICS = {
 }
 OUR_SERVICES = {
     'get_friction', 'get_model_description', 'get_model_library', 'get_model_omissions',
-    'insert_model', 'save_world', 'set_friction', 'step',
+    'hold_model', 'insert_model', 'save_world', 'set_friction', 'step',
 }
 # What the article's robot adds when it is spawned.
 OF_ROBOT = {'/odom', '/joint_states', '/tf', '/part2_cmr/cmd_vel'}

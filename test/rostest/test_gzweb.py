@@ -184,7 +184,7 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: '/gizmo' in browser.nodes)
         browser.grab('/gizmo')
         browser.drag('/gizmo', [-3.0, 1.0, 2.0])
-        browser.wait_until(lambda: abs(state('box', '').pose.position.z - 2.0) < 0.1)
+        browser.wait_until(lambda: abs(state('box', '').pose.position.z - 2.0) < 0.01)
         browser.let_go('/gizmo')
         browser.wait_until(lambda: browser.control("Undo: move 'box'"))
         browser.wait_until(lambda: state('box', '').pose.position.z < 0.3)  # it falls

@@ -17,13 +17,14 @@ from .selection import Selection
 
 NODE = '/gizmo'
 PERIOD = 0.05  # [s, wall] between two commands while dragging
+HOLD = 1.0  # [s, wall] after which the simulator lets go by itself
 
 
 class Drag:
     """Holds a model at a pose, which may be changed by any thread, until it is released.
 
     The newest pose is sent, at most every `PERIOD`, by a thread of its own: a simulator that
-    answers slowly skips poses. The model is at rest in each.
+    answers slowly skips poses. It holds the model at rest in each.
     """
 
     def __init__(self, model: str, pose: Pose, hands: Hands, complain: Callable[[str], None],
@@ -51,7 +52,7 @@ class Drag:
     def _follow(self) -> None:
         while not self.is_done:
             last = self._released.wait(PERIOD)
-            self._hands.move(self.model, self.pose)
+            self._hands.hold(self.model, self.pose, 0.0 if last else HOLD)
             self.is_done = last
 
 

@@ -37,6 +37,9 @@ class Hands(Protocol):
     def move(self, name: str, pose: Pose) -> None:
         """Move a model, at rest, so that its frame is at a pose in the world."""
 
+    def hold(self, name: str, pose: Pose, duration: float) -> None:
+        """Hold a model at rest at a pose for a time [s, wall]; zero: let it go there."""
+
     def push(self, link: str, force: Vector, torque: Vector, duration: float,
              own_axes: bool) -> None:
         """Apply a force [N] at the centre of mass of a link, and a torque [N m].

@@ -25,8 +25,8 @@ def chosen(browser, simulator, page):
 
 
 def moves(simulator):
-    """Return the positions to which models were moved."""
-    return [pose.position for what, _, pose in simulator.told if what == 'move']
+    """Return the positions to which models were moved, or at which they were held."""
+    return [what[2].position for what in simulator.told if what[0] in ('move', 'hold')]
 
 
 def test_delete_and_undo_spawn_it_as_it_was(chosen, simulator):
@@ -99,6 +99,8 @@ def test_dragged_model_is_held_until_it_is_let_go(chosen, simulator):
     told = len(simulator.told)
     chosen.read(3 * gizmo.PERIOD)
     assert len(simulator.told) == told  # it is free
+    assert {what[3] for what in simulator.told[:-1]} == {gizmo.HOLD}
+    assert simulator.told[-1][3] == 0.0
     chosen.click("Undo: move 'a'")
     chosen.wait_until(lambda: moves(simulator)[-1] == (1.0, 0.0, 0.0))
 
@@ -114,11 +116,11 @@ def test_what_was_only_grabbed_has_not_moved(chosen, simulator):
 def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, monkeypatch):
     answer, calls = threading.Event(), []
 
-    def move(_name, pose):
+    def hold(_name, pose, _duration):
         calls.append(pose.position)
         answer.wait(20.0)
 
-    monkeypatch.setattr(simulator, 'move', move, raising=False)
+    monkeypatch.setattr(simulator, 'hold', hold, raising=False)
     chosen.grab(NODE)
     chosen.wait_until(lambda: calls)
     for x in range(100):
@@ -163,7 +165,7 @@ def test_of_two_browsers_the_one_that_grabbed_last_moves_it(chosen, simulator, s
 def test_model_that_goes_ends_the_drag_in_a_sentence(chosen, simulator):
     chosen.grab(NODE)
     chosen.wait_until(lambda: moves(simulator))
-    simulator.fault = 'SetModelState: model does not exist'
+    simulator.fault = 'HoldModel: model does not exist'
     chosen.wait_until(lambda: simulator.fault in chosen.notes())
     assert chosen.notes().count(simulator.fault) == 1
     simulator.change(SceneChange(removed=('a',)))

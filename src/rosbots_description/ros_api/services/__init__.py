@@ -2,6 +2,7 @@
 
 from . import (  # noqa: F401
     friction,
+    holding,
     insertion,
     joints,
     lights,

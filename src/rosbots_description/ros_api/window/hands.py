@@ -5,7 +5,7 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import ApplyBodyWrench, DeleteLight, DeleteModel, SetModelState
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Vector3, Wrench
-from rosbots_msgs.srv import GetModelDescription, InsertModel
+from rosbots_msgs.srv import GetModelDescription, HoldModel, InsertModel
 
 from ...sim.core import Pose, SimError, Vector
 from ...sim.description import ModelText
@@ -49,6 +49,10 @@ class RosHands:
         """Move a model, at rest, so that its frame is at a pose in the world."""
         call('set_model_state', SetModelState,
              model_state=ModelState(model_name=name, pose=_message(pose)))
+
+    def hold(self, name: str, pose: Pose, duration: float) -> None:
+        """Hold a model at rest at a pose for a time [s, wall]; zero: let it go there."""
+        call('hold_model', HoldModel, model_name=name, pose=_message(pose), duration=duration)
 
     def push(self, link: str, force: Vector, torque: Vector, duration: float,
              own_axes: bool) -> None:

@@ -40,6 +40,7 @@ from ..plugin_registry import (
 )
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
+from .holds import Holds
 from .model import CollisionFrame, Joint, Link, Model
 from .model_part import ModelPart
 from .nested_model import NestedModel, nested_models
@@ -88,6 +89,8 @@ class World:
         self.schedule = Schedule()
         self.external_forces = ExternalForces(self.clock)
         self.schedule.add(self.external_forces)
+        self.holds = Holds(self.clock)
+        self.schedule.add(self.holds)
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightSpec] = {}
         self.scene = SceneSpec()
@@ -228,6 +231,7 @@ class World:
 
     def _remove(self, model: Model) -> None:
         self.external_forces.cancel(lambda target: target.model is model)
+        self.holds.release(model)
         for part in reversed(model.parts):
             self.schedule.remove(part)
             part.unload()
@@ -252,6 +256,7 @@ class World:
         self.clock.reset()
         self._watchdog.check_soon()
         self.external_forces.cancel(lambda target: True)
+        self.holds.clear()
         self.engine.reset()
         for model in self.models.values():
             model.add_to_engine()
