@@ -50,6 +50,7 @@ def rows(
                 ray.get_runtime_context().get_node_id(), soft=False)).remote()
         task = ray.remote(num_cpus=1, max_retries=ATTEMPTS - 1)(_simulate)
         shared = ray.put(file)
+        _require_worker(ray, starts)
         waiting, pending, done = iter(numbers), {}, 0
         try:
             while True:
@@ -69,6 +70,17 @@ def rows(
             for reference in pending:
                 with contextlib.suppress(Exception):
                     ray.cancel(reference, force=True)
+
+
+def _require_worker(ray: Any, starts: Any) -> None:  # noqa: ANN401
+    """Wait for the first answer of a worker."""
+    from ray.exceptions import RayError
+
+    try:
+        ray.get(starts.repeated.remote())
+    except RayError as error:
+        last = str(error).strip().splitlines()[-1]
+        raise ClusterError(f'the workers of the Ray cluster cannot make runs: {last}') from None
 
 
 def _simulate(file: ScenarioFile, number: int, starts: Any) -> dict[str, Any]:  # noqa: ANN401
@@ -118,7 +130,9 @@ def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
     ray = _ray()
     _require_listener(address)
     if address is not None or ray.is_initialized():
-        with _session(ray, address=address):
+        # This library goes along: the cluster may know it by its other name, or not at all.
+        library = str(Path(__file__).parents[1])
+        with _session(ray, address=address, runtime_env={'py_modules': [library]}):
             yield ray
         return
     with _place() as place, private_environment(), _session(
