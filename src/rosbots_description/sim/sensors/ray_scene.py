@@ -5,7 +5,6 @@ moved; static models are looked at only after something was placed. Bounding sph
 the number of ray-shape pairs to compute.
 """
 
-import itertools
 import logging
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -16,9 +15,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ZERO, ModelError, Pose, Quaternion, Vector, compose, rotate
+from ..core import ZERO, ModelError, Pose, Vector, compose, rotate
 from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import ray_shapes
+from .link_solids import LinkSolids, rotation_matrix
 from .ray_fan import Indices, Patches, RayFan
 from .ray_mesh import RayMesh, build_later
 
@@ -33,15 +33,6 @@ Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
 _FORMULAS: dict[type, Formula] = {
     Box: ray_shapes.box, Cylinder: ray_shapes.cylinder, Sphere: ray_shapes.sphere}
 _MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
-
-_AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-_SIGNS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))  # of a box's corners
-
-
-def rotation_matrix(orientation: Quaternion) -> Floats:
-    """Return the rotation matrix (3, 3) of a unit quaternion."""
-    x, y, z = (rotate(orientation, axis) for axis in _AXES)
-    return np.array((x, y, z)).T
 
 
 class RayScene:
@@ -211,24 +202,29 @@ class RayScene:
         self._retro = np.array([collision.surface.laser_retro for _, collision in solids])
         self._plane_retro = np.array([collision.surface.laser_retro for _, collision in planes])
         self._shines = bool(self._retro.any() or self._plane_retro.any())
-        self._carried: dict[Link, list[tuple[int, Collision]]] = {link: [] for link in self._links}
-        for some in (solids, planes):
-            for row, (link, collision) in enumerate(some):
-                self._carried[link].append((row, collision))
+        own: dict[Link, list[int]] = {link: [] for link in self._links}
+        for row, (link, _) in enumerate(solids):
+            own[link].append(row)
+        offsets = {row: mesh.centre for row, mesh in self._meshes.items()}
+        self._solids = {
+            link: LinkSolids.of(
+                rows, [solids[row][1].pose for row in rows], self._halves, offsets)
+            for link, rows in own.items()}
+        self._planes: dict[Link, list[tuple[int, Pose, Vector]]] = {
+            link: [] for link in self._links}
+        for row, (link, collision) in enumerate(planes):
+            if isinstance(collision.geometry, Plane):
+                self._planes[link].append((row, collision.pose, collision.geometry.normal))
 
     def _place(self, link: 'Link', pose: Pose) -> None:
         """Update the shapes of a link."""
-        for row, collision in self._carried[link]:
-            position, orientation = compose(pose, collision.pose)
-            if isinstance(collision.geometry, Plane):
-                self._points[row] = position
-                self._normals[row] = rotate(orientation, collision.geometry.normal)
-            else:
-                self._centres[row] = position
-                self._axes[row] = rotation_matrix(orientation)
-                self._corners[:, :, row] = self._axes[row] @ (_SIGNS * self._halves[:, row]).T
-                if row in self._meshes:
-                    self._centres[row] += self._axes[row] @ self._meshes[row].centre
+        solids = self._solids[link]
+        if len(solids.rows):
+            rows = solids.rows
+            self._centres[rows], self._axes[rows], self._corners[:, :, rows] = solids.at(pose)
+        for row, in_link, normal in self._planes[link]:
+            position, orientation = compose(pose, in_link)
+            self._points[row], self._normals[row] = position, rotate(orientation, normal)
 
     def _build(self, shapes: Iterable[Geometry]) -> None:
         """Begin to build the meshes among some shapes, unless that was done before."""
