@@ -6,7 +6,7 @@ import pytest
 from support import ROOT
 from support.batches import BALL, FLOATING, MASS, full_disk, only_row, pushed_ball
 
-from rosbots_description.batch import run
+from rosbots_description.batch import ScenarioError, run
 
 BOX_OF_MESH = f'''<robot name="b"><link name="l"><inertial><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>
@@ -186,3 +186,12 @@ def test_an_interrupted_batch_is_resumed(tmp_path):
     assert resumed.table.equals(whole)
     assert run(scenario, workers=0, output=tmp_path, progress=interrupt).table.equals(whole)
     assert made == [1, 2, 3, 4]
+
+
+def test_some_of_the_runs_can_be_made_alone(tmp_path):
+    scenario = pushed_ball(parameters={'force': {'grid': [1.0, 2.0, 3.0]}})
+    made = run(scenario, workers=0, only=[1], output=tmp_path).table
+    assert made.column('run').to_pylist() == [1]
+    assert run(scenario, workers=0, output=tmp_path).table.num_rows == 3
+    with pytest.raises(ScenarioError, match='the runs have the numbers 0 to 2'):
+        run(scenario, workers=0, only=[3])
