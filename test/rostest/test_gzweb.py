@@ -181,7 +181,9 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: '/models/ball_0/body' in browser.nodes)
         self.assertGreater(state('ball_0', '').pose.position.z, 0.49)
         browser.click_node('/models/box/link/0 visual')
-        browser.wait_until(lambda: '/gizmo' in browser.nodes)
+        # It was at the ball, which was selected before.
+        browser.wait_until(
+            lambda: abs(browser.nodes.get('/gizmo', ('', (0.0, 0.0)))[1][1] - 3.0) < 0.01)
         browser.grab('/gizmo')
         browser.drag('/gizmo', [-3.0, 1.0, 2.0])
         browser.wait_until(lambda: abs(state('box', '').pose.position.z - 2.0) < 0.01)
