@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The browser's window looks only when it is looked at, and acts by the simulator's services."""
 
+import math
 import re
 import signal
 import sys
@@ -11,17 +12,20 @@ import rospy
 import rostest
 from gazebo_msgs.srv import (
     DeleteModel,
+    GetJointProperties,
     GetLinkProperties,
     GetModelState,
     GetPhysicsProperties,
     GetWorldProperties,
     SpawnModel,
 )
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import TransformStamped, Twist
 from rosbots_msgs.srv import GetFriction
+from sensor_msgs.msg import LaserScan
 from server_process import ServerProcess
 from simulator import pose, proxy, wait_until
 from terminal import Terminal
+from tf2_msgs.msg import TFMessage
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 from support.browser import Browser
@@ -33,6 +37,10 @@ BALL = """<robot name="ball"><link name="body">
   <visual><geometry><sphere radius="0.5"/></geometry></visual>
   <collision><geometry><sphere radius="0.5"/></geometry></collision>
 </link></robot>"""
+ARM = """<robot name="arm"><link name="world"/><link name="body">
+  <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+</link><joint name="hinge" type="continuous">
+  <parent link="world"/><child link="body"/><axis xyz="0 0 1"/></joint></robot>"""
 LINK = '/models/ball/body'
 UPLOAD = 'Upload URDF, xacro or SDF'
 
@@ -73,9 +81,11 @@ class GzwebTest(unittest.TestCase):
                 self.follow_a_ball(browser)
                 self.control_time(browser)
                 self.drive(browser)
+                self.turn_a_joint(browser)
                 self.change_a_ball(browser)
                 self.show_contacts(browser)
                 self.edit(browser)
+                self.sense(browser)
                 server.process.kill()
                 browser.wait_until(lambda: any('does not answer' in text
                                                for text in browser.texts()))
@@ -196,6 +206,47 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: browser.control("Undo: move 'box'"))
         browser.click("Undo: move 'box'")
         browser.wait_until(lambda: abs(state('box', '').pose.position.x - 2.0) < 0.01)
+
+    def turn_a_joint(self, browser):
+        hinge = proxy('get_joint_properties', GetJointProperties)
+        proxy('spawn_urdf_model', SpawnModel)('arm', ARM, '', pose(), '')
+        browser.wait_until(lambda: browser.control('Of') and 'arm' in browser.controls[
+            browser.control('Of')][1]['options'])
+        browser.choose('Of', 'arm')
+        browser.wait_until(lambda: browser.control('hinge [rad]'))
+        browser.choose('hinge [rad]', 0.5)
+        browser.wait_until(lambda: abs(hinge('arm::hinge').position[0] - 0.5) < 1e-6)
+        for what, label, rate in (
+                ('velocity', 'hinge [rad/s]', 1.9), ('effort', 'hinge [N m]', 3.0)):
+            browser.choose('Sliders set', what)
+            browser.wait_until(lambda label=label: browser.control(label))
+            before = browser.control(label)
+            browser.choose(label, 2.0)
+            browser.wait_until(lambda rate=rate: hinge('arm::hinge').rate[0] > rate)
+            browser.click('Release')
+            browser.wait_until(
+                lambda label=label, before=before: browser.control(label) not in (None, before))
+        proxy('delete_model', DeleteModel)('arm')
+
+    def sense(self, browser):
+        """Show a scan of a frame on the ball, and leave it shown."""
+        placed = TransformStamped(child_frame_id='lens')
+        placed.header.frame_id = 'ball/body'  # there is another body
+        placed.transform.translation.x, placed.transform.rotation.w = 2.0, 1.0
+        frames = rospy.Publisher('/tf_static', TFMessage, latch=True, queue_size=1)
+        frames.publish(TFMessage([placed]))
+        scans = rospy.Publisher('/scan', LaserScan, latch=True, queue_size=1)
+        scan = LaserScan(range_max=9.0, ranges=[1.0])
+        scan.header.frame_id = 'lens'
+        scans.publish(scan)
+        browser.wait_until(lambda: browser.control('/scan'))
+        self.assertEqual(subscribed(), TOPICS)  # it has not been asked for
+        browser.choose('/scan', True)
+        sensor = '/sensors/\u2215scan'
+        browser.wait_until(lambda: f'{sensor}/points' in browser.nodes)
+        ball, lens = browser.nodes[LINK][1], browser.nodes[sensor][1]
+        self.assertAlmostEqual(math.dist(ball, lens), 2.0, places=3)
+        browser.wait_until(lambda: subscribed() == TOPICS | {'/scan'})  # TF is no longer needed
 
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')

@@ -27,7 +27,7 @@ class FakeContacts:
 
 
 class FakeSimulator:
-    """Remembers what it is told; every part of it is this object."""
+    """Remembers what it is told; most parts of it are this object."""
 
     def __init__(self):
         self.told = []
@@ -37,7 +37,8 @@ class FakeSimulator:
         self.topics = ()
         self.view = self.time = self.robots = self.inspection = self.hands = self.library = \
             self.worlds = self
-        self.contacts = FakeContacts()
+        self.contacts, self.joints = FakeContacts(), FakeJoints()
+        self.sensors, self.signals = FakeSensors(), FakeSignals()
         self.names = []  # of models on the model path
 
     def open(self, change, motion):
@@ -89,6 +90,78 @@ class FakeSimulator:
         self.told.append((name, *arguments))
         if self.fault:
             raise SimError(self.fault)
+
+
+class FakeJoints:
+    """Remembers what it is told; all joints stand at `now`."""
+
+    def __init__(self):
+        self.told, self.topics, self.now, self.fault = [], (), 0.25, ''
+
+    def position(self, model, joint):
+        return self.now
+
+    def command_topics(self):
+        return self.topics
+
+    def __getattr__(self, name):
+        def note(*arguments):
+            self.told.append((name, *arguments))
+            if self.fault:
+                raise SimError(self.fault)
+        return note
+
+
+class FakeSensors:
+    """Keeps what is open, and answers with the readings that it is given."""
+
+    def __init__(self, topics=()):
+        self.topics, self.open_topics, self.readings = dict(topics), set(), {}
+        self.place = ('base', Pose((0.0, 0.0, 0.5)))  # of every frame
+
+    def sensor_topics(self):
+        return dict(self.topics)
+
+    def open(self, topic, kind):
+        assert self.topics[topic] == kind
+        self.open_topics.add(topic)
+
+    def close(self, topic):
+        self.open_topics.remove(topic)
+
+    def read(self, topic):
+        assert topic in self.open_topics
+        reading = self.readings.pop(topic, None)
+        if isinstance(reading, str):
+            raise SimError(reading)
+        return reading
+
+    def locate(self, frame, links):
+        self.links = links
+        return self.place
+
+
+class FakeSignals:
+    """Keeps what is open, and answers with the samples that it is given."""
+
+    def __init__(self, topics=()):
+        self.topics, self.open_curves, self.samples = dict(topics), set(), {}
+        self.fault = ''
+
+    def signal_topics(self):
+        return dict(self.topics)
+
+    def open(self, curve):
+        if self.fault:
+            raise SimError(self.fault)
+        self.open_curves.add(curve)
+
+    def close(self, curve):
+        self.open_curves.remove(curve)
+
+    def read(self):
+        samples, self.samples = self.samples, {}
+        return {curve: samples.get(curve, []) for curve in self.open_curves}
 
 
 def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):

@@ -125,7 +125,8 @@ class Window:
     """Serves the page at `address` on this machine; it is what the page knows as its simulator."""
 
     # Actions come from the program.
-    robots = inspection = contacts = hands = library = worlds = None
+    robots = joints = sensors = signals = None
+    inspection = contacts = hands = library = worlds = None
 
     def __init__(self, world: World, port: int) -> None:
         """Begin to serve.

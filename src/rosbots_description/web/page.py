@@ -20,11 +20,14 @@ from .hands import Hands, HandsPanel
 from .history import History
 from .insert import InsertPanel, Library
 from .inspector import Inspector
+from .joints import JointPanel, Joints
 from .models import Models
 from .outline import Outline
 from .panel import Panel
+from .plot import PlotPanel, Signals
 from .scene import SceneView
 from .selection import Selection
+from .sensors import SensorPanel, Sensors
 from .show import ShowPanel
 from .site import Site
 from .start_view import StartView
@@ -65,6 +68,10 @@ class Simulator(Protocol):
         """Its robots, if they can be driven."""
 
     @property
+    def joints(self) -> Joints | None:
+        """Its joints, if they can be moved."""
+
+    @property
     def inspection(self) -> Inspection | None:
         """Its models and links, if they can be changed."""
 
@@ -83,6 +90,14 @@ class Simulator(Protocol):
     @property
     def worlds(self) -> Worlds | None:
         """Its world as a file, if it gives that away."""
+
+    @property
+    def sensors(self) -> Sensors | None:
+        """What its robots sense with, if that can be seen."""
+
+    @property
+    def signals(self) -> Signals | None:
+        """Numbers that can be plotted, if any can."""
 
 
 class Page:
@@ -113,6 +128,9 @@ class Page:
         if simulator.robots is not None:
             with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
                 self._panels.append(DrivePanel(site.gui, simulator.robots, keys))
+                if simulator.joints is not None:
+                    self._panels.append(
+                        JointPanel(site.gui, simulator.joints, models, self._notify))
         with tabs.add_tab('Models', viser.Icon.LIST_TREE):
             if simulator.inspection is not None:
                 self._panels += [
@@ -141,6 +159,12 @@ class Page:
             with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
                 # First, as a recording stamps what moves after it.
                 self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
+        if simulator.sensors is not None:
+            with tabs.add_tab('Sensors', viser.Icon.CAMERA):
+                self._panels.append(SensorPanel(site, simulator.sensors, models))
+        if simulator.signals is not None:
+            with tabs.add_tab('Plot', viser.Icon.CHART_LINE):
+                self._panels.append(PlotPanel(site.gui, simulator.signals, self._notify))
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 

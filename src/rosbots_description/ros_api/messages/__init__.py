@@ -10,6 +10,7 @@ from .conversions import (
     read_vector,
     stamp,
 )
+from .fields import number_getter, number_paths
 from .layouts import (
     ImuLayout,
     JointStatesLayout,
@@ -20,6 +21,7 @@ from .layouts import (
     floats,
 )
 from .readings import read_reading
+from .shown_readings import SENSOR_TYPES, shown_reading
 from .shown_scene import (
     contacts_message,
     motion_message,
@@ -31,9 +33,9 @@ from .shown_scene import (
 from .validity import RequestError, require_finite
 
 __all__ = [
-    'ImuLayout', 'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout', 'PointCloudLayout',
-    'RequestError', 'TransformLayout', 'contacts_message', 'fill_pose', 'fill_transform',
-    'fill_twist', 'floats', 'motion_message', 'read_contacts', 'read_motion', 'read_pose',
-    'read_reading', 'read_transform', 'read_twist', 'read_vector', 'require_finite', 'scene_change',
-    'scene_message', 'stamp',
+    'SENSOR_TYPES', 'ImuLayout', 'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout',
+    'PointCloudLayout', 'RequestError', 'TransformLayout', 'contacts_message', 'fill_pose',
+    'fill_transform', 'fill_twist', 'floats', 'motion_message', 'number_getter', 'number_paths',
+    'read_contacts', 'read_motion', 'read_pose', 'read_reading', 'read_transform', 'read_twist',
+    'read_vector', 'require_finite', 'scene_change', 'scene_message', 'shown_reading', 'stamp',
 ]

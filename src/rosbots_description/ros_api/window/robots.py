@@ -9,7 +9,7 @@ import time
 import rospy
 from geometry_msgs.msg import Twist
 
-from ..transport import NO_MASTER
+from .topic_graph import TopicGraph
 
 CONNECTION = 0.5  # [s, wall] that the first command waits for its robot
 
@@ -17,19 +17,14 @@ CONNECTION = 0.5  # [s, wall] that the first command waits for its robot
 class RosRobots:
     """Robots that take velocity commands."""
 
-    def __init__(self) -> None:
+    def __init__(self, topics: TopicGraph) -> None:
+        self._topics = topics
         self._commands: rospy.Publisher | None = None
 
     def drive_topics(self) -> list[str]:
         """Return the topics of velocity commands that other nodes subscribe to; [] if unknown."""
-        master = rospy.get_master()
-        try:
-            types = dict(master.getTopicTypes()[2])
-            _, subscribed, _ = master.getSystemState()[2]
-        except NO_MASTER:
-            return []
-        return sorted(name for name, nodes in subscribed
-                      if types.get(name) == Twist._type and set(nodes) - {rospy.get_name()})
+        return [name for name, kind in self._topics.subscribed().items()
+                if kind == Twist._type]
 
     def drive(self, topic: str, forward: float, left: float) -> None:
         """Publish a velocity command: forward [m/s], and turning left [rad/s]."""

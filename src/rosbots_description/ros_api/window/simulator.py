@@ -3,9 +3,13 @@
 from .contacts import RosContacts
 from .hands import RosHands
 from .inspection import RosInspection
+from .joints import RosJoints
 from .library import RosLibrary
 from .robots import RosRobots
+from .sensors import RosSensors
+from .signals import RosSignals
 from .time_control import RosTimeControl
+from .topic_graph import TopicGraph
 from .view import RosView
 from .worlds import RosWorlds
 
@@ -14,11 +18,15 @@ class GazeboSimulator:
     """What `web.Page` asks for, over the topics and services of `gazebo`."""
 
     def __init__(self) -> None:
+        topics = TopicGraph()
         self.view = RosView()
         self.time = RosTimeControl()
-        self.robots = RosRobots()
+        self.robots = RosRobots(topics)
+        self.joints = RosJoints(topics)
         self.inspection = RosInspection()
         self.contacts = RosContacts()
         self.library = RosLibrary()
         self.hands = RosHands()
         self.worlds = RosWorlds()
+        self.sensors = RosSensors(topics)
+        self.signals = RosSignals(topics)

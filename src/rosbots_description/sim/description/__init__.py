@@ -28,6 +28,7 @@ from .model_spec import (
 from .model_text import ModelText
 from .physics_settings import PhysicsSettings, check_physics
 from .sensor_spec import SensorSpec
+from .shown_reading import ShownReading
 from .shown_scene import (
     SceneChange,
     ShownContact,
@@ -51,7 +52,7 @@ __all__ = [
     'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
     'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
     'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneChange', 'SceneSpec',
-    'SensorSpec', 'ShownContact', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownSensor',
-    'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
-    'material_of_colours',
+    'SensorSpec', 'ShownContact', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownReading',
+    'ShownSensor', 'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material',
+    'inertia', 'material_of_colours',
 ]

@@ -1,0 +1,133 @@
+"""Messages of sensors to what a window shows of them."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from gazebo_msgs.msg import ContactsState
+from geometry_msgs.msg import WrenchStamped
+from nav_msgs.msg import Odometry
+from numpy.typing import NDArray
+from sensor_msgs.msg import (
+    CompressedImage,
+    Image,
+    Imu,
+    LaserScan,
+    MagneticField,
+    NavSatFix,
+    PointCloud,
+    PointCloud2,
+    Range,
+)
+
+from ...sim.core import Vector
+from ...sim.description import ShownReading
+from .clouds import cloud_points, old_cloud_points
+from .conversions import read_vector
+from .pictures import decompressed, pixels
+
+MAX_RAYS = 1000  # that are shown; of more, every second, third … is
+NORMAL = 0.1  # [m] of a shown normal of a contact
+MAX_CONTACTS = 8  # that are told in words
+
+
+def _picture(message: Image) -> ShownReading:
+    return ShownReading(picture=pixels(message))
+
+
+def _compressed(message: CompressedImage) -> ShownReading:
+    return ShownReading(picture=decompressed(message))
+
+
+def _scan(message: LaserScan) -> ShownReading:
+    ranges = np.asarray(message.ranges)
+    hit = (ranges >= message.range_min) & (ranges <= message.range_max)  # never for NaN
+    angles = (message.angle_min + message.angle_increment * np.arange(len(ranges)))[hit]
+    met = ranges[hit]
+    points = np.stack([met * np.cos(angles), met * np.sin(angles), np.zeros(len(met))],
+                      axis=1).astype(np.float32)
+    words = f'{len(met)} of {len(ranges)} rays meet something'
+    if len(met):
+        words += f', the nearest at {met.min():.3f} m'
+    sampled = points[::max(1, -(-len(points) // MAX_RAYS))]
+    return ShownReading(message.header.frame_id, points=points, lines=_rays(sampled), words=words)
+
+
+def _range(message: Range) -> ShownReading:
+    end = np.array([[message.range, 0.0, 0.0]], np.float32)
+    ends = end[np.isfinite(end).all(axis=1)]
+    return ShownReading(message.header.frame_id, points=ends, lines=_rays(ends),
+                        words=f'{message.range:.3f} m')
+
+
+def _cloud(message: PointCloud2) -> ShownReading:
+    points, colours = cloud_points(message)
+    return ShownReading(message.header.frame_id, points=points, colours=colours,
+                        words=f'{message.width * message.height} points')
+
+
+def _old_cloud(message: PointCloud) -> ShownReading:
+    return ShownReading(message.header.frame_id, points=old_cloud_points(message),
+                        words=f'{len(message.points)} points')
+
+
+def _contacts(message: ContactsState) -> ShownReading:
+    points: list[Vector] = []
+    normals: list[Vector] = []
+    words = []
+    for state in message.states:
+        points += map(read_vector, state.contact_positions)
+        normals += map(read_vector, state.contact_normals)
+        force = math.hypot(*read_vector(state.total_wrench.force))
+        words.append(f'- {state.collision1_name} and {state.collision2_name}: {force:.2f} N')
+    here = np.array(points, np.float32).reshape(-1, 3)
+    there = here + NORMAL * np.array(normals, np.float32).reshape(-1, 3)
+    told = sorted(set(words))
+    if len(told) > MAX_CONTACTS:
+        told[MAX_CONTACTS:] = [f'- and {len(told) - MAX_CONTACTS} more']
+    return ShownReading(message.header.frame_id, points=here,
+                        lines=np.stack([here, there], axis=1),
+                        words='\n'.join(told) or 'no contact')
+
+
+def _numbers(message: Any) -> ShownReading:  # noqa: ANN401  any message
+    rows = [f'| {name} | {" ".join(f"{value:.4g}" for value in values)} |'
+            for name, values in _leaves(message, '')]
+    return ShownReading(words='\n'.join(['| | |', '|:--|--:|', *rows]))
+
+
+def _leaves(message: Any, name: str) -> list[tuple[str, list[float]]]:  # noqa: ANN401
+    """Return the numbers of a message, those of a vector together; no arrays, no header."""
+    found, own = [], []
+    for slot in message.__slots__:
+        value = getattr(message, slot)
+        if isinstance(value, bool | int | float):
+            own.append((slot, float(value)))
+        elif hasattr(value, '__slots__') and slot != 'header':
+            found += _leaves(value, f'{name} {slot}'.strip())
+    if {'x', 'y', 'z'} <= {slot for slot, _ in own}:
+        return [(name, [value for _, value in own])]
+    return [(f'{name} {slot}'.strip(), [value]) for slot, value in own] + found
+
+
+def _rays(ends: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.stack([np.zeros_like(ends), ends], axis=1)
+
+
+_SHOWN: dict[type[Any], Callable[[Any], ShownReading]] = {
+    Image: _picture, CompressedImage: _compressed, LaserScan: _scan, Range: _range,
+    PointCloud2: _cloud, PointCloud: _old_cloud, ContactsState: _contacts,
+    Imu: _numbers, WrenchStamped: _numbers, Odometry: _numbers, MagneticField: _numbers,
+    NavSatFix: _numbers,
+}
+SENSOR_TYPES = {kind._type: kind for kind in _SHOWN}
+
+
+def shown_reading(message: Any) -> ShownReading:  # noqa: ANN401  of one of `SENSOR_TYPES`
+    """Return what a window shows of a sensor's message.
+
+    Raises:
+        SimError: a sentence about what is wrong with it, without its beginning.
+    """
+    return _SHOWN[type(message)](message)

@@ -1,0 +1,157 @@
+"""Sliders for the joints of a robot, and for commands to controllers of joints."""
+
+import math
+import threading
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Protocol
+
+import viser
+
+from ..sim.core import SimError
+from ..sim.description import PRISMATIC, JointSpec
+from .models import Models
+from .panel import Panel, attempt
+
+NOTHING, TOPICS = '', 'topics of std_msgs/Float64'
+POSITION, VELOCITY, EFFORT = 'position', 'velocity', 'effort'
+MOST = 40  # sliders
+STEPS = 1000  # of a slider
+UNITS = {  # of joints that slide, and of those that turn
+    POSITION: ('m', 'rad'), VELOCITY: ('m/s', 'rad/s'), EFFORT: ('N', 'N m')}
+
+
+class Joints(Protocol):
+    """The joints of a simulator; each command raises SimError with a sentence if it is refused."""
+
+    def position(self, model: str, joint: str) -> float:
+        """Return a position [rad or m]."""
+
+    def set_position(self, model: str, joint: str, position: float) -> None:
+        """Move a joint there [rad or m] at once."""
+
+    def set_velocity(self, model: str, joint: str, velocity: float, effort: float) -> None:
+        """Let a motor keep a velocity [rad/s or m/s] with at most an effort [N m or N]."""
+
+    def set_effort(self, model: str, joint: str, effort: float) -> None:
+        """Apply an effort [N m or N] from now on."""
+
+    def command_topics(self) -> Sequence[str]:
+        """Return the topics of numbers that somebody subscribes to."""
+
+    def command(self, topic: str, value: float) -> None:
+        """Publish a number."""
+
+
+class JointPanel(Panel):
+    """A slider for each joint of the model that is chosen."""
+
+    def __init__(self, gui: viser.GuiApi, joints: Joints, models: Models,
+                 complain: Callable[[str], None]) -> None:
+        self._gui, self._joints, self._models, self._complain = gui, joints, models, complain
+        self._lock = threading.RLock()
+        self._topics: Sequence[str] = ()
+        self._shown: Sequence[str] = ()  # the joints or topics that have sliders
+        self._sliders: list[viser.GuiSliderHandle[float]] = []
+        self._folder = gui.add_folder('Joints', visible=False)
+        with self._folder:
+            self._of = gui.add_dropdown('Of', [NOTHING], hint='a model, or topics of controllers')
+            self._what = gui.add_dropdown('Sliders set', [POSITION, VELOCITY, EFFORT])
+            self._range = gui.add_number('Range', 10.0, min=0.001, step=0.001, hint=(
+                'of velocities [rad/s, m/s], efforts [N m, N] without a limit, and topics'))
+            self._force = gui.add_number('Motor effort', 10.0, min=0.0, step=0.001, hint=(
+                'a velocity is kept with at most this effort [N m, N]'))
+            self._release = gui.add_button(
+                'Release', hint='switches motors off and ends efforts of these joints')
+        for control in (self._of, self._what, self._range):
+            control.on_update(lambda _: self._build())
+        self._release.on_click(lambda _: self._let_go())
+
+    def refresh(self) -> None:
+        """Offer the models and topics that there are."""
+        topics = tuple(self._joints.command_topics())
+        with self._lock:
+            self._topics = topics
+            names = [model.name for model in tuple(self._models.all.values()) if model.joints]
+            options = (NOTHING, *names, *((TOPICS,) if self._topics else ()))
+            if options != self._of.options:
+                self._of.options = options
+                self._folder.visible = len(options) > 1
+            wanted = tuple(joint.name for joint in self._specs()) or (
+                self._topics if self._of.value == TOPICS else ())
+            if wanted != self._shown:
+                self._build()
+
+    def _specs(self) -> Sequence[JointSpec]:
+        model = self._models.all.get(self._of.value)
+        return model.joints[:MOST] if model else ()
+
+    def _build(self) -> None:
+        """Make the sliders of what is chosen."""
+        with self._lock:
+            for slider in self._sliders:
+                slider.remove()
+            self._sliders.clear()
+            model, what, limit = self._of.value, self._what.value, float(self._range.value)
+            if model == TOPICS:
+                self._shown = self._topics[:MOST]
+                for topic in self._shown:
+                    self._add(topic, (-limit, limit), 0.0, partial(self._joints.command, topic))
+                return
+            specs = self._specs()
+            self._shown = tuple(joint.name for joint in specs)
+            for joint in specs:
+                unit = UNITS[what][joint.type != PRISMATIC]
+                self._add(f'{joint.name} [{unit}]', *self._range_of(model, joint, what, limit),
+                          self._setter(model, joint.name, what))
+
+    def _range_of(self, model: str, joint: JointSpec, what: str,
+                  limit: float) -> tuple[tuple[float, float], float]:
+        """Return the least and greatest value of a joint's slider, and where it stands."""
+        if what == VELOCITY:
+            return (-limit, limit), 0.0
+        if what == EFFORT:
+            greatest = joint.effort or limit
+            return (-greatest, greatest), 0.0
+        try:
+            now = self._joints.position(model, joint.name)
+        except SimError:  # it is being deleted
+            now = 0.0
+        open_end = 1.0 if joint.type == PRISMATIC else math.pi
+        low = -open_end if joint.lower is None else joint.lower
+        high = open_end if joint.upper is None else joint.upper
+        if joint.type != PRISMATIC and joint.lower is None and joint.upper is None:
+            now = math.remainder(now, math.tau)
+        return (low, max(high, low + 1e-6)), now
+
+    def _setter(self, model: str, joint: str, what: str) -> Callable[[float], None]:
+        if what == VELOCITY:
+            return lambda value: self._joints.set_velocity(
+                model, joint, value, float(self._force.value))
+        command = self._joints.set_position if what == POSITION else self._joints.set_effort
+        return partial(command, model, joint)
+
+    def _add(self, label: str, limits: tuple[float, float], value: float,
+             command: Callable[[float], None]) -> None:
+        low, high = limits
+        with self._folder:
+            slider = self._gui.add_slider(label, low, high, (high - low) / STEPS,
+                                          min(max(value, low), high))
+        sent = [slider.value]
+
+        def send(event: viser.GuiEvent[viser.GuiSliderHandle[float]]) -> None:
+            with self._lock:  # one after the other, and of those that wait the newest
+                if event.client is not None and slider.value != sent[0]:
+                    sent[0] = slider.value
+                    attempt(lambda: command(float(slider.value)), self._complain)
+        slider.on_update(send)
+        self._sliders.append(slider)
+
+    def _let_go(self) -> None:
+        with self._lock:
+            model = self._of.value
+            for joint in self._specs():
+                attempt(partial(self._joints.set_velocity, model, joint.name, 0.0, 0.0),
+                        self._complain)
+                attempt(partial(self._joints.set_effort, model, joint.name, 0.0), self._complain)
+            self._build()

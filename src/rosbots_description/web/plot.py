@@ -1,0 +1,187 @@
+"""A plot of any numbers that are published, over simulated time."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from itertools import cycle
+from typing import Protocol
+
+import numpy as np
+import viser
+from viser import uplot
+
+from ..sim.core import SimError
+from ..sim.description import ShownMotion
+from .chart import WINDOW, Chart
+from .panel import Panel
+from .ticker import Ticker
+
+PERIOD = 0.2  # [s, wall] between two pictures of the plot
+COLOURS = ('#1f77b4', '#d62728', '#2ca02c', '#ff7f0e', '#9467bd', '#8c564b', '#17becf')
+HEIGHT, PADDING = 260, (12, 24, 0, 0)  # [pixels]; from the top clockwise
+MOTIONS = 90  # clocks kept, to tell the simulated time of an arrival
+
+
+class Signals(Protocol):
+    """Numbers of topics, by rqt_plot's names: topic and field."""
+
+    def signal_topics(self) -> Mapping[str, Sequence[str]]:
+        """Return the fields of each topic that there is."""
+
+    def open(self, curve: str) -> None:
+        """Begin to read a curve.
+
+        Raises:
+            SimError: there is no such topic or number.
+        """
+
+    def close(self, curve: str) -> None:
+        """End that."""
+
+    def read(self) -> Mapping[str, Sequence[tuple[float | None, float, float]]]:
+        """Return what came for each open curve since the last call.
+
+        That are its stamp [s, simulated], if it has one; its arrival [s, monotonic]; the number.
+        """
+
+
+class PlotPanel(Panel):
+    """Chooses curves and draws them."""
+
+    def __init__(self, gui: viser.GuiApi, signals: Signals,
+                 complain: Callable[[str], None]) -> None:
+        self._gui, self._signals, self._complain = gui, signals, complain
+        self._lock = threading.RLock()
+        self._ticker = Ticker(PERIOD, self._tick)
+        self._chart = Chart()
+        self._open: set[str] = set()
+        self._is_seen = False
+        self._topics: Mapping[str, Sequence[str]] = {}
+        self._clock: deque[tuple[float, float]] = deque(maxlen=MOTIONS)
+        self._topic = gui.add_dropdown('Topic', [''])
+        self._field = gui.add_dropdown('Field', [''])
+        self._curve = gui.add_text('Curve', '', hint='topic and field, as of rqt_plot')
+        self._add = gui.add_button('Add curve', icon=viser.Icon.CHART_LINE)
+        self._folder = gui.add_folder(f'Last {WINDOW:.0f} s', visible=False)
+        self._boxes: dict[str, viser.GuiCheckboxHandle] = {}
+        self._plot: viser.GuiUplotHandle | None = None
+        self._topic.on_update(lambda _: self._choose_topic())
+        self._field.on_update(lambda _: self._choose_field())
+        self._add.on_click(lambda _: self._add_curve(self._curve.value.strip()))
+
+    def move(self, motion: ShownMotion) -> None:
+        """Take in the clock."""
+        with self._lock:
+            if self._clock and motion.time < self._clock[-1][1]:
+                self._clock.clear()
+                self._chart.clear()
+            self._clock.append((time.monotonic(), motion.time))
+
+    def refresh(self) -> None:
+        """Offer the topics that there are, and read the curves."""
+        topics = self._signals.signal_topics()
+        with self._lock:
+            if topics.keys() != self._topics.keys():
+                self._topic.options = ('', *topics)
+            self._topics = topics
+            self._read_chosen()
+
+    def open(self) -> None:
+        """Read the curves."""
+        with self._lock:
+            self._is_seen = True
+            self._read_chosen()
+
+    def close(self) -> None:
+        """Read nothing until somebody looks again."""
+        with self._lock:
+            self._is_seen = False
+            self._read_chosen()
+
+    def _choose_topic(self) -> None:
+        self._field.options = ('', *self._topics.get(self._topic.value, ()))
+
+    def _choose_field(self) -> None:
+        if self._field.value:
+            name = f'{self._topic.value}/{self._field.value}'
+            self._curve.value = name  # type: ignore[misc]  # viser's setter has no type
+
+    def _add_curve(self, curve: str) -> None:
+        with self._lock:
+            if curve in self._chart.curves:
+                return
+            try:
+                self._signals.open(curve)
+            except SimError as error:
+                self._complain(str(error))
+                return
+            self._open.add(curve)
+            self._chart.add(curve)
+            self._show()
+            self._read_chosen()
+
+    def _remove_curve(self, curve: str) -> None:
+        with self._lock:
+            self._chart.remove(curve)
+            self._show()
+            self._read_chosen()
+
+    def _read_chosen(self) -> None:
+        self._read(set(self._chart.curves) if self._is_seen else set())
+
+    def _read(self, curves: set[str]) -> None:
+        """Read these curves and no others; those that are not published are tried again."""
+        for curve in self._open - curves:
+            self._signals.close(curve)
+        self._open &= curves
+        for curve in curves - self._open:
+            try:
+                self._signals.open(curve)
+            except SimError:  # it was there when it was added
+                continue
+            self._open.add(curve)
+        self._ticker.run(bool(self._open))
+
+    def _show(self) -> None:
+        """Show the curves' boxes and an empty plot."""
+        curves = self._chart.curves
+        for part in (*self._boxes.values(), *((self._plot,) if self._plot else ())):
+            part.remove()
+        self._boxes, self._plot = {}, None
+        self._folder.visible = bool(curves)
+        with self._folder:
+            if curves:
+                self._plot = self._gui.add_uplot(
+                    self._chart.table(self._now()),
+                    (uplot.Series(label='simulated time [s]'), *(
+                        uplot.Series(label=curve, stroke=colour, width=1.5)
+                        for curve, colour in zip(curves, cycle(COLOURS), strict=False))),
+                    scales={'x': {'time': False}}, height=HEIGHT, padding=PADDING)
+            for curve in curves:
+                box = self._gui.add_checkbox(curve, initial_value=True, hint='uncheck to remove')
+                box.on_update(partial(self._uncheck, curve))
+                self._boxes[curve] = box
+
+    def _uncheck(self, curve: str, _event: object) -> None:
+        self._remove_curve(curve)
+
+    def _tick(self) -> None:
+        with self._lock:
+            for curve, samples in self._signals.read().items():
+                for stamp, arrival, value in samples:
+                    self._chart.note(curve, self._time(stamp, arrival), value)
+            if self._plot is not None:
+                self._plot.data = self._chart.table(self._now())
+
+    def _now(self) -> float:
+        return self._clock[-1][1] if self._clock else 0.0
+
+    def _time(self, stamp: float | None, arrival: float) -> float:
+        """Return the simulated time of a message, its stamp unless that is of another clock."""
+        if not self._clock:
+            return stamp or 0.0
+        walls, times = np.array(self._clock).T
+        came = float(np.interp(arrival, walls, times))
+        return stamp if stamp is not None and abs(stamp - came) < WINDOW else came

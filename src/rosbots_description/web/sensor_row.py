@@ -1,0 +1,106 @@
+"""A sensor on the page: its checkbox, and what it senses below it and in the scene."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from ..sim.core import Pose
+from ..sim.description import ShownReading
+from .nodes import node, place
+
+RATE = 2e6  # of points and lines that are sent to a browser [bytes/s]
+COLOUR, LINE_COLOUR = (230, 60, 40), (255, 160, 140)
+POINT, LINE = 0.02, 1.0  # [m] of a point, [pixels] of a line
+
+
+class SensorRow:
+    """Shows a sensor while its box is checked; not thread-safe."""
+
+    def __init__(self, site: viser.ViserServer, topic: str, kind: str, checked: bool,
+                 choose: Callable[[bool], None]) -> None:
+        """Add the box; `choose` is called when somebody changes it."""
+        self._site, self._topic, self.kind = site, topic, kind
+        self._box = site.gui.add_checkbox(topic, checked, hint=kind)
+        self._box.on_update(lambda _: choose(self._box.value))
+        self._folder = site.gui.add_folder(kind, visible=False)
+        with self._folder:
+            self._words = site.gui.add_markdown('')
+        self._picture: viser.GuiImageHandle | None = None
+        self._frame: viser.FrameHandle | None = None
+        self._points: viser.PointCloudHandle | None = None
+        self._lines: viser.LineSegmentsHandle | None = None
+        self._next = 0.0  # when more may be sent [s, monotonic]
+
+    @property
+    def is_ready(self) -> bool:
+        """Tell whether browsers have had time for what was sent last."""
+        return time.monotonic() >= self._next
+
+    def show(self, reading: ShownReading, pose: Pose | None) -> None:
+        """Show a reading, whose frame has that pose in the world; None if nobody knows it."""
+        words = reading.words
+        if reading.picture is not None:
+            self._show_picture(reading.picture)
+        if reading.points is not None or reading.lines is not None:
+            if pose is None:
+                words += ("\n\nIt is not in the scene: TF does not connect its frame "
+                          f"'{reading.frame}' with a link.")
+            else:
+                with self._site.atomic():
+                    self._show_shape(reading, pose)
+        self.tell(words)
+
+    def tell(self, words: str) -> None:
+        """Show words below the box."""
+        self._folder.visible = True
+        if self._words.content != words:
+            self._words.content = words
+
+    def clear(self) -> None:
+        """Show the box only."""
+        self._folder.visible = False
+        self._words.content = ''
+        for part in (self._picture, self._frame):
+            if part is not None:
+                part.remove()
+        self._picture = self._frame = self._points = self._lines = None
+
+    def remove(self) -> None:
+        """Remove all of it from the page."""
+        self.clear()
+        self._folder.remove()
+        self._box.remove()
+
+    def _show_picture(self, picture: NDArray[np.uint8]) -> None:
+        if self._picture is None:
+            with self._folder:
+                self._picture = self._site.gui.add_image(picture, format='jpeg', jpeg_quality=80)
+        else:
+            self._picture.image = picture
+
+    def _show_shape(self, reading: ShownReading, pose: Pose) -> None:
+        scene, name = self._site.scene, f'/sensors/{node(self._topic)}'
+        if self._frame is None:
+            self._frame = scene.add_frame(name, show_axes=False)
+        place(self._frame, pose)
+        sent = 0
+        if reading.points is not None:
+            colours = COLOUR if reading.colours is None else reading.colours
+            if self._points is None or reading.colours is not None:
+                self._points = scene.add_point_cloud(f'{name}/points', reading.points, colours,
+                                                     point_size=POINT, point_shape='circle')
+            else:
+                self._points.points = reading.points.astype(np.float16)
+            sent += reading.points.nbytes
+        if reading.lines is not None:
+            if self._lines is None:
+                self._lines = scene.add_line_segments(
+                    f'{name}/lines', reading.lines, LINE_COLOUR, thickness=LINE,
+                    thickness_units='screen')
+            else:
+                self._lines.points = reading.lines
+            sent += reading.lines.nbytes
+        self._next = time.monotonic() + sent / RATE

@@ -1,0 +1,139 @@
+"""Sliders for joints and for topics of controllers."""
+
+import math
+
+import pytest
+from support.browser import Browser
+from support.window import FakeJoints
+
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import (
+    PRISMATIC,
+    REVOLUTE,
+    JointSpec,
+    SceneChange,
+    ShownLink,
+    ShownModel,
+)
+from rosbots_description.web.joints import TOPICS, JointPanel
+from rosbots_description.web.models import Models
+
+LIMITED = JointSpec('elbow', REVOLUTE, 'a', 'b', lower=-1.0, upper=2.0, effort=5.0)
+FREE = JointSpec('wheel', REVOLUTE, 'a', 'c')
+LIFT = JointSpec('lift', PRISMATIC, 'a', 'd', lower=0.0)
+
+
+@pytest.fixture
+def joints():
+    return FakeJoints()
+
+
+@pytest.fixture
+def models():
+    models = Models()
+    arm = ShownModel('arm', (ShownLink(1, 'a', Pose()),), (LIMITED, FREE, LIFT))
+    models.apply(SceneChange(True, (arm, ShownModel('box', (ShownLink(2, 'a', Pose()),)))))
+    return models
+
+
+@pytest.fixture
+def complaints():
+    return []
+
+
+@pytest.fixture
+def panel(site, joints, models, complaints):
+    panel = JointPanel(site.gui, joints, models, complaints.append)
+    panel.refresh()
+    return panel
+
+
+@pytest.fixture
+def browser(site, panel):
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: browser.control('Release'))
+        yield browser
+
+
+def props(browser, label):
+    return browser.controls[browser.control(label)][1]
+
+
+def choose(browser, of, *labels):
+    browser.choose('Of', of)
+    browser.wait_until(lambda: all(browser.control(label) for label in labels))
+
+
+def test_models_with_joints_are_offered(browser):
+    assert list(props(browser, 'Of')['options']) == ['', 'arm']
+
+
+def test_sliders_have_the_limits_of_their_joints(browser):
+    choose(browser, 'arm', 'elbow [rad]', 'wheel [rad]', 'lift [m]')
+    limits = [(props(browser, name)['min'], props(browser, name)['max'])
+              for name in ('elbow [rad]', 'wheel [rad]', 'lift [m]')]
+    assert limits == [(-1.0, 2.0), (-math.pi, math.pi), (0.0, 1.0)]
+
+
+def test_a_turned_wheel_stands_within_a_turn(panel, joints):
+    joints.now = 7.0
+    assert panel._range_of('arm', FREE, 'position', 10.0)[1] == pytest.approx(7.0 - math.tau)
+    assert panel._range_of('arm', LIFT, 'position', 10.0)[1] == 7.0
+
+
+def test_a_slider_sets_a_position(browser, joints):
+    choose(browser, 'arm', 'elbow [rad]')
+    assert joints.told == []
+    browser.choose('elbow [rad]', 1.5)
+    browser.wait_until(lambda: joints.told)
+    assert joints.told == [('set_position', 'arm', 'elbow', 1.5)]
+
+
+@pytest.mark.parametrize(('what', 'label', 'greatest', 'told'), [
+    ('velocity', 'elbow [rad/s]', 10.0, ('set_velocity', 'arm', 'elbow', 2.0, 10.0)),
+    ('effort', 'elbow [N m]', 5.0, ('set_effort', 'arm', 'elbow', 2.0)),
+])
+def test_a_slider_sets_a_velocity_or_an_effort(
+        browser, joints, what, label, greatest, told):
+    browser.choose('Sliders set', what)
+    choose(browser, 'arm', label)
+    assert props(browser, label)['max'] == greatest
+    browser.choose(label, 2.0)
+    browser.wait_until(lambda: joints.told)
+    assert joints.told == [told]
+
+
+def test_release_ends_motors_and_efforts(browser, joints):
+    choose(browser, 'arm', 'elbow [rad]')
+    browser.click('Release')
+    browser.wait_until(lambda: len(joints.told) == 6)
+    assert ('set_velocity', 'arm', 'wheel', 0.0, 0.0) in joints.told
+    assert ('set_effort', 'arm', 'lift', 0.0) in joints.told
+
+
+def test_topics_of_controllers_have_sliders(browser, joints, panel):
+    joints.topics = ('/elbow_controller/command',)
+    panel.refresh()
+    browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
+    browser.choose('Range', 3.0)
+    choose(browser, TOPICS, '/elbow_controller/command')
+    assert props(browser, '/elbow_controller/command')['max'] == 3.0
+    browser.choose('/elbow_controller/command', -1.0)
+    browser.wait_until(lambda: joints.told == [('command', '/elbow_controller/command', -1.0)])
+    joints.topics = ()
+    panel.refresh()
+    browser.wait_until(lambda: not browser.control('/elbow_controller/command'))
+
+
+def test_a_model_that_is_deleted_takes_its_sliders_along(browser, models, panel):
+    choose(browser, 'arm', 'elbow [rad]')
+    models.apply(SceneChange(removed=('arm',)))
+    panel.refresh()
+    browser.wait_until(lambda: not browser.control('elbow [rad]'))
+
+
+def test_a_refusal_is_told(browser, joints, complaints):
+    choose(browser, 'arm', 'elbow [rad]')
+    joints.fault = 'SetModelConfiguration: model does not exist'
+    browser.choose('elbow [rad]', 1.0)
+    browser.wait_until(lambda: complaints == [joints.fault])
