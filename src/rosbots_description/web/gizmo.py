@@ -67,6 +67,7 @@ class Gizmo(Panel):
         self._drag: Drag | None = None
         self._owner: int | None = None  # the number of the browser that drags
         self._handle: viser.TransformControlsHandle | None = None
+        self._model: str | None = None  # at which it is
         selection.on_change(self._reach)
 
     def apply(self, _change: SceneChange) -> None:
@@ -78,19 +79,22 @@ class Gizmo(Panel):
         self._follow()
 
     def _follow(self) -> None:
-        model = self._selection.model
-        if self._handle is not None and model is not None and self._drag is None:
+        model = self._model
+        if self._handle is not None and self._drag is None and (
+                model is not None and model in self._models.all):
             place(self._handle, self._models.pose(model))
 
     def _reach(self) -> None:
         """Be at the model that is selected now."""
+        if self._selection.model == self._model:
+            return  # only its link is another
+        self._model = self._selection.model
         self._release(self._owner)
         if self._handle is not None:
             self._handle.remove()
             self._handle = None
-        model = self._selection.model
-        if model is not None:
-            pose = self._models.pose(model)
+        if self._model is not None:
+            pose = self._models.pose(self._model)
             self._handle = self._scene.add_transform_controls(
                 NODE, 1.0, fixed=False, depth_test=False, opacity=0.8,
                 position=pose.position, wxyz=wxyz(pose))
@@ -108,12 +112,11 @@ class Gizmo(Panel):
             self._release(event.client_id)
 
     def _grab(self, event: viser.TransformControlsEvent) -> None:
-        model = self._selection.model
         with self._lock:
-            if model is not None and event.target is self._handle:
+            if self._model is not None and event.target is self._handle:
                 self._owner = event.client_id
                 if self._drag is None or self._drag.is_released:
-                    self._drag = Drag(model, pose_of(event.target), self._hands,
+                    self._drag = Drag(self._model, pose_of(event.target), self._hands,
                                       self._complain, self._end)
 
     def _release(self, client: int | None) -> None:

@@ -84,6 +84,16 @@ def test_gizmo_is_at_the_selected_model_and_follows_it(chosen, simulator, page):
     chosen.wait_until(lambda: chosen.nodes[NODE][1] == [0.0, 0.0, 0.0])
 
 
+def test_choosing_a_link_of_the_model_does_not_end_a_drag(chosen, simulator, page):
+    chosen.grab(NODE)
+    chosen.wait_until(lambda: moves(simulator))
+    page.selection.choose('a', 'link')
+    chosen.drag(NODE, [1.0, 2.0, 3.0])
+    chosen.wait_until(lambda: moves(simulator)[-1] == (1.0, 2.0, 3.0))
+    chosen.let_go(NODE)
+    chosen.wait_until(lambda: chosen.control("Undo: move 'a'"))
+
+
 def test_dragged_model_is_held_until_it_is_let_go(chosen, simulator):
     chosen.grab(NODE)
     chosen.wait_until(lambda: len(moves(simulator)) > 2)  # it is held before it moves
