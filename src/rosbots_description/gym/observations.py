@@ -41,7 +41,7 @@ def observed(robot: Model, names: Sequence[str] | None) -> list[Observed]:
         names: of sensors, or 'odometry'; None for all that can be observed.
     Raises:
         NotFoundError: there is no such sensor; the message lists those that exist.
-        SimError: its readings have no fixed shape.
+        SimError: sensors of its type cannot be observed.
     """
     known = {one.name: one for one in _all(robot)}
     if names is None:
@@ -51,8 +51,8 @@ def observed(robot: Model, names: Sequence[str] | None) -> list[Observed]:
         if name in known:
             found.append(known[name])
         elif name in {one.name for one in robot.sensors}:
-            raise SimError(f"the readings of sensor '{name}' of model '{robot.name}' have no fixed "
-                           f"shape; what can be observed: {', '.join(known) or 'nothing'}")
+            raise SimError(f"sensor '{name}' of model '{robot.name}' cannot be observed; what can "
+                           f"be: {', '.join(known) or 'nothing'}")
         else:
             raise NotFoundError(f"model '{robot.name}' has no sensor '{name}'; what can be "
                                 f"observed: {', '.join(known) or 'nothing'}")
@@ -111,6 +111,21 @@ def _picture(sensor: Any) -> Observed:  # noqa: ANN401  a camera
         lambda: np.asarray(sensor.read().pixels))
 
 
+def _depths(sensor: Any) -> Observed:  # noqa: ANN401  a depth camera
+    lens = sensor.cameras[0].lens
+
+    def read() -> Array:
+        return np.minimum(sensor.read().depths, np.float32(lens.far))
+
+    return Observed(sensor.name, spaces.Box(0.0, lens.far, (lens.height, lens.width), np.float32),
+                    read)
+
+
+def _touch(sensor: Any) -> Observed:  # noqa: ANN401  a contact sensor
+    return Observed(sensor.name, spaces.Box(0.0, 1.0, (1,), np.float32),
+                    lambda: np.array([bool(sensor.read())], np.float32))
+
+
 def _imu(sensor: Any) -> Observed:  # noqa: ANN401  an IMU
     sensor.readings.latch()
 
@@ -123,4 +138,5 @@ def _imu(sensor: Any) -> Observed:  # noqa: ANN401  an IMU
 
 
 _SENSORS: dict[str, Callable[[Any], Observed]] = {
-    'ray': _scan, 'gpu_ray': _scan, 'camera': _picture, 'imu': _imu}
+    'ray': _scan, 'gpu_ray': _scan, 'camera': _picture, 'depth': _depths, 'contact': _touch,
+    'imu': _imu}

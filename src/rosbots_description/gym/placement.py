@@ -22,18 +22,19 @@ def move(model: Model, place: Place) -> None:
 
 def move_freely(
     world: World, model: Model, floor: Collection[str], random: np.random.Generator,
-    xs: Range, ys: Range,
+    xs: Range, ys: Range, yaws: Range = (-math.pi, math.pi),
 ) -> Place:
-    """Move a model to a place, drawn uniformly with any yaw, where it overlaps nothing.
+    """Move a model to a place, drawn uniformly, where it overlaps nothing; return the place.
 
     Args:
         floor: names of the models that it stands on.
         xs, ys: least and greatest x and y [m].
+        yaws: least and greatest yaw [rad].
     Raises:
         SimError: no free place was found.
     """
     for _ in range(_TRIES):
-        x, y, yaw = random.uniform((xs[0], ys[0], -math.pi), (xs[1], ys[1], math.pi)).tolist()
+        x, y, yaw = (float(random.uniform(*ends)) for ends in (xs, ys, yaws))
         move(model, (x, y, yaw))
         if world.overlaps(model).keys() <= set(floor):
             return x, y, yaw

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..sim import Model, SimError, World, yaw_of
 from ..sim.sensors import Sensor
-from .placement import Range, move, move_freely
+from .placement import Range, move_freely
 
 Colour = tuple[float, float, float, float]
 
@@ -80,10 +80,10 @@ class Randomisation:
                                       (x - most, x + most), (y - most, y + most))
         if any(self.pose):
             (x, y, _), orientation = robot.pose
-            here = np.array((x, y, yaw_of(orientation)))
-            x, y, yaw = (here + random.uniform(-1.0, 1.0, 3) * self.pose).tolist()
-            drawn['pose'] = (x, y, yaw)
-            move(robot, drawn['pose'])
+            xs, ys, yaws = ((here - most, here + most) for here, most in zip(
+                (x, y, yaw_of(orientation)), self.pose, strict=True))
+            drawn['pose'] = move_freely(
+                world, robot, world.touching(robot), random, xs, ys, yaws)
         return drawn
 
 

@@ -11,11 +11,37 @@ from gymnasium.utils.env_checker import check_env
 
 import rosbots_description.gym  # noqa: F401  registers the tasks
 from rosbots_description.gym import SimEnv
-from rosbots_description.sim import NotFoundError, SimError
+from rosbots_description.sim import NotFoundError, Pose, SimError
 
 TASKS = ['FollowLine', 'GoToGoal', 'Maze', 'Wander']
 STONE = '''<robot name="stone"><link name="l"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'''
+
+
+CART = """<sdf version="1.6"><model name="cart">
+<link name="base"><pose>0 0 0.1 0 0 0</pose><inertial><mass>2</mass></inertial>
+<collision name="c"><geometry><box><size>0.5 0.5 0.2</size></box></geometry></collision>
+<sensor name="bumper" type="contact"><contact><collision>c</collision></contact></sensor>
+<sensor name="depth" type="depth"><pose>0.3 0 0.3 0 0 0</pose><camera name="d">
+<image><width>8</width><height>6</height></image><clip><near>0.1</near><far>9</far></clip></camera>
+</sensor></link>
+<link name="arm"><pose>0 0 0.5 0 0 0</pose><inertial><mass>1</mass></inertial></link>
+<joint name="hinge" type="revolute"><parent>base</parent><child>arm</child>
+<axis><xyz>0 0 1</xyz></axis></joint>
+<plugin name="move" filename="libgazebo_ros_planar_move.so"/>
+<plugin name="push" filename="libgazebo_ros_force.so"><bodyName>base</bodyName>
+<topicName>push</topicName></plugin>
+</model></sdf>"""
+
+
+class Push(SimEnv):
+    """Any robot on an empty ground."""
+
+    def __init__(self, robot, **options):
+        super().__init__(robot=robot, pose=Pose(), **options)
+
+    def score(self, _observation, _action):
+        return 0.0, False
 
 
 class Forward(SimEnv):
@@ -153,6 +179,52 @@ def test_episode_is_truncated_when_the_world_diverges_and_the_next_is_as_in_a_ne
     assert rollout(one, 4) == rollout(other, 4)
     one.close()
     other.close()
+
+
+def test_plugins_and_joints_that_take_commands_are_a_dict_of_actions():
+    env = Push(CART, actions={'move': (2.0, 1.0, 3.0), 'push': 8.0, 'hinge': 0.5},
+               sensors=['odometry'], settle=0.0)
+    assert {name: one.shape for name, one in env.action_space.items()} == {
+        'move': (3,), 'push': (6,), 'hinge': (1,)}
+    still = {'move': np.zeros(3), 'push': np.zeros(6), 'hinge': np.zeros(1)}
+    env.reset(seed=0)
+    for _ in range(10):
+        env.step({**still, 'move': np.array([0.5, 0.25, 0.0])})
+    assert env.pose[:2] == pytest.approx((1.0, 0.25), abs=0.02)  # shares of the limits, for 1 s
+    for action, said in (({'move': np.zeros(3)}, "the action has no 'push'"),
+                         (np.zeros(3), 'an action is a dict of move, push, hinge'),
+                         ({**still, 'hinge': np.zeros(2)}, "'hinge' takes 1 numbers")):
+        with pytest.raises(ValueError, match='action') as error:
+            env.step(action)
+        assert said in str(error.value)
+    env.close()
+
+
+def test_effort_of_a_joint_acts_until_the_next_action():
+    env = Push(CART.replace('libgazebo_ros_planar_move.so', 'libgazebo_ros_p3d.so'),
+               actions={'hinge': 0.5}, sensors=['bumper'], settle=0.2)
+    env.reset(seed=0)
+    hinge, speeds = env.robot.joint('hinge'), []
+    for share in (-1.0, -1.0, 0.0, 0.0):
+        env.step(np.array([share]))
+        speeds.append(hinge.velocity)
+    assert speeds[1] == pytest.approx(2.0 * speeds[0], rel=0.05)
+    assert speeds[0] < -0.01
+    assert speeds[3] == pytest.approx(speeds[1], rel=0.05)
+    env.close()
+
+
+def test_contact_and_depth_are_observed():
+    env = Push(CART, sensors=['bumper', 'depth'], settle=0.2)
+    space = env.observation_space
+    assert (space['bumper'].shape, space['depth'].shape) == ((1,), (6, 8))
+    observation, _ = env.reset(seed=0)
+    assert observation in space
+    assert observation['bumper'] == 1.0  # it stands on the ground
+    assert observation['depth'][0] == pytest.approx(9.0)  # the sky is as far as it sees
+    env.robot.set_pose(Pose((0.0, 0.0, 3.0)))
+    assert env.step(env.action_space.sample())[0]['bumper'] == 0.0
+    env.close()
 
 
 def test_step_before_reset_and_reset_after_close_are_named():

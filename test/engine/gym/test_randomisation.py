@@ -5,7 +5,7 @@ import pytest
 from support import XACRO
 
 from rosbots_description.gym import Randomisation, SimEnv
-from rosbots_description.sim import NotFoundError, SimError
+from rosbots_description.sim import NotFoundError, Pose, SimError
 from rosbots_description.sim.formats.urdf import expand_xacro
 from rosbots_description.sim.resources import PackageSearch
 
@@ -91,6 +91,15 @@ def test_randomisation_that_cannot_be_is_named(given, kind, said):
     with pytest.raises(kind) as error:
         Still(randomise=Randomisation(**given), settle=0.1)
     assert said in str(error.value)
+
+
+def test_robot_is_put_where_it_overlaps_nothing():
+    made = Still('room', pose=Pose((0.7, -1.2, 0.5)), settle=0.3,
+                 randomise=Randomisation(pose=(0.6, 0.0, 0.0)))
+    for seed in range(30):  # the column is a quarter of a metre ahead
+        made.reset(seed=seed)
+        assert not made.world.overlaps(made.robot).keys() & {'column'}
+    made.close()
 
 
 def test_obstacle_without_a_free_place_is_named(monkeypatch):

@@ -90,3 +90,14 @@ def test_what_the_way_out_becomes_shorter_is_rewarded(task):
     assert terminated
     assert info['is_success']
     assert total == pytest.approx(10.0 + 2.0 - 0.7, abs=0.2)
+
+
+@pytest.mark.parametrize('task', ['GoToGoal'], indirect=True)
+def test_option_that_cannot_be_is_named(task):
+    for options, said in (({'strat': (0, 0, 0)}, "no option 'strat'; GoToGoal takes start, goal"),
+                          ({'goal': (1.0, 2.0, 3.0)}, "'goal' takes 2 finite numbers"),
+                          ({'start': 'here'}, "'start' takes 3 finite numbers; it got 'here'"),
+                          ({'start': (0.0, 0.0, math.nan)}, '3 finite numbers')):
+        with pytest.raises(ValueError, match='option') as error:
+            task.reset(options=options)
+        assert said in str(error.value)

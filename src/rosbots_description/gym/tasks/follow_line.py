@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -70,13 +70,16 @@ class FollowLine(Driving):
 
     def begin(self, options: Mapping[str, Any]) -> None:
         """Place the robot on the line."""
-        self._line = Line(self.world)
         shift, turn = self.np_random.uniform(-1.0, 1.0, 2) * (_START_SHIFT, _START_TURN)
         x, y, yaw = self._line.place(int(self.np_random.integers(self._line.pieces)))
         start = (x - shift * math.sin(yaw), y + shift * math.cos(yaw), yaw + turn)
-        self.place(*options.get('start', start))
+        self.place(*self.numbers(options).get('start', start))
         self._way, self._apart = self._line.nearest(*self.pose[:2])
         self._driven = 0.0
+
+    @cached_property
+    def _line(self) -> Line:
+        return Line(self.world)
 
     def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
         """Reward the way along the line."""

@@ -30,14 +30,17 @@ class GoToGoal(Driving):
     settings: ClassVar[dict[str, Any]] = {
         'world': 'room', 'more': {'goal': box(3, (1e3, 1.0, 1.0))}}
 
+    takes: ClassVar[dict[str, int]] = {'start': 3, 'goal': 2}
+
     def begin(self, options: Mapping[str, Any]) -> None:
         """Place the robot and its goal, where the robot can stand as well."""
+        given = self.numbers(options)
         while True:
-            goal = options.get('goal') or self.place_freely(*_GOAL)[:2]
-            start = options.get('start') or self.place_freely(*_START)
-            if math.dist(start[:2], goal) > _LEAST_WAY or 'start' in options or 'goal' in options:
+            goal = given.get('goal') or self.place_freely(*_GOAL)
+            start = given.get('start') or self.place_freely(*_START)
+            if math.dist(start[:2], goal[:2]) > _LEAST_WAY or given.keys() == {'start', 'goal'}:
                 break
-        self.goal = (float(goal[0]), float(goal[1]))
+        self.goal = goal[:2]
         self.place(*start)
         self._left = self._distance()
 

@@ -3,7 +3,7 @@
 import heapq
 import math
 from collections.abc import Iterator, Mapping
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, ClassVar
 
 from ...sim import World
@@ -69,8 +69,8 @@ class Maze(Driving):
 
     def begin(self, options: Mapping[str, Any]) -> None:
         """Place the robot."""
-        self._distances = Distances(self.world)
-        self.place(*options.get('start', (0.0, 0.0, self.np_random.uniform(-math.pi, math.pi))))
+        start = (0.0, 0.0, self.np_random.uniform(-math.pi, math.pi))
+        self.place(*self.numbers(options).get('start', start))
         self._left = self._distances.of(*self.pose[:2])
 
     def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
@@ -83,6 +83,10 @@ class Maze(Driving):
     def truth(self) -> Info:
         """Add the shortest way that is left [m], and whether the robot is out."""
         return {**super().truth(), 'left': self._left, 'is_success': self._is_out}
+
+    @cached_property
+    def _distances(self) -> Distances:
+        return Distances(self.world)
 
     @property
     def _is_out(self) -> bool:

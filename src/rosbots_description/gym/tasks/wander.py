@@ -23,10 +23,8 @@ class Wander(Driving):
 
     def begin(self, options: Mapping[str, Any]) -> None:
         """Place the robot."""
-        if 'start' in options:
-            self.place(*options['start'])
-        else:
-            self.place_freely(*_START)
+        given = self.numbers(options)
+        self.place(*(given.get('start') or self.place_freely(*_START)))
         self._visited = {self._cell()}
 
     def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
