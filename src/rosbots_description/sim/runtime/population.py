@@ -26,6 +26,7 @@ def populate(world: World, spec: WorldSpec) -> None:
     world.name = spec.name
     world.set_physics(spec.physics)
     world.scene, world.plugins, world.parts = spec.scene, spec.plugins, spec.parts
+    world.faults = spec.faults
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins read it
     for model_spec, pose in spec.models:
         try:
@@ -72,8 +73,10 @@ def describe(world: World) -> WorldSpec:
 
 
 def _missing(world: World) -> Iterator[str]:
+    if world.faults:
+        yield f'{len(world.faults)} parts of its own file, which were left out'
     for model in world.models.values():
-        if model.left_out:
-            yield f"of model '{model.name}' what was left out: {', '.join(model.left_out)}"
+        if model.spec.left_out:
+            yield f"of model '{model.name}' what was left out: {', '.join(model.spec.left_out)}"
     if world.external_forces.are_pending:
         yield 'forces and efforts that act for a time'

@@ -97,6 +97,7 @@ class World:
         # Of its file, for the one who saves it: nothing here acts on them.
         self.plugins: tuple[PluginSpec, ...] = ()
         self.parts: tuple[Element, ...] = ()
+        self.faults: tuple[str, ...] = ()
         self.listeners: list[Listener] = []
         self.resources = contextlib.ExitStack()  # of others, which end with the world
         self.paused = False

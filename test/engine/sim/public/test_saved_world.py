@@ -117,12 +117,16 @@ def test_poses_that_are_changed_by_hand_are_believed(tmp_path):
 
 
 def test_what_is_not_in_the_file_is_named(tmp_path):
-    sensor = '<gazebo reference="base"><sensor type="sonar" name="s"/></gazebo>'
+    part = LINK.format('hill', '0 0 0 0 0 0').replace(
+        '</link>', '<collision name="c"><geometry><heightmap/></geometry></collision>'
+        '<sensor name="s" type="sonar"/></link>')
     with World.empty() as world:
-        crate = world.spawn(CRATE.replace('</robot>', f'{sensor}</robot>'))
-        assert world.save(tmp_path / 'a.world') == () if not crate.left_out else True
-        world.apply_wrench(next(iter(crate.links.values())), (1.0, 0.0, 0.0))
-        found = world.save(tmp_path / 'b.world')
-        assert found[-1] == 'forces and efforts that act for a time'
+        hill = world.spawn(f'<sdf version="1.6"><model name="hill">{part}</model></sdf>')
+        world.apply_wrench(hill.link('hill'), (1.0, 0.0, 0.0))
+        assert world.save(tmp_path / 'a.world') == (
+            f"of model 'hill' what was left out: {hill.spec.left_out[0]}",
+            'forces and efforts that act for a time')
+        assert 'heightmap' in hill.spec.left_out[0]
+        assert '<sensor name="s" type="sonar"' in (tmp_path / 'a.world').read_text()
         with pytest.raises(SimError, match='exists already'):
-            world.save(tmp_path / 'b.world')
+            world.save(tmp_path / 'a.world')

@@ -221,7 +221,7 @@ _READERS = {
 def _parts(world: etree._Element) -> Iterator[Element]:
     """Yield what is kept for the one who saves the world."""
     for element in world:
-        if element.tag in (*_IDLE, 'gui'):
+        if element.tag == 'gui' or element.tag not in _READ:
             yield to_element(element)
         elif element.tag == 'scene':
             kept = to_element(element)

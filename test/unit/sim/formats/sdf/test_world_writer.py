@@ -1,11 +1,12 @@
 """A world that is written is read as the same world, bit for bit."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
 from lxml import etree
-from support import LIBRARY
+from support import LIBRARY, ROOT
 
 from rosbots_description.sim import Pose, Twist, from_rpy
 from rosbots_description.sim.core import normalise, rotate
@@ -30,6 +31,7 @@ INNER = """<model name="outer"><link name="base"/><model name="inner"><pose>1 2 
 <link name="tip"><pose>0 0 1 0.3 0 0</pose></link></model>
 <joint name="j" type="revolute"><parent>base</parent><child>inner::tip</child>
 <pose>0.1 0.2 0.3 0.4 0.5 0.6</pose><axis><xyz>0.6 0.1 0.3</xyz></axis></joint></model>"""
+SUBMESH = re.compile(r'<node[^>]* name="([^"]+)"')
 UNREAD = ('<gui><camera name="user"><pose>1 2 3 0 0.5 0</pose></camera></gui>'
           '<magnetic_field>1e-6 2e-6 3e-6</magnetic_field>')
 
@@ -68,12 +70,40 @@ def test_every_setting_of_a_world_is_written():
 
 def test_what_nothing_here_acts_on_is_kept_as_it_was():
     sky = '<scene><sky><clouds><speed>12</speed></clouds></sky><ambient>1 1 1 1</ambient></scene>'
-    text = sdf_of_world(world(UNREAD + sky))
+    text = sdf_of_world(world(f'{UNREAD}<road name="r"><width>3</width></road>{sky}'))
     root = etree.fromstring(text)
+    assert root.findtext('world/road/width') == '3'
     assert root.findtext('world/gui/camera/pose') == '1 2 3 0 0.5 0'
     assert root.findtext('world/magnetic_field') == '1e-6 2e-6 3e-6'
     assert root.findtext('world/scene/sky/clouds/speed') == '12'
     assert [scene.findtext('ambient') for scene in root.iter('scene')] == ['1 1 1 1']
+
+
+def test_textures_and_parts_of_meshes_are_found_again(tmp_path):
+    (tmp_path / 'materials' / 'scripts').mkdir(parents=True)
+    (tmp_path / 'materials' / 'textures').mkdir()
+    (tmp_path / 'materials' / 'textures' / 'wood.png').write_bytes(b'')
+    (tmp_path / 'materials' / 'scripts' / 'm.material').write_text(
+        'material My/Wood { technique { pass { ambient 1 0.5 0.25 1 \n texture_unit {\n'
+        'texture wood.png\n } } } }')
+    (tmp_path / 'part.dae').write_bytes((ROOT / 'meshes' / 'battery.dae').read_bytes())
+    part = SUBMESH.search((tmp_path / 'part.dae').read_text())[1]
+    path = tmp_path / 'w.world'
+    path.write_text(f"""<sdf version="1.6"><world name="w"><model name="m"><static>1</static>
+<link name="l"><visual name="v"><geometry><mesh><uri>part.dae</uri><submesh><name>{part}</name>
+<center>true</center></submesh></mesh></geometry><material><script>
+<uri>file://materials/scripts</uri><uri>materials/textures</uri><name>My/Wood</name></script>
+</material></visual><visual name="whole"><geometry><mesh><uri>part.dae</uri><scale>2 2 2</scale>
+</mesh></geometry></visual></link></model></world></sdf>""")
+    spec = open_world(path, find_model=ModelSearch())
+    visual, whole = spec.models[0][0].links[0].visuals
+    found, other = again(spec).models[0][0].links[0].visuals
+    assert visual.material.image.endswith('wood.png')
+    assert found.material == visual.material
+    assert (found.geometry.path, found.geometry.submesh, found.geometry.is_centred) == (
+        visual.geometry.path, part, True)
+    assert (other.geometry.path, other.geometry.scale) == (str(tmp_path / 'part.dae'), (2, 2, 2))
+    assert whole.geometry.path == other.geometry.path
 
 
 def test_a_nested_model_is_written_with_its_frame_and_its_links_bit_for_bit():
