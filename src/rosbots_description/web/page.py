@@ -155,16 +155,15 @@ class Page:
                 ShowPanel(site, scene, models, self.selection, self._lock)]
             if simulator.contacts is not None:
                 self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
-        if simulator.worlds is not None:
-            with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
-                # First, as a recording stamps what moves after it.
-                self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
         if simulator.sensors is not None:
             with tabs.add_tab('Sensors', viser.Icon.CAMERA):
                 self._panels.append(SensorPanel(site, simulator.sensors, models))
         if simulator.signals is not None:
             with tabs.add_tab('Plot', viser.Icon.CHART_LINE):
                 self._panels.append(PlotPanel(site.gui, simulator.signals, self._notify))
+        with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
+            # First, as a recording stamps what moves after it.
+            self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 

@@ -3,6 +3,7 @@
 import io
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 import viser
@@ -31,12 +32,13 @@ class Worlds(Protocol):
 class TakeAwayPanel(Panel):
     """Downloads for the browser that asks."""
 
-    def __init__(self, site: viser.ViserServer, worlds: Worlds, complain: Complain) -> None:
-        self._worlds, self._complain = worlds, complain
+    def __init__(self, site: viser.ViserServer, worlds: Worlds | None, complain: Complain) -> None:
+        self._complain = complain
         gui = site.gui
-        self._button('World', viser.Icon.WORLD_DOWNLOAD, self._save_world, gui,
-                     'a world file: everything as it is now')
-        self._button('Picture', viser.Icon.CAMERA, self._save_picture, gui,
+        if worlds is not None:
+            self._button('World', viser.Icon.WORLD_DOWNLOAD, partial(_give_world, worlds), gui,
+                         'a world file: everything as it is now')
+        self._button('Picture', viser.Icon.CAMERA, _give_picture, gui,
                      'what this browser shows, as PNG')
         self._takes = (
             TakeButton(gui, 'video', 'video.mp4', 'what this browser shows, as MP4',
@@ -71,21 +73,23 @@ class TakeAwayPanel(Panel):
 
         gui.add_button(label, icon=icon, hint=hint).on_click(click)
 
-    def _save_world(self, client: viser.ClientHandle) -> None:
-        text, sentence = self._worlds.save()
-        client.send_file_download('saved.world', text.encode(), save_immediately=True)
-        client.add_notification('World', sentence, auto_close_seconds=8.0)
 
-    def _save_picture(self, client: viser.ClientHandle) -> None:
-        camera = client.camera
-        try:
-            shown = client.get_render(
-                camera.image_height, camera.image_width, transport_format='png', timeout=PATIENCE)
-        except (TimeoutError, RuntimeError) as error:
-            raise SimError(f'the browser gave no picture: {error}') from error
-        made = io.BytesIO()
-        Image.fromarray(shown).save(made, 'PNG')
-        client.send_file_download('picture.png', made.getvalue(), save_immediately=True)
+def _give_world(worlds: Worlds, client: viser.ClientHandle) -> None:
+    text, sentence = worlds.save()
+    client.send_file_download('saved.world', text.encode(), save_immediately=True)
+    client.add_notification('World', sentence, auto_close_seconds=8.0)
+
+
+def _give_picture(client: viser.ClientHandle) -> None:
+    camera = client.camera
+    try:
+        shown = client.get_render(
+            camera.image_height, camera.image_width, transport_format='png', timeout=PATIENCE)
+    except (TimeoutError, RuntimeError) as error:
+        raise SimError(f'the browser gave no picture: {error}') from error
+    made = io.BytesIO()
+    Image.fromarray(shown).save(made, 'PNG')
+    client.send_file_download('picture.png', made.getvalue(), save_immediately=True)
 
 
 class TakeButton:
