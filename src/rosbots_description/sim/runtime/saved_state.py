@@ -24,7 +24,7 @@ class SavedState:
         self._physics, self._lights, self._paused = world.physics, dict(world.lights), world.paused
         self._seed = world.seed
         self._snapshot = world.engine.snapshot()
-        self._shared = tuple(self._find_shared())
+        self._shared = {id(one): one for one in self._find_shared()}
         self._hooks = [(hook, self._copied(vars(hook))) for hook in hooks]
         self._newest = [(output, output.latched) for output in self._outputs()]
 
@@ -64,7 +64,7 @@ class SavedState:
 
     def _copied(self, state: dict[str, Any]) -> dict[str, Any]:
         """Return a deep copy of a hook's own state; shared objects are not copied."""
-        return copy.deepcopy(state, {id(one): one for one in self._shared})
+        return copy.deepcopy(state, dict(self._shared))
 
     def _find_shared(self) -> Iterator[object]:
         """Yield the shared objects that are reachable from hooks."""
