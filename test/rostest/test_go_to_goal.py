@@ -1,27 +1,76 @@
 #!/usr/bin/env python3
-"""The example node drives the robot to the goal that its launch file names, and ends."""
+"""The robot drives to goals: by the example node, and by a policy that was learned without ROS."""
 
+import json
 import math
+import subprocess
 import sys
+from pathlib import Path
 
+import gymnasium
+import numpy as np
 import rosnode
 import rospy
 import rostest
 from example_nodes import AT_REST, LIMIT, ExampleNodeTest
 from gazebo_msgs.srv import GetModelState
-from simulator import proxy, wait_until
+from simulator import COMMANDS, proxy, wait_until
 
-GOAL = -2.0, 1.5  # [m], see the launch file
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / 'scripts'))
+from follow_policy import inputs, outputs  # noqa: E402
+from ros_environment import RosGoToGoal  # noqa: E402
+
+GOAL = -1.5, 0.5  # [m], see the launch file
+POLICY = ROOT / 'config' / 'go_to_goal_policy.json'
+LEARNED = {'start': (-1.5, -0.5, 2.0), 'goal': (1.5, 0.5)}  # of an episode [m, rad]
+NEAR = 0.15  # [m] between the ways in both worlds: over ROS, commands may be late
+STEPS = 200  # of an episode, at most
+
+
+def track(environment):
+    """Drive an episode by the learned policy; return the robot's track (x, y) [m], and success."""
+    layers = json.loads(POLICY.read_text())['layers']
+    seen, info = environment.reset(options=LEARNED)
+    points, ended = [info['pose'][:2]], False
+    while not ended and len(points) < STEPS:
+        seen, _, ended, _, info = environment.step(
+            outputs(layers, inputs(seen['laser'], *seen['goal'])))
+        points.append(info['pose'][:2])
+    return np.array(points), info['is_success']
 
 
 class GoToGoalTest(ExampleNodeTest):
 
-    def test_the_robot_stands_at_the_goal_when_the_node_ends(self):
+    def distance(self, goal):
+        at = proxy('get_model_state', GetModelState)('rosbots', '').pose.position
+        return math.dist((at.x, at.y), goal)
+
+    def test_1_the_robot_stands_at_the_goal_when_the_node_ends(self):
         self.limit_rate(10000)
         wait_until(lambda: '/go_to_goal' not in rosnode.get_node_names(), 'the goal', LIMIT)
         wait_until(lambda: self.speed < AT_REST, 'the robot stopping')
-        at = proxy('get_model_state', GetModelState)('rosbots', '').pose.position
-        self.assertLess(math.dist((at.x, at.y), GOAL), 0.15)
+        self.assertLess(self.distance(GOAL), 0.15)
+
+    def test_2_a_learned_policy_drives_alike_in_both_worlds(self):
+        over_ros, arrives = track(RosGoToGoal())
+        self.assertTrue(arrives)
+        environment = gymnasium.make('rosbots_description.gym:rosbots/GoToGoal-v0')
+        self.addCleanup(environment.close)
+        without, arrives = track(environment)
+        self.assertTrue(arrives)
+        between = np.linalg.norm(over_ros[:, None] - without, axis=-1)
+        self.assertLess(max(between.min(axis=0).max(), between.min(axis=1).max()), NEAR)
+
+    def test_3_the_learned_policy_drives_the_robot_by_its_node(self):
+        self.limit_rate(2000)
+        environment = RosGoToGoal()
+        environment.reset(options=LEARNED)
+        environment.close()
+        subprocess.run([ROOT / 'scripts' / 'follow_policy.py', f'_policy:={POLICY}', '_x:=1.5',
+                        '_y:=0.5', f'cmd_vel:={COMMANDS}'], check=True, timeout=60)
+        wait_until(lambda: self.speed < AT_REST, 'the robot stopping')
+        self.assertLess(self.distance(LEARNED['goal']), 0.5)
 
 
 if __name__ == '__main__':

@@ -185,7 +185,7 @@ def test_simulation_passes_its_arguments_to_the_simulator(load):
     assert config.params['/use_sim_time'].value is False
 
 
-EXAMPLES = ['go_to_goal', 'line_follower', 'map_while_driving', 'wander']
+EXAMPLES = ['follow_policy', 'go_to_goal', 'line_follower', 'map_while_driving', 'wander']
 
 
 @pytest.mark.parametrize('name', EXAMPLES)
@@ -194,8 +194,10 @@ def test_an_example_node_gets_the_parameters_that_it_reads(load, name):
     config = load(f'{name}.launch', 'simulation:=false')
     given = {param.removeprefix(f'/{name}/'): value.value
              for param, value in config.params.items() if param.startswith(f'/{name}/')}
-    assert given == {param: yaml.safe_load(default) for param, default in re.findall(
+    defaults = {param: yaml.safe_load(default) for param, default in re.findall(
         r"get_param\('~(\w+)', ([^)]*)\)", script)}
+    required = set(re.findall(r"get_param\('~(\w+)'\)", script))
+    assert given == defaults | {param: given[param] for param in required}
     documented = script.split('Parameters:')[1].split('"""')[0]
     assert set(re.findall(r'~(\w+)', documented)) == set(given)
 

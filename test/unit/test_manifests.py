@@ -31,7 +31,8 @@ def imports(folder: Path) -> set[str]:
                 names |= {alias.name.partition('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
                 names.add(node.module.partition('.')[0])
-    programs = [*ROOT.glob('benchmark/*.py'), *ROOT.glob('tools/*.py')]  # which tests load
+    programs = [path for folder in ('benchmark', 'scripts', 'tools')  # which tests load
+                for path in ROOT.glob(f'{folder}/*.py')]
     own = {module.stem for module in [*modules, *programs]}
     own |= {inner.name for inner in folder.rglob('*/')}
     return names - sys.stdlib_module_names - own - {'_typeshed', 'rosbots_description'}
