@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""Environments, each in its own process, measured in control steps per second over windows.
+
+    goal     rosbots/GoToGoal-v0: the article's robot in a room, with a scan of 361 rays
+    reset    the same; only its resets, and each counts as a step
+    vector   as many of them as there are cores, by gymnasium.make_vec; a step of all is one
+    step     the same task over ROS, by scripts/ros_environment.py and /gazebo/step; without its
+             contact sensor, which would take two thirds of the time
+    pause    the same between unpause_physics and pause_physics
+    r2d2     the loop that PyBullet's own environments are made of, with its R2D2 on a plane
+
+A control step is 0.1 s of simulated time, or 100 steps of the engine. The argument is the kind.
+Each line on standard input is a window [s, wall]; the answer is the number of steps per second.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import sys
+from collections.abc import Iterator
+from itertools import count
+from typing import Any
+
+import gymnasium
+import numpy as np
+from article import ROOT
+from windows import Steps, WindowedLoop, answer
+
+TASK = 'rosbots_description.gym:rosbots/GoToGoal-v0'
+ENGINE_STEPS = 100  # of 1 ms in a control step
+WHEEL_SPEED, WHEEL_TORQUE = -10.0, 10.0  # of the R2D2 [rad/s], [N m]
+
+
+class EnvironmentLoop(WindowedLoop):
+    """One of the loops, in a child process that waits between windows."""
+
+    def __init__(self, kind: str) -> None:
+        """Start the process."""
+        super().__init__(__file__, kind, 'cmd_vel:=/part2_cmr/cmd_vel')
+
+
+def steer(goal: np.ndarray) -> np.ndarray:
+    """Return the actions (..., 2) that turn towards the goal and drive, for goals (..., 3)."""
+    return np.stack([np.maximum(goal[..., 1], 0.0), np.clip(2.0 * goal[..., 2], -1.0, 1.0)], -1)
+
+
+def _episodes(environment: gymnasium.Env[Any, Any]) -> Steps:
+    """Return a function that drives one episode after the other."""
+    seeds = count()
+    seen, _ = environment.reset(seed=next(seeds))
+
+    def step(steps: int) -> None:
+        nonlocal seen
+        for _ in range(steps):
+            seen, _, terminated, truncated, _ = environment.step(steer(seen['goal']))
+            if terminated or truncated:
+                seen, _ = environment.reset(seed=next(seeds))
+
+    return step
+
+
+@contextlib.contextmanager
+def goal() -> Iterator[Steps]:
+    """Yield the step function of one environment without ROS."""
+    with contextlib.closing(gymnasium.make(TASK)) as environment:
+        yield _episodes(environment)
+
+
+@contextlib.contextmanager
+def reset() -> Iterator[Steps]:
+    """Yield a function that resets the environment so many times."""
+    with contextlib.closing(gymnasium.make(TASK)) as environment:
+        seeds = count()
+        yield lambda times: [environment.reset(seed=next(seeds)) for _ in range(times)]
+
+
+@contextlib.contextmanager
+def vector() -> Iterator[Steps]:
+    """Yield the step function of as many environments as there are cores, each in its process."""
+    cores = len(os.sched_getaffinity(0))
+    with contextlib.closing(
+            gymnasium.make_vec(TASK, cores, vectorization_mode='async')) as environments:
+        seen, _ = environments.reset(seed=0)
+
+        def step(steps: int) -> None:
+            nonlocal seen
+            for _ in range(steps):
+                seen, *_ = environments.step(steer(seen['goal']).astype(np.float32))
+
+        yield step
+
+
+@contextlib.contextmanager
+def ros(exact: bool) -> Iterator[Steps]:
+    """Yield the step function of the environment over ROS; the simulator must be running."""
+    import rospy
+
+    sys.path.append(str(ROOT / 'scripts'))
+    from ros_environment import RosGoToGoal
+
+    rospy.init_node('environment', anonymous=True, disable_signals=True)
+    yield _episodes(gymnasium.wrappers.TimeLimit(RosGoToGoal(exact, bumper=False), 400))
+    rospy.signal_shutdown('measured')
+
+
+@contextlib.contextmanager
+def r2d2() -> Iterator[Steps]:
+    """Yield the step function of a minimal loop on PyBullet's R2D2."""
+    import pybullet
+    import pybullet_data
+
+    client = pybullet.connect(pybullet.DIRECT)
+    pybullet.setAdditionalSearchPath(pybullet_data.getDataPath(), client)
+    pybullet.setTimeStep(0.001, client)
+    pybullet.setGravity(0, 0, -9.8, client)
+    pybullet.loadURDF('plane.urdf', physicsClientId=client)
+    robot = pybullet.loadURDF('r2d2.urdf', [0.0, 0.0, 0.5], physicsClientId=client)
+    wheels = [joint for joint in range(pybullet.getNumJoints(robot, client))
+              if b'wheel' in pybullet.getJointInfo(robot, joint, client)[1]]
+
+    def step(steps: int) -> None:
+        for _ in range(steps):
+            pybullet.setJointMotorControlArray(
+                robot, wheels, pybullet.VELOCITY_CONTROL,
+                targetVelocities=[WHEEL_SPEED] * len(wheels), forces=[WHEEL_TORQUE] * len(wheels),
+                physicsClientId=client)
+            for _ in range(ENGINE_STEPS):
+                pybullet.stepSimulation(client)
+            pybullet.getBasePositionAndOrientation(robot, client)
+
+    yield step
+    pybullet.disconnect(client)
+
+
+def main() -> int:
+    """Measure windows until the input ends; return the exit code."""
+    logging.disable(logging.WARNING)
+    kind = sys.argv[1]
+    loops = {'goal': goal, 'reset': reset, 'vector': vector, 'r2d2': r2d2,
+             'step': lambda: ros(exact=True), 'pause': lambda: ros(exact=False)}
+    with loops[kind]() as step:
+        answer(step)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

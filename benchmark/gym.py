@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Measure environments of Gymnasium beside the same task over ROS, and beside bare PyBullet.
+
+All loops run in processes of their own and alternate in short windows, so that ratios are of one
+run; see environments.py. The server is roscore, rosout and gzserver in room.world at real time,
+paused except in the windows in which the task over ROS runs.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import ExitStack
+
+from article import robot_urdf
+from environments import EnvironmentLoop
+from server import Server, run_in_new_process
+
+WINDOW = 1.0  # [s, wall]
+ROUNDS = 8  # windows of each loop
+KINDS = ('goal', 'reset', 'vector', 'step', 'pause', 'r2d2')
+PERIOD = 0.1  # [s, simulated] of a control step
+RESET = 2.0  # [ms] at most
+FASTER = 20.0  # least ratio to the task over ROS with pause and unpause, and to real time
+LINEAR = 0.9  # least share of the speed of one process times the cores
+ROOM = ('gazebo_ros', 'empty_world.launch', 'gui:=false', 'world_name:=worlds/room.world')
+
+
+def measure() -> dict[str, float]:
+    """Return the control steps per second of each kind, and of a process on each core ('cores').
+
+    Starts a server, so it needs its own process.
+    """
+    best: dict[str, float] = {}
+
+    def record(kind: str, speed: float) -> None:
+        best[kind] = max(speed, best.get(kind, 0.0))
+
+    with ExitStack() as stack:
+        server = stack.enter_context(Server(launch=ROOM))
+        server.spawn_urdf('rosbots', robot_urdf(laser='true'))
+        server.wait_simulated(1.0)
+        loops = {kind: stack.enter_context(_started(kind)) for kind in KINDS}
+        others = [stack.enter_context(_started('goal')) for _ in range(_cores() - 1)]
+        server.pause()
+        for _ in range(ROUNDS):
+            for kind, loop in loops.items():
+                record(kind, loop.speed(WINDOW))
+            together = (loops['goal'], *others)
+            for loop in together:
+                loop.begin(WINDOW)
+            record('cores', sum(loop.end() for loop in together))
+    best['vector'] *= _cores()  # a step of it is a step of each
+    return best
+
+
+def _started(kind: str) -> EnvironmentLoop:
+    """Return a loop that is ready; two of them would disturb each other on one server."""
+    loop = EnvironmentLoop(kind)
+    loop.speed(0.0)
+    return loop
+
+
+def _cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def table(best: dict[str, float], cores: int) -> str:
+    """Return the measured speeds as a table, with ratios and targets."""
+    one, linear = best['goal'], best['goal'] * cores
+    rows = [
+        'environment                              steps/s  x real time',
+        *(f'{name:38}{best[kind]:10.1f}{best[kind] * PERIOD:13.1f}' for name, kind in (
+            ('GoToGoal-v0, one process', 'goal'),
+            (f'GoToGoal-v0, a process on {cores} cores', 'cores'),
+            (f'GoToGoal-v0, make_vec of {cores}, async', 'vector'),
+            ('over ROS by /gazebo/step', 'step'),
+            ('over ROS by unpause, wait, pause', 'pause'),
+            ('R2D2 of PyBullet, bare loop', 'r2d2'))),
+        _row('per core, x real time with 361 rays', one * PERIOD, FASTER),
+        _row('/ over ROS by unpause, wait, pause', one / best['pause'], FASTER),
+        _row('/ over ROS by /gazebo/step', one / best['step']),
+        _row('/ R2D2 of PyBullet', one / best['r2d2']),
+        _row('processes / linear', best['cores'] / linear, LINEAR),
+        _row('make_vec / linear', best['vector'] / linear, LINEAR),
+        _row('reset [ms]', 1000.0 / best['reset'], RESET, at_most=True),
+    ]
+    return '\n'.join(rows)
+
+
+def _row(name: str, value: float, target: float | None = None, at_most: bool = False) -> str:
+    row = f'{name:38}{value:10.2f}'
+    if target is None:
+        return row
+    met = value <= target if at_most else value >= target
+    bound = 'at most' if at_most else 'at least'
+    return f'{row}  ({"met" if met else "NOT met"}: {bound} {target:g})'
+
+
+def main() -> int:
+    """Print the table; return the exit code."""
+    print(table(run_in_new_process(measure), _cores()))
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

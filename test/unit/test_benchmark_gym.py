@@ -1,0 +1,44 @@
+"""Table of environments' speeds: ratios and verdicts."""
+
+import sys
+from types import ModuleType
+
+import pytest
+from support import ROOT
+
+BEST = {'goal': 250.0, 'cores': 400.0, 'vector': 460.0, 'step': 125.0, 'pause': 10.0, 'r2d2': 50.0,
+        'reset': 400.0}
+
+
+@pytest.fixture
+def table(monkeypatch):
+    """Return the function, with stubs for the modules that start servers."""
+    monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
+    for name, members in (('server', ('Server', 'run_in_new_process')),
+                          ('environments', ('EnvironmentLoop',)), ('article', ('robot_urdf',))):
+        module = ModuleType(name)
+        vars(module).update(dict.fromkeys(members))
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.delitem(sys.modules, 'gym', raising=False)
+    import gym
+    yield gym.table
+    sys.modules.pop('gym')
+
+
+@pytest.mark.parametrize(('row', 'value', 'verdict'), [
+    ('per core', '25.00', '(met: at least 20)'),
+    ('/ over ROS by unpause', '25.00', '(met: at least 20)'),
+    ('/ over ROS by /gazebo/step', '2.00', ''),
+    ('/ R2D2', '5.00', ''),
+    ('processes / linear', '0.80', '(NOT met: at least 0.9)'),
+    ('make_vec / linear', '0.92', '(met: at least 0.9)'),
+    ('reset', '2.50', '(NOT met: at most 2)'),
+])
+def test_ratios_are_of_one_process_and_targets_are_judged(table, row, value, verdict):
+    line, = (line for line in table(BEST, 2).splitlines() if line.startswith(row))
+    assert line.split(value)[1].strip() == verdict
+
+
+def test_real_time_is_ten_control_steps_per_second(table):
+    line, = (line for line in table(BEST, 2).splitlines() if line.startswith('over ROS by unpause'))
+    assert line.split()[-2:] == ['10.0', '1.0']
