@@ -21,6 +21,7 @@ from .history import History
 from .insert import InsertPanel, Library
 from .inspector import Inspector
 from .joints import JointPanel, Joints
+from .joystick import Joystick
 from .models import Models
 from .outline import Outline
 from .panel import Panel
@@ -127,7 +128,8 @@ class Page:
         tabs = site.gui.add_tab_group()
         if simulator.robots is not None:
             with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
-                self._panels.append(DrivePanel(site.gui, simulator.robots, keys))
+                drive = DrivePanel(site.gui, simulator.robots, keys)
+                self._panels += [drive, Joystick(site, drive.steer)]
                 if simulator.joints is not None:
                     self._panels.append(
                         JointPanel(site.gui, simulator.joints, models, self._notify))

@@ -1,0 +1,112 @@
+"""A joystick for fingers and mouse: a pad in a corner of each browser's picture."""
+
+import math
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import viser
+
+from ..sim.core import Pose, Vector, compose, inverse
+from .nodes import place
+from .panel import Panel
+from .ticker import Ticker
+
+PERIOD = 0.1  # [s, wall] between two commands while it is held
+DEPTH = 0.3  # [m] of the pad ahead of the camera
+RADIUS, KNOB, CORNER = 0.12, 0.05, 0.16  # parts of the picture's height; CORNER to both its edges
+NODE = '/joystick'
+
+
+@dataclass
+class _Pad:
+    frame: viser.FrameHandle
+    knob: viser.IcosphereHandle
+    radius: float  # [m]
+
+
+class Joystick(Panel):
+    """Pads while the box is checked; whoever drags the knob steers, and it returns when let go."""
+
+    def __init__(self, site: viser.ViserServer, steer: Callable[[float, float], None]) -> None:
+        """Add the box; `steer` gets ahead and left, -1 to 1, again and again while it is held."""
+        self._site, self._steer = site, steer
+        self._lock = threading.RLock()
+        self._ticker = Ticker(PERIOD, self._tick)
+        self._pads: dict[int, _Pad] = {}  # by the numbers of clients
+        self._held: dict[int, tuple[float, float]] = {}
+        self._box = site.gui.add_checkbox(
+            'Joystick', initial_value=False, hint='a pad in the picture, for a finger or the mouse')
+        self._box.on_update(lambda _: self.refresh())
+
+    def refresh(self) -> None:
+        """Give all that look a pad, or none."""
+        clients = self._site.get_clients()
+        with self._lock:
+            for gone in self._pads.keys() - clients.keys():
+                del self._pads[gone]
+            if self._box.value:
+                for number in clients.keys() - self._pads.keys():
+                    self._add(clients[number])
+            else:
+                for pad in self._pads.values():
+                    pad.frame.remove()
+                self._pads.clear()
+
+    def _add(self, client: viser.ClientHandle) -> None:
+        scene, height = client.scene, 2.0 * DEPTH * math.tan(client.camera.fov / 2.0)
+        frame = scene.add_frame(NODE, show_axes=False)
+        scene.add_cylinder(f'{NODE}/pad', RADIUS * height, 0.001, (120, 120, 120), opacity=0.4,
+                           cast_shadow=False, receive_shadow=False, side='double')
+        knob = scene.add_icosphere(f'{NODE}/knob', KNOB * height, (40, 90, 255),
+                                   cast_shadow=False, receive_shadow=False)
+        pad = self._pads[client.client_id] = _Pad(frame, knob, RADIUS * height)
+        place(frame, corner(client.camera))
+        client.camera.on_update(lambda camera: place(frame, corner(camera)))
+
+        async def drag(event: viser.SceneNodeDragEvent[viser.IcosphereHandle]) -> None:
+            self._drag(event, pad)  # not in threads, which would change the order
+        knob.on_drag(drag)
+
+    def _drag(self, event: viser.SceneNodeDragEvent[viser.IcosphereHandle], pad: _Pad) -> None:
+        with self._lock:
+            if event.phase == 'end':
+                self._held.pop(event.client_id, None)
+                if event.client_id in self._site.get_clients():  # else it is the end of its drag
+                    pad.knob.position = (0.0, 0.0, 0.0)
+                return
+            camera = event.client.camera
+            across, along, ahead = compose(
+                inverse(_pose(camera)), Pose(event.end_position)).position
+            middle = _corner(camera)  # the pointer is nearer than the pad, at the knob's surface
+            right = across * DEPTH / ahead - middle[0]
+            down = along * DEPTH / ahead - middle[1]
+            reach = max(math.hypot(right, down), pad.radius)
+            right, down = right / reach, down / reach
+            pad.knob.position = (right * pad.radius, down * pad.radius, 0.0)
+            self._held[event.client_id] = -down, -right
+            self._ticker.run(True)
+
+    def _tick(self) -> None:
+        with self._lock:
+            held = next(iter(self._held.values()), None)
+            if held is None:
+                self._ticker.run(False)
+        self._steer(*(held or (0.0, 0.0)))
+
+
+def corner(camera: viser.CameraHandle) -> Pose:
+    """Return the pose in the world of a pad at the lower left, with the axes of the camera."""
+    return compose(_pose(camera), Pose(_corner(camera)))
+
+
+def _corner(camera: viser.CameraHandle) -> Vector:
+    """Return its position in the frame of the camera: x right, y down, z ahead [m]."""
+    half = DEPTH * math.tan(camera.fov / 2.0)
+    return half * (2.0 * CORNER - camera.aspect), half * (1.0 - 2.0 * CORNER), DEPTH
+
+
+def _pose(camera: viser.CameraHandle) -> Pose:
+    w, x, y, z = map(float, camera.wxyz)
+    px, py, pz = map(float, camera.position)
+    return Pose((px, py, pz), (x, y, z, w))

@@ -1,0 +1,97 @@
+"""The joystick: a knob that is dragged steers, and returns when it is let go."""
+
+import math
+import time
+
+import pytest
+from support.browser import Browser
+
+from rosbots_description.web.joystick import NODE, Joystick, corner
+
+KNOB = f'{NODE}/knob'
+
+
+@pytest.fixture
+def commands():
+    return []
+
+
+@pytest.fixture
+def joystick(site, commands):
+    return Joystick(site, lambda *command: commands.append(command))
+
+
+@pytest.fixture
+def browser(site, joystick):
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: browser.control('Joystick') and site.get_clients())
+        browser.choose('Joystick', True)
+        browser.wait_until(lambda: KNOB in browser.nodes)
+        yield browser
+
+
+def drag(browser, joystick, phase, right=0.0, down=0.0):
+    """Drag the knob to a place on the pad, in parts of its radius."""
+    (pad,) = joystick._pads.values()
+    at = [float(pad.frame.position[i]) for i in range(3)]
+    # The camera of the browser looks ahead along z, x is right and y is down.
+    at[0] += right * pad.radius
+    at[1] += down * pad.radius
+    owner = next(m['owner'] for m in browser.messages if m.get('name') == KNOB and 'owner' in m)
+    browser.send({
+        'type': 'SceneNodeDragMessage', 'phase': phase, 'name': KNOB, 'instance_index': None,
+        'start_position': at, 'start_screen_pos': [0.5, 0.5], 'end_position': at,
+        'end_screen_pos': [0.5, 0.5], 'button': 'left', 'modifier': None, 'owner': owner})
+
+
+def wait_until(condition):
+    end = time.monotonic() + 20.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_the_pad_is_in_the_lower_left_corner(browser, joystick, site):
+    (client,) = site.get_clients().values()
+    x, y, z = corner(client.camera).position
+    camera = client.camera.position
+    assert x < camera[0]
+    assert y > camera[1]
+    assert z > camera[2]
+
+
+def test_it_steers_while_it_is_held_and_then_stops(browser, joystick, commands):
+    drag(browser, joystick, 'start')
+    drag(browser, joystick, 'update', right=-0.5, down=-0.5)
+    browser.wait_until(lambda: commands.count(pytest.approx((0.5, 0.5), abs=1e-3)) > 2)
+    drag(browser, joystick, 'end')
+    browser.wait_until(lambda: commands[-1] == (0.0, 0.0))
+    told = len(commands)
+    browser.read(0.4)
+    assert len(commands) == told
+    assert tuple(next(iter(joystick._pads.values())).knob.position) == (0.0, 0.0, 0.0)
+
+
+def test_beyond_the_pad_it_is_at_its_edge(browser, joystick, commands):
+    drag(browser, joystick, 'start')
+    drag(browser, joystick, 'update', right=3.0, down=-3.0)
+    edge = math.sqrt(0.5)
+    browser.wait_until(lambda: pytest.approx((edge, -edge), abs=1e-3) in commands)
+
+
+def test_a_browser_that_goes_while_it_steers_lets_go(browser, joystick, commands, site):
+    drag(browser, joystick, 'start')
+    drag(browser, joystick, 'update', down=-1.0)
+    browser.wait_until(lambda: commands)
+    browser._connection.close()
+    wait_until(lambda: commands[-1] == (0.0, 0.0))
+
+
+def test_each_browser_has_its_own_while_the_box_is_checked(browser, joystick, site):
+    with Browser(site.address) as second:
+        second.wait_until(lambda: len(site.get_clients()) == 2)
+        joystick.refresh()
+        second.wait_until(lambda: KNOB in second.nodes)
+        browser.choose('Joystick', False)
+        second.wait_until(lambda: KNOB not in second.nodes)
+    browser.wait_until(lambda: KNOB not in browser.nodes)
