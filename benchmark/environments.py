@@ -80,8 +80,7 @@ def reset() -> Iterator[Steps]:
 def vector() -> Iterator[Steps]:
     """Yield the step function of as many environments as there are cores, each in its process."""
     cores = len(os.sched_getaffinity(0))
-    with contextlib.closing(
-            gymnasium.make_vec(TASK, cores, vectorization_mode='async')) as environments:
+    with contextlib.closing(gymnasium.make_vec(TASK, cores)) as environments:
         seen, _ = environments.reset(seed=0)
 
         def step(steps: int) -> None:

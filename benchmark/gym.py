@@ -74,7 +74,7 @@ def table(best: dict[str, float], cores: int) -> str:
         *(f'{name:38}{best[kind]:10.1f}{best[kind] * PERIOD:13.1f}' for name, kind in (
             ('GoToGoal-v0, one process', 'goal'),
             (f'GoToGoal-v0, a process on {cores} cores', 'cores'),
-            (f'GoToGoal-v0, make_vec of {cores}, async', 'vector'),
+            (f'GoToGoal-v0, make_vec of {cores}', 'vector'),
             ('over ROS by /gazebo/step', 'step'),
             ('over ROS by unpause, wait, pause', 'pause'),
             ('R2D2 of PyBullet, bare loop', 'r2d2'))),

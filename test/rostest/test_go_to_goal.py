@@ -53,7 +53,9 @@ class GoToGoalTest(ExampleNodeTest):
         self.assertLess(self.distance(GOAL), 0.15)
 
     def test_2_a_learned_policy_drives_alike_in_both_worlds(self):
-        over_ros, arrives = track(RosGoToGoal())
+        ros = RosGoToGoal()
+        self.addCleanup(ros.close)  # which lets the simulation run
+        over_ros, arrives = track(ros)
         self.assertTrue(arrives)
         environment = gymnasium.make('rosbots_description.gym:rosbots/GoToGoal-v0')
         self.addCleanup(environment.close)

@@ -206,7 +206,8 @@ def test_a_policy_sees_what_is_near_and_where_the_goal_is():
 def test_the_layers_of_a_policy_are_applied_in_turn():
     values = follow_policy.outputs([[[1.0, 0.0, 0.5]], [[2.0, 0.0], [0.0, -1.0]]],
                                    np.array([0.1, 9.0]))
-    assert values == pytest.approx(np.tanh([2.0 * math.tanh(0.6), -1.0]))
+    forward, turn = np.tanh([2.0 * math.tanh(0.6), -1.0])
+    assert values == pytest.approx([(1.0 + forward) / 2.0, turn])  # never backwards
 
 
 def test_the_learned_policy_has_an_input_for_each_value_and_turns_to_the_goal():
