@@ -11,6 +11,7 @@ import shutil
 import signal
 import socket
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -155,8 +156,11 @@ def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
     if ray.is_initialized():
         yield
         return
+    before = signal.getsignal(signal.SIGTERM) or signal.SIG_DFL
     try:
         ray.init(log_to_driver=False, configure_logging=False, logging_level='error', **arguments)
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, before)  # Ray's prints a trace
     except Exception as error:  # Ray raises many kinds
         ray.shutdown()
         where = arguments['address']

@@ -125,7 +125,7 @@ def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
             time.sleep(0.05)
         processes = descendants(command.pid)
         assert processes
-        command.send_signal(signal.SIGINT)
+        command.send_signal(signal.SIGTERM)
         printed, said = command.communicate(timeout=PATIENCE)
     finally:
         command.kill()
