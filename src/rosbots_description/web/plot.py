@@ -1,6 +1,5 @@
 """A plot of any numbers that are published, over simulated time."""
 
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
@@ -15,8 +14,7 @@ from viser import uplot
 from ..sim.core import SimError
 from ..sim.description import ShownMotion
 from .chart import WINDOW, Chart
-from .panel import Panel
-from .ticker import Ticker
+from .reading import ReadingPanel
 
 PERIOD = 0.2  # [s, wall] between two pictures of the plot
 COLOURS = ('#1f77b4', '#d62728', '#2ca02c', '#ff7f0e', '#9467bd', '#8c564b', '#17becf')
@@ -47,17 +45,14 @@ class Signals(Protocol):
         """
 
 
-class PlotPanel(Panel):
+class PlotPanel(ReadingPanel):
     """Chooses curves and draws them."""
 
     def __init__(self, gui: viser.GuiApi, signals: Signals,
                  complain: Callable[[str], None]) -> None:
+        super().__init__(PERIOD)
         self._gui, self._signals, self._complain = gui, signals, complain
-        self._lock = threading.RLock()
-        self._ticker = Ticker(PERIOD, self._tick)
         self._chart = Chart()
-        self._open: set[str] = set()
-        self._is_seen = False
         self._topics: Mapping[str, Sequence[str]] = {}
         self._clock: deque[tuple[float, float]] = deque(maxlen=MOTIONS)
         self._topic = gui.add_dropdown('Topic', [''])
@@ -88,18 +83,6 @@ class PlotPanel(Panel):
             self._topics = topics
             self._read_chosen()
 
-    def open(self) -> None:
-        """Read the curves."""
-        with self._lock:
-            self._is_seen = True
-            self._read_chosen()
-
-    def close(self) -> None:
-        """Read nothing until somebody looks again."""
-        with self._lock:
-            self._is_seen = False
-            self._read_chosen()
-
     def _choose_topic(self) -> None:
         self._field.options = ('', *self._topics.get(self._topic.value, ()))
 
@@ -128,21 +111,18 @@ class PlotPanel(Panel):
             self._show()
             self._read_chosen()
 
-    def _read_chosen(self) -> None:
-        self._read(set(self._chart.curves) if self._is_seen else set())
+    def _chosen(self) -> set[str]:
+        return set(self._chart.curves)
 
-    def _read(self, curves: set[str]) -> None:
-        """Read these curves and no others; those that are not published are tried again."""
-        for curve in self._open - curves:
-            self._signals.close(curve)
-        self._open &= curves
-        for curve in curves - self._open:
-            try:
-                self._signals.open(curve)
-            except SimError:  # it was there when it was added
-                continue
-            self._open.add(curve)
-        self._ticker.run(bool(self._open))
+    def _begin(self, name: str) -> bool:
+        try:
+            self._signals.open(name)
+        except SimError:  # it was there when it was added, and will be tried again
+            return False
+        return True
+
+    def _end(self, name: str) -> None:
+        self._signals.close(name)
 
     def _show(self) -> None:
         """Show the curves' boxes and an empty plot."""

@@ -1,6 +1,5 @@
 """The sensors of robots: those whose boxes are checked are shown, and no others read."""
 
-import threading
 from collections.abc import Collection, Mapping
 from functools import partial
 from typing import Protocol
@@ -10,9 +9,8 @@ import viser
 from ..sim.core import IDENTITY, Pose, SimError, compose
 from ..sim.description import SceneChange, ShownLink, ShownReading
 from .models import Models
-from .panel import Panel
+from .reading import ReadingPanel
 from .sensor_row import SensorRow
-from .ticker import Ticker
 
 PERIOD = 1.0 / 15.0  # [s, wall] between two looks at the sensors
 WORLD = ('', 'world')  # frames that are the world's own
@@ -42,19 +40,16 @@ class Sensors(Protocol):
         """Return the link of these that a frame is fixed to, and its pose there, if known."""
 
 
-class SensorPanel(Panel):
+class SensorPanel(ReadingPanel):
     """A box for each sensor."""
 
     def __init__(self, site: viser.ViserServer, sensors: Sensors, models: Models) -> None:
+        super().__init__(PERIOD)
         self._site, self._sensors, self._models = site, sensors, models
-        self._lock = threading.RLock()
-        self._ticker = Ticker(PERIOD, self._tick)
         self._topics: Mapping[str, str] = {}
         self._rows: dict[str, SensorRow] = {}
-        self._chosen: set[str] = set()  # also of topics that have gone, and may return
-        self._open: set[str] = set()
+        self._checked: set[str] = set()  # also of topics that have gone, and may return
         self._unplaced: dict[str, ShownReading] = {}  # until TF tells where they were taken
-        self._is_seen = False
         self._links: dict[str, dict[str, ShownLink]] = {}  # by names, for each topic
         self._note = site.gui.add_markdown(NONE)
         self._folder = site.gui.add_folder('Sensors')
@@ -72,49 +67,37 @@ class SensorPanel(Panel):
                 self._offer(topics)
             self._read_chosen()
 
-    def open(self) -> None:
-        """Read what is chosen."""
-        with self._lock:
-            self._is_seen = True
-            self._read_chosen()
-
-    def close(self) -> None:
-        """Read nothing until somebody looks again."""
-        with self._lock:
-            self._is_seen = False
-            self._read_chosen()
-
     def _offer(self, topics: Mapping[str, str]) -> None:
-        self._read({topic for topic in self._open if topics.get(topic) == self._topics[topic]})
+        for topic in [one for one in self._open if topics.get(one) != self._topics[one]]:
+            self._end(topic)
+            self._open.remove(topic)
         for row in self._rows.values():
             row.remove()
         self._topics = topics
         self._note.visible = not topics
         with self._folder:
             self._rows = {
-                topic: SensorRow(self._site, topic, kind, topic in self._chosen,
+                topic: SensorRow(self._site, topic, kind, topic in self._checked,
                                  partial(self._choose, topic))
                 for topic, kind in topics.items()}
 
-    def _choose(self, topic: str, chosen: bool) -> None:
+    def _choose(self, topic: str, checked: bool) -> None:
         with self._lock:
-            self._chosen = self._chosen | {topic} if chosen else self._chosen - {topic}
+            self._checked = self._checked | {topic} if checked else self._checked - {topic}
             self._read_chosen()
 
-    def _read_chosen(self) -> None:
-        self._read(self._chosen & self._topics.keys() if self._is_seen else set())
+    def _chosen(self) -> set[str]:
+        return self._checked & self._topics.keys()
 
-    def _read(self, topics: set[str]) -> None:
-        """Read these topics and no others."""
-        for topic in self._open - topics:
-            self._sensors.close(topic)
-            self._unplaced.pop(topic, None)
-            self._rows[topic].clear()
-        for topic in topics - self._open:
-            self._sensors.open(topic, self._topics[topic])
-            self._rows[topic].tell('Nothing has come yet.')
-        self._open = topics
-        self._ticker.run(bool(topics))
+    def _begin(self, name: str) -> bool:
+        self._sensors.open(name, self._topics[name])
+        self._rows[name].tell('Nothing has come yet.')
+        return True
+
+    def _end(self, name: str) -> None:
+        self._sensors.close(name)
+        self._unplaced.pop(name, None)
+        self._rows[name].clear()
 
     def _tick(self) -> None:
         with self._lock:

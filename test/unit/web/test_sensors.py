@@ -76,7 +76,7 @@ def test_nothing_is_read_while_nobody_looks(browser, sensors, panel):
 def test_what_is_checked_after_all_have_left_waits(browser, sensors, panel):
     panel.close()
     browser.choose(SCAN, True)
-    browser.wait_until(lambda: SCAN in panel._chosen)
+    browser.wait_until(lambda: SCAN in panel._checked)
     assert sensors.open_topics == set()
     panel.open()
     assert sensors.open_topics == {SCAN}
