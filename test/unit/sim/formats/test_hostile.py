@@ -110,7 +110,7 @@ def test_each_kind_has_cases(ending):
 def test_material_library_outside_of_the_folder_is_not_opened(opened):
     opened.paths.clear()
     opened.listening = True
-    check_mesh.__globals__['_check'].cache_clear()
+    check_mesh.__globals__['_ends'].cache_clear()
     check_mesh.__globals__['_read'].cache_clear()
     check_mesh(str(FOLDER / 'library_out_of_folder.obj'))
     opened.listening = False
