@@ -3,7 +3,7 @@
 
     goal     rosbots/GoToGoal-v0: the article's robot in a room, with a scan of 361 rays
     reset    the same; only its resets, and each counts as a step
-    vector   as many of them as there are cores, by gymnasium.make_vec; a step of all is one
+    vector   `PER_CORE` of them for each core, by gymnasium.make_vec; a step of all is one
     step     the same task over ROS, by scripts/ros_environment.py and /gazebo/step; without its
              contact sensor, which would take two thirds of the time
     pause    the same between unpause_physics and pause_physics
@@ -29,8 +29,14 @@ from article import ROOT
 from windows import Steps, WindowedLoop, answer
 
 TASK = 'rosbots_description.gym:rosbots/GoToGoal-v0'
+PER_CORE = 4  # environments in parallel, as a step of all waits for the slowest
 ENGINE_STEPS = 100  # of 1 ms in a control step
 WHEEL_SPEED, WHEEL_TORQUE = -10.0, 10.0  # of the R2D2 [rad/s], [N m]
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0))
 
 
 class EnvironmentLoop(WindowedLoop):
@@ -78,9 +84,8 @@ def reset() -> Iterator[Steps]:
 
 @contextlib.contextmanager
 def vector() -> Iterator[Steps]:
-    """Yield the step function of as many environments as there are cores, each in its process."""
-    cores = len(os.sched_getaffinity(0))
-    with contextlib.closing(gymnasium.make_vec(TASK, cores)) as environments:
+    """Yield the step function of environments in parallel, each in its process."""
+    with contextlib.closing(gymnasium.make_vec(TASK, PER_CORE * cores())) as environments:
         seen, _ = environments.reset(seed=0)
 
         def step(steps: int) -> None:

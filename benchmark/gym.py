@@ -8,12 +8,11 @@ paused except in the windows in which the task over ROS runs.
 
 from __future__ import annotations
 
-import os
 import sys
 from contextlib import ExitStack
 
 from article import robot_urdf
-from environments import EnvironmentLoop
+from environments import PER_CORE, EnvironmentLoop, cores
 from server import Server, run_in_new_process
 
 WINDOW = 1.0  # [s, wall]
@@ -41,7 +40,7 @@ def measure() -> dict[str, float]:
         server.spawn_urdf('rosbots', robot_urdf(laser='true'))
         server.wait_simulated(1.0)
         loops = {kind: stack.enter_context(_started(kind)) for kind in KINDS}
-        others = [stack.enter_context(_started('goal')) for _ in range(_cores() - 1)]
+        others = [stack.enter_context(_started('goal')) for _ in range(cores() - 1)]
         server.pause()
         for _ in range(ROUNDS):
             for kind, loop in loops.items():
@@ -50,7 +49,7 @@ def measure() -> dict[str, float]:
             for loop in together:
                 loop.begin(WINDOW)
             record('cores', sum(loop.end() for loop in together))
-    best['vector'] *= _cores()  # a step of it is a step of each
+    best['vector'] *= PER_CORE * cores()  # a step of it is a step of each
     return best
 
 
@@ -61,20 +60,15 @@ def _started(kind: str) -> EnvironmentLoop:
     return loop
 
 
-def _cores() -> int:
-    """Return the number of cores that this process may use."""
-    return len(os.sched_getaffinity(0))
-
-
-def table(best: dict[str, float], cores: int) -> str:
-    """Return the measured speeds as a table, with ratios and targets."""
-    one, linear = best['goal'], best['goal'] * cores
+def table(best: dict[str, float], count: int) -> str:
+    """Return the measured speeds on `count` cores as a table, with ratios and targets."""
+    one, linear = best['goal'], best['goal'] * count
     rows = [
         'environment                              steps/s  x real time',
         *(f'{name:38}{best[kind]:10.1f}{best[kind] * PERIOD:13.1f}' for name, kind in (
             ('GoToGoal-v0, one process', 'goal'),
-            (f'GoToGoal-v0, a process on {cores} cores', 'cores'),
-            (f'GoToGoal-v0, make_vec of {cores}', 'vector'),
+            (f'GoToGoal-v0, a process on {count} cores', 'cores'),
+            (f'GoToGoal-v0, make_vec of {PER_CORE * count}', 'vector'),
             ('over ROS by /gazebo/step', 'step'),
             ('over ROS by unpause, wait, pause', 'pause'),
             ('R2D2 of PyBullet, bare loop', 'r2d2'))),
@@ -100,7 +94,7 @@ def _row(name: str, value: float, target: float | None = None, at_most: bool = F
 
 def main() -> int:
     """Print the table; return the exit code."""
-    print(table(run_in_new_process(measure), _cores()))
+    print(table(run_in_new_process(measure), cores()))
     return 0
 
 

@@ -14,11 +14,13 @@ BEST = {'goal': 250.0, 'cores': 400.0, 'vector': 460.0, 'step': 125.0, 'pause': 
 def table(monkeypatch):
     """Return the function, with stubs for the modules that start servers."""
     monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
-    for name, members in (('server', ('Server', 'run_in_new_process')),
-                          ('environments', ('EnvironmentLoop',)), ('article', ('robot_urdf',))):
+    for name, members in (
+            ('server', ('Server', 'run_in_new_process')),
+            ('environments', ('EnvironmentLoop', 'cores')), ('article', ('robot_urdf',))):
         module = ModuleType(name)
         vars(module).update(dict.fromkeys(members))
         monkeypatch.setitem(sys.modules, name, module)
+    vars(sys.modules['environments'])['PER_CORE'] = 4
     monkeypatch.delitem(sys.modules, 'gym', raising=False)
     import gym
     yield gym.table
