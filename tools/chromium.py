@@ -47,6 +47,12 @@ def picture(driver: webdriver.Chrome) -> Image.Image:
     return Image.open(io.BytesIO(base64.b64decode(answer['data'])))
 
 
+def drawn(driver: webdriver.Chrome) -> None:
+    """Return when the page has been drawn again, with all that it knows of now."""
+    driver.execute_async_script(
+        'const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))')
+
+
 def faults(driver: webdriver.Chrome) -> list[str]:
     """Return the errors that its console has shown since the last call."""
     return [entry['message'] for entry in driver.get_log('browser') if entry['level'] == 'SEVERE']

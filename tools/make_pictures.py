@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 from chromium import chromium, picture
 from PIL import Image
+from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 
 from rosbots_description.cli import demo
@@ -126,25 +127,36 @@ def picture_of(steps: Steps, folder: Path) -> np.ndarray:
 
 def picture_in_browser(steps: Steps, folder: Path) -> Image.Image:
     """Open the window in a browser by launch files; return what it shows."""
-    with started(steps, folder):
-        log = (folder / '0.log').read_text(errors='replace')
-        address = re.findall(r'the world is at (\S+)', log)[-1]
-        with chromium(PAGE) as browser:
-            browser.get(address)
-            end = time.monotonic() + START
-            while 'Iterations' not in browser.find_element(By.TAG_NAME, 'body').text:
-                if time.monotonic() > end:
-                    raise PictureError(f'no page at {address} within {START:g} s')
-                time.sleep(POLL_PERIOD)
-            for button in browser.find_elements(By.CSS_SELECTOR, NOTICE):
-                button.click()
-            time.sleep(LOADING)
-            return picture(browser)
+    with started(steps, folder), opened(address_in(folder), PAGE) as browser:
+        return picture(browser)
+
+
+def address_in(folder: Path) -> str:
+    """Return the address that the first launch file has printed."""
+    return re.findall(r'the world is at (\S+)', (folder / '0.log').read_text(errors='replace'))[-1]
 
 
 @contextmanager
-def started(steps: Steps, folder: Path, **environment: str) -> Iterator[None]:
-    """Run launch files in order, with a master of their own."""
+def opened(address: str, size: tuple[int, int]) -> Iterator[Chrome]:
+    """Open the window in a browser of this size [pixels]; yield it when all meshes are there."""
+    with chromium(size) as browser:
+        browser.get(address)
+        end = time.monotonic() + START
+        while 'Iterations' not in browser.find_element(By.TAG_NAME, 'body').text:
+            if time.monotonic() > end:
+                raise PictureError(f'no page at {address} within {START:g} s')
+            time.sleep(POLL_PERIOD)
+        for button in browser.find_elements(By.CSS_SELECTOR, NOTICE):
+            button.click()
+        time.sleep(LOADING)
+        yield browser
+
+
+@contextmanager
+def started(
+    steps: Steps, folder: Path, **environment: str
+) -> Iterator[Mapping[str, str]]:
+    """Run launch files in order, with a master of their own; yield their environment."""
     opened = []
     variables = ros_environment(folder, **environment)
     try:
@@ -153,7 +165,7 @@ def started(steps: Steps, folder: Path, **environment: str) -> Iterator[None]:
             opened.append(Launched(arguments, log, variables))
             if text:
                 wait_for(text, log)
-        yield
+        yield variables
     finally:
         for launched in reversed(opened):
             launched.stop()
