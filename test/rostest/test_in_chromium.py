@@ -55,8 +55,6 @@ QUERY = '?fixedDpr=1'
 SCENE_ONLY = """const style = document.createElement('style');
 style.textContent = 'body *:not(canvas):not(:has(canvas)) { visibility: hidden !important }';
 document.head.append(style)"""
-TWO_FRAMES = """const done = arguments[0];
-requestAnimationFrame(() => requestAnimationFrame(done))"""
 
 
 class Page:
@@ -86,12 +84,21 @@ class Page:
         self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title={name}]').click()
 
     def select(self, eye, model, point):
-        """Click on a model, where a point of it [m] is seen."""
+        """Click on a model, where a point of it [m] is seen; as often as it has not been drawn."""
         self.open_tab('Edit')
-        ActionChains(self.driver).move_to_element_with_offset(
-            self.scene(), *eye.pixel(point)).click().perform()
-        wait_until(lambda: f'\n{model}' in self.text(), f'{model} selected', SLOW)
-        self.driver.execute_async_script(TWO_FRAMES)
+        end = monotonic() + SLOW
+        while f'\n{model}' not in self.text():
+            if monotonic() > end:
+                raise AssertionError(f'not within {SLOW:g} s: {model} selected')
+            ActionChains(self.driver).move_to_element_with_offset(
+                self.scene(), *eye.pixel(point)).click().pause(1.0).perform()
+
+    def is_red(self, eye, point):
+        """Tell whether something red, like the handle along x, is seen at a point [m]."""
+        x, y = np.add(eye.pixel(point), np.floor_divide(SIZE, 2))
+        seen = np.asarray(picture(self.driver).convert('RGB'), int)[y - 4:y + 5, x - 4:x + 5]
+        red, green, blue = np.moveaxis(seen, -1, 0)
+        return np.any((red - green > 60) & (blue >= green))
 
     def scene(self):
         return self.driver.find_element(By.TAG_NAME, 'canvas')
@@ -258,6 +265,7 @@ class ChromiumTest(unittest.TestCase):
         eye = Eye(self.address)
         self.page.select(eye, 'rosbots', TOP)
         before = x_of('rosbots')
+        wait_until(lambda: self.page.is_red(eye, HANDLE), 'the handle', SLOW)
         self.page.drag(eye, HANDLE, BEHIND)
         wait_until(lambda: x_of('rosbots') < before - 0.1, 'a move', SLOW)
         for process in descendants(self.page.driver.service.process.pid):
