@@ -2,9 +2,9 @@
 """Regenerate the README's pictures: `./rosbots exec tools/make_pictures.py [folder [picture …]]`.
 
 The windows are opened on a virtual display (Xvfb), which stores its pixels in a file; the
-demo draws its own two; `web.png` needs Chromium. The default is all of them, into doc/images;
-`speed.png` is drawn by `./rosbots bench`, and `map.png` is RViz after a minute of
-map_while_driving.launch.
+demo draws its own two; `web.png` and `web_dark.png` are what Chromium shows. The default is all
+of them, into doc/images; `speed.png` is drawn by `./rosbots bench`, and `map.png` is RViz after a
+minute of map_while_driving.launch.
 """
 
 import os
@@ -53,12 +53,16 @@ WINDOWS: dict[str, Steps] = {
     'see.png': [(['rosbots_description', 'see.launch'], 'pictures are drawn by')],
 }
 NOTICE = '.mantine-Notification-closeButton'  # that the page is drawn in software
-BROWSER: dict[str, Steps] = {'web.png': [
+ROOM: Steps = [
     (['gazebo_ros', 'empty_world.launch', 'gui:=false', 'web:=true', 'web_port:=0',
       'world_name:=worlds/room.world'], 'the world is at'),
     (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
      'Successfully spawned entity'),
-]}
+]
+BROWSER = {'web.png': '', 'web_dark.png': '?darkMode'}  # what the address ends with
+# Viser fades the scene in, by so much with each frame that it draws.
+FADED_IN = """return [...document.querySelectorAll('canvas')].every(
+    canvas => canvas.style.opacity === '' || Number(canvas.style.opacity) >= 1)"""
 PAGE = (1200, 700)  # [pixels]
 LOADING = 30.0  # [s, wall] for all meshes, drawn in software
 DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
@@ -125,9 +129,13 @@ def picture_of(steps: Steps, folder: Path) -> np.ndarray:
         return steady(pixels)
 
 
-def picture_in_browser(steps: Steps, folder: Path) -> Image.Image:
-    """Open the window in a browser by launch files; return what it shows."""
-    with started(steps, folder), opened(address_in(folder), PAGE) as browser:
+def picture_in_browser(query: str, folder: Path) -> Image.Image:
+    """Open the window of the room in a browser; return what it shows.
+
+    Args:
+        query: what the address ends with.
+    """
+    with started(ROOM, folder), opened(address_in(folder) + query, PAGE) as browser:
         return picture(browser)
 
 
@@ -149,6 +157,11 @@ def opened(address: str, size: tuple[int, int]) -> Iterator[Chrome]:
         for button in browser.find_elements(By.CSS_SELECTOR, NOTICE):
             button.click()
         time.sleep(LOADING)
+        end = time.monotonic() + START
+        while not browser.execute_script(FADED_IN):
+            if time.monotonic() > end:
+                raise PictureError(f'the scene is not drawn within {START:g} s')
+            time.sleep(POLL_PERIOD)
         yield browser
 
 
