@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -106,11 +107,15 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(server.returncode, 0)
 
     def test_verbose_shows_debug_messages(self):
-        for options, shown in (((), False), (('--verbose',), True)):
-            server = self._start('gzserver', *options, '--iters', '50', 'worlds/shapes.world')
-            printed, _ = server.communicate(timeout=DEADLINE)
-            self.assertEqual('[DEBUG] [' in printed, shown, printed)
-            self.assertIn('Finished loading', printed)
+        with tempfile.NamedTemporaryFile('w', suffix='.world') as world:
+            world.write('<sdf version="1.6"><world name="w">'
+                        '<audio><device>none</device></audio></world></sdf>')
+            world.flush()
+            for options, shown in (((), False), (('--verbose',), True)):
+                server = self._start('gzserver', *options, '--iters', '50', world.name)
+                printed, _ = server.communicate(timeout=DEADLINE)
+                self.assertEqual('[DEBUG] [' in printed, shown, printed)
+                self.assertIn('Finished loading', printed)
 
     def test_second_server_does_not_start_while_one_runs(self):
         first = self._server()
