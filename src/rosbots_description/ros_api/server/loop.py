@@ -8,11 +8,11 @@ from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import AbstractContextManager
 from contextvars import copy_context
-from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...sim.core import SimError
 from ...sim.runtime import NEVER
+from .command_queue import CommandQueue
 
 if TYPE_CHECKING:
     from ...sim.runtime import World
@@ -53,7 +53,7 @@ class Loop:
         """
         self._world = world
         self._batch = batch
-        self._commands: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._commands = CommandQueue()
         self._tasks: list[_Task] = []
         self._stopping = False
         self._ended: Future[None] = Future()  # done when `run` has returned
@@ -142,13 +142,10 @@ class Loop:
 
     def _serve(self) -> None:
         """Carry out everything in the queue."""
-        while not self._commands.empty():
-            self._do(self._commands.get())
-
-    def _do(self, command: Callable[[], None]) -> None:
-        if self._world.paused:
-            self._next_step = time.monotonic()  # do not catch up for a pause, however short
-        _run_safely(command)
+        for command in self._commands.take_all():
+            if self._world.paused:
+                self._next_step = time.monotonic()  # do not catch up for a pause, however short
+            _run_safely(command)
 
     def _run_tasks(self) -> None:
         for task in self._tasks:
@@ -169,9 +166,7 @@ class Loop:
         if rate > 0.0:
             if now - self._next_step > MAX_LAG:
                 self._next_step = now
-            # After a change of rate the next step may be far in the future.
-            self._next_step = min(self._next_step, now + 1.0 / rate)
-            if now < self._next_step:
+            if now < self._due(now, rate):
                 return
             batch = min(batch, int((now - self._next_step) * rate + 1.0))
             self._next_step += batch / rate
@@ -186,21 +181,24 @@ class Loop:
         self._step_cost += 0.1 * (cost - self._step_cost)
 
     def _wait(self) -> None:
-        """Sleep until a step or task is due or a command arrives; serve that command."""
+        """Sleep until a step or task is due or a command arrives."""
+        now = time.monotonic()
         wakes = [task.next_run for task in self._tasks]
         if not self._world.paused:
-            wakes.append(self._next_needed())
-        timeout = min(wakes) - time.monotonic() if wakes else None
-        if timeout is not None and timeout <= 0.0:
-            return
-        try:
-            command = self._commands.get(timeout=timeout)
-        except Empty:
-            return
-        self._advance()
-        self._do(command)
+            wakes.append(self._next_needed(now))
+        timeout = min(wakes) - now if wakes else None
+        if not self._stopping and (timeout is None or timeout > 0.0):
+            self._commands.wait(timeout)
 
-    def _next_needed(self) -> float:
+    def _due(self, now: float, rate: float) -> float:
+        """Return when the next step is due, at most a step from now [s, monotonic].
+
+        After a change of rate it may have been planned for much later.
+        """
+        self._next_step = min(self._next_step, now + 1.0 / rate)
+        return self._next_step
+
+    def _next_needed(self, now: float) -> float:
         """Return when the loop has to make steps again [s, monotonic]."""
         rate, world = self._world.physics.max_update_rate, self._world
         if rate <= 0.0:
@@ -210,7 +208,7 @@ class Loop:
             int(BACKLOG / self._step_cost) if self._step_cost else 0,
             NEVER if self._left is None else self._left - 1,
         )
-        return self._next_step + max(0, unnoticed) / rate
+        return self._due(now, rate) + max(0, unnoticed) / rate
 
 
 class _Task:

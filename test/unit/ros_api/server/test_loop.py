@@ -7,7 +7,6 @@ import math
 import threading
 import time
 from dataclasses import replace
-from queue import Empty
 
 import pytest
 
@@ -41,17 +40,13 @@ class WallClock:
     def put(self, command):
         self.at(0.0, command)
 
-    def empty(self):
-        return not self._coming or self._coming[0][0] > self._now
+    def take_all(self):
+        while self._coming and self._coming[0][0] <= self._now:
+            yield self._coming.pop(0)[1]
 
-    def get(self, timeout=None):
+    def wait(self, timeout):
         end = math.inf if timeout is None else self._now + timeout
-        if self._coming[0][0] > end:
-            self._now = end
-            raise Empty
-        when, command = self._coming.pop(0)
-        self._now = max(self._now, when)
-        return command
+        self._now = max(self._now, min(end, self._coming[0][0]))
 
 
 class CountingWorld:
@@ -110,7 +105,7 @@ def clock(monkeypatch):
     """Give loops a fake wall clock, independent of the load of the machine."""
     clock = WallClock()
     monkeypatch.setattr('rosbots_description.ros_api.server.loop.time', clock)
-    monkeypatch.setattr('rosbots_description.ros_api.server.loop.SimpleQueue', lambda: clock)
+    monkeypatch.setattr('rosbots_description.ros_api.server.loop.CommandQueue', lambda: clock)
     return clock
 
 
