@@ -73,6 +73,20 @@ def test_make_vec_gives_the_bits_of_single_environments_in_processes():
     assert not any(is_running(process.pid) for process in envs.processes)
 
 
+def test_several_workers_per_core_keep_to_one_core_each_and_few_to_none():
+    cores = sorted(os.sched_getaffinity(0))
+
+    def allowed(count):
+        envs = make_parallel(Mortal, count)
+        found = [os.sched_getaffinity(process.pid) for process in envs.processes]
+        envs.close()
+        return found
+
+    assert allowed(2 * len(cores)) == 2 * [{core} for core in cores]
+    assert allowed(1) == [set(cores)]
+    assert os.sched_getaffinity(0) == set(cores)
+
+
 def test_warnings_about_the_robot_come_once_and_none_from_the_console_of_a_worker(capfd):
     envs = make_parallel(Mortal, 3)
     envs.reset(seed=0)
