@@ -11,6 +11,7 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _SLACK = 1e-6  # [rad] for rounding
+_ON_AXIS = 1e-200  # [m^2], instead of zero, by which nothing can be divided
 
 
 @dataclass(frozen=True)
@@ -103,11 +104,12 @@ class RayFan:
         # A box whose corners are all ahead of the axis subtends the azimuths of its corners.
         across, ahead = x * corners[1] - y * corners[0], x * corners[0] + y * corners[1]
         ahead += flat * flat
-        slopes, is_ahead = across / ahead, ahead.min(axis=0) > 0.0
-        low = np.where(
-            is_ahead, np.maximum(low, middle + np.arctan(slopes.min(axis=0)) - _SLACK), low)
-        high = np.where(
-            is_ahead, np.minimum(high, middle + np.arctan(slopes.max(axis=0)) + _SLACK), high)
+        np.maximum(ahead, _ON_AXIS, out=ahead)
+        slopes, is_ahead = across / ahead, ahead.min(axis=0) > _ON_AXIS
+        np.maximum(
+            low, middle + np.arctan(slopes.min(axis=0)) - _SLACK, out=low, where=is_ahead)
+        np.minimum(
+            high, middle + np.arctan(slopes.max(axis=0)) + _SLACK, out=high, where=is_ahead)
         columns, columns_end = self.columns.within(
             low[:, None] + self._turns, high[:, None] + self._turns)
         there = (columns_end > columns) & (rows_end > rows)[:, None]
@@ -129,7 +131,6 @@ class RayFan:
         down, along = np.divmod(np.arange(len(which)) - before[which], widths[which])
         first = patches.rows * self.shape[1] + patches.columns
         return which, down * self.shape[1] + along + first[which], counts
-
 
     def blend(self) -> 'Blend':
         """Return the interpolation of readings from rays, whose numbers may differ."""
