@@ -14,9 +14,7 @@ from ..core import (
     NotFoundError,
     Pose,
     SimClock,
-    SimError,
     Twist,
-    shortened,
 )
 from ..description import (
     Element,
@@ -25,26 +23,16 @@ from ..description import (
     PhysicsSettings,
     PluginSpec,
     SceneSpec,
-    SensorSpec,
     WorldSpec,
 )
 from ..physics import CompiledModel, EngineFactory, make_engine
-from ..plugin_registry import (
-    PAGE,
-    library_name,
-    library_remark,
-    missing_libraries,
-    plugin_class,
-    sensor_class,
-    sensor_plugin_class,
-)
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
 from .holds import Holds
 from .model import CollisionFrame, Joint, Link, Model
 from .model_part import ModelPart
 from .nested_model import NestedModel, nested_models
-from .plugin import Plugin
+from .part_loading import PartLoader
 from .saved_state import SavedState
 from .scheduler import Schedule
 
@@ -190,11 +178,7 @@ class World:
         compiled = self.compile(model) if isinstance(model, ModelSpec) else model
         spawned = self.models[name] = Model(name, compiled, self.engine, pose)
         try:
-            for plugin in compiled.spec.plugins:
-                self._load_plugin(spawned, plugin)
-            for link in spawned.links.values():
-                for sensor in link.spec.sensors:
-                    self._load_sensor(link, sensor)
+            PartLoader(self, spawned).load()
         except BaseException:
             self._remove(spawned)  # nobody has been told of it
             raise
@@ -347,55 +331,6 @@ class World:
         if name in WORLD_FRAMES:
             return IDENTITY, Twist()
         raise NotFoundError(f"there is no model, link or collision named '{name}'")
-
-    def _load_plugin(self, model: Model, spec: PluginSpec) -> None:
-        where = f"model '{model.name}', plugin '{spec.name}'"
-        cls = plugin_class(spec.filename)
-        plugin = None if cls is None else cls(self, model, spec)
-        self._start_plugin(model, spec, plugin, where, f"plugin '{spec.filename}'")
-
-    def _load_sensor(self, link: Link, spec: SensorSpec) -> None:
-        """Give a link a sensor; what is not simulated of it is named."""
-        model, kind = link.model, spec.type or 'sensor'
-        called = shortened(f"{kind} '{spec.name}'", 100)
-        where = f"model '{model.name}', {called} of link '{link.name}'"
-        cls = sensor_class(spec.type) or sensor_class('')
-        if cls is None:  # nobody has loaded any sensors
-            return
-        sensor = cls(self, link, spec)
-        if not self._start(model, sensor, where, called):
-            return
-        model.sensors.append(sensor)
-        for inner in spec.plugins:
-            plugin_cls = sensor_plugin_class(inner.filename)
-            plugin = None if plugin_cls is None else plugin_cls(sensor, inner)
-            self._start_plugin(model, inner, plugin, where, f'{called} ({inner.filename})')
-        if not (spec.plugins or sensor.measures):
-            logger.warning('%s: sensors of this type are not simulated yet; see %s', where, PAGE)
-            model.left_out.append(called)
-
-    def _start_plugin(
-        self, model: Model, spec: PluginSpec, plugin: Plugin | None, where: str, called: str
-    ) -> None:
-        """Load a plugin; None stands for one whose library is not here."""
-        if plugin is None:
-            known = library_name(spec.filename) in missing_libraries()
-            logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
-                       where, library_remark(spec.filename), PAGE)
-            model.left_out.append(called)
-        elif self._start(model, plugin, where, called):
-            model.plugins.append(plugin)
-
-    def _start(self, model: Model, part: ModelPart, where: str, called: str) -> bool:
-        """Start and schedule a plugin or sensor; after an error the model is spawned without it."""
-        try:
-            part.start()
-        except SimError as error:
-            logger.error('%s: %s; the model is spawned without it', where, error)
-            model.left_out.append(called)
-            return False
-        self.schedule.add(part)
-        return True
 
     def _parts(self) -> Iterator[ModelPart]:
         for model in self.models.values():

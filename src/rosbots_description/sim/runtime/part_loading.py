@@ -1,0 +1,89 @@
+"""Load the plugins and sensors of a model that is being spawned."""
+
+import logging
+from typing import TYPE_CHECKING
+
+from ..core import SimError, shortened
+from ..description import PluginSpec, SensorSpec
+from ..plugin_registry import (
+    PAGE,
+    library_name,
+    library_remark,
+    missing_libraries,
+    plugin_class,
+    sensor_class,
+    sensor_plugin_class,
+)
+from .model import Link, Model
+from .model_part import ModelPart
+from .plugin import Plugin
+
+if TYPE_CHECKING:
+    from .world import World
+
+logger = logging.getLogger(__name__)
+
+
+class PartLoader:
+    """Gives one model its plugins and sensors; what is left out is logged and listed."""
+
+    def __init__(self, world: 'World', model: Model) -> None:
+        self._world, self._model = world, model
+
+    def load(self) -> None:
+        """Load, start and schedule all plugins, then all sensors with theirs."""
+        model = self._model
+        for plugin in model.spec.plugins:
+            self._load_plugin(plugin)
+        for link in model.links.values():
+            for sensor in link.spec.sensors:
+                self._load_sensor(link, sensor)
+
+    def _load_plugin(self, spec: PluginSpec) -> None:
+        where = f"model '{self._model.name}', plugin '{spec.name}'"
+        cls = plugin_class(spec.filename)
+        plugin = None if cls is None else cls(self._world, self._model, spec)
+        self._start_plugin(spec, plugin, where, f"plugin '{spec.filename}'")
+
+    def _load_sensor(self, link: Link, spec: SensorSpec) -> None:
+        """Give a link a sensor; what is not simulated of it is named."""
+        model, kind = self._model, spec.type or 'sensor'
+        called = shortened(f"{kind} '{spec.name}'", 100)
+        where = f"model '{model.name}', {called} of link '{link.name}'"
+        cls = sensor_class(spec.type) or sensor_class('')
+        if cls is None:  # nobody has loaded any sensors
+            return
+        sensor = cls(self._world, link, spec)
+        if not self._start(sensor, where, called):
+            return
+        model.sensors.append(sensor)
+        for inner in spec.plugins:
+            plugin_cls = sensor_plugin_class(inner.filename)
+            plugin = None if plugin_cls is None else plugin_cls(sensor, inner)
+            self._start_plugin(inner, plugin, where, f'{called} ({inner.filename})')
+        if not (spec.plugins or sensor.measures):
+            logger.warning('%s: sensors of this type are not simulated yet; see %s', where, PAGE)
+            model.left_out.append(called)
+
+    def _start_plugin(
+        self, spec: PluginSpec, plugin: Plugin | None, where: str, called: str
+    ) -> None:
+        """Load a plugin; None stands for one whose library is not here."""
+        if plugin is None:
+            known = library_name(spec.filename) in missing_libraries()
+            logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
+                       where, library_remark(spec.filename), PAGE)
+            self._model.left_out.append(called)
+        elif self._start(plugin, where, called):
+            self._model.plugins.append(plugin)
+
+    def _start(self, part: ModelPart, where: str, called: str) -> bool:
+        """Start and schedule a plugin or sensor; after an error the model is spawned without it."""
+        try:
+            part.start()
+        except SimError as error:
+            logger.error('%s: %s; the model is spawned without it', where, error)
+            self._model.left_out.append(called)
+            return False
+        self._world.schedule.add(part)
+        return True
