@@ -24,7 +24,7 @@ import rospy
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
 from ...sim.physics import CrashSandbox
-from ...sim.runtime import World
+from ...sim.runtime import World, populate
 from .. import adapters, services  # noqa: F401  both register what they hold
 from ..adapters import Adapters
 from ..server import Loop, Server
@@ -54,7 +54,7 @@ from ..views.overview_picture import advertise_view
 from ..views.scene import advertise_scene
 from ..views.visuals import advertise_visuals
 from .packages import find_model, find_package
-from .world_loading import fill_world, held_records, read_world, replay
+from .world_loading import held_records, read_world, replay
 
 logger = logging.getLogger(__name__)
 
@@ -161,7 +161,7 @@ def _connect(server: Server, spec: WorldSpec) -> None:
             advertise_contacts(server)
             server.static_frames.watch(server.loop)
     server.world.listeners.append(Adapters(server))
-    fill_world(server.world, spec)
+    populate(server.world, spec)
     server.parameters.append(_use_simulated_time)
     _use_simulated_time()
     if networked:

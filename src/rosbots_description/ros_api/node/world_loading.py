@@ -1,4 +1,4 @@
-"""Find the world file named by `world_name:=`, read it and populate the world."""
+"""Find the world file named by `world_name:=`, and read it."""
 
 import logging
 import os
@@ -10,7 +10,6 @@ from ...sim.core import NotFoundError
 from ...sim.description import WorldSpec
 from ...sim.formats import open_world
 from ...sim.resources import find_world, path_directories
-from ...sim.runtime import World, populate
 from .packages import exported_directories, find_model, find_package
 
 _OWN = Path(__file__).resolve().parents[2]  # holds worlds/, wherever this library is installed
@@ -27,12 +26,6 @@ def read_world(name: str) -> WorldSpec:
         SimError: there is no such file, or it contains no world.
     """
     return open_world(_find(name), find_model=find_model, find_package=find_package)
-
-
-def fill_world(world: World, spec: WorldSpec) -> None:
-    """Add the models and lights of `spec` to an empty world."""
-    populate(world, spec)
-    world.lights.update({light.name: light for light in spec.lights})
 
 
 def own_worlds() -> list[str]:

@@ -17,7 +17,7 @@ from ..core import (
     compose,
     from_rpy,
 )
-from ..description import ModelSpec, PhysicsSettings, WorldSpec
+from ..description import ModelSpec, PhysicsSettings
 from ..formats import open_world, sdf_of_world
 from ..physics import CompiledModel
 from ..resources import find_world, path_directories, write_world
@@ -98,7 +98,7 @@ class World(runtime.World):
         world = cls(package_path=package_path, model_path=model_path)
         world.seed = seed
         try:
-            world._populate(open_world(
+            populate(world, open_world(
                 file,
                 find_model=world._descriptions.find_model,
                 find_package=world._descriptions.packages(os.fspath(file)),
@@ -107,10 +107,6 @@ class World(runtime.World):
             world.close()
             raise
         return world
-
-    def _populate(self, spec: WorldSpec) -> None:
-        populate(self, spec)
-        self.lights.update({light.name: light for light in spec.lights})
 
     def __enter__(self) -> Self:
         """Return the world."""

@@ -17,16 +17,15 @@ _SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
 
 
 def populate(world: World, spec: WorldSpec) -> None:
-    """Add all models to an empty world, and set its clock.
+    """Add all models and lights to an empty world, and set its clock.
 
-    Lights stay in `spec` for those who serve them; plugins of the world that do more
-    than the server does anyway are named as not run. A model that the world does not take is an
-    error in the log, and the others stand.
+    Plugins of the world that do more than the server does anyway are named as not run. A model
+    that the world does not take is an error in the log, and the others stand.
     """
-    world.name = spec.name
+    world.spec = replace(spec, models=(), states=())  # the world has its own
+    world.name, world.scene = spec.name, spec.scene
     world.set_physics(spec.physics)
-    world.scene, world.plugins, world.parts = spec.scene, spec.plugins, spec.parts
-    world.faults = spec.faults
+    world.lights.update({light.name: light for light in spec.lights})
     world.clock.steps = round(spec.time / spec.physics.step_size)  # before plugins read it
     for model_spec, pose in spec.models:
         try:
@@ -58,23 +57,23 @@ def describe(world: World) -> WorldSpec:
     noise and commands are not part of it.
     """
     models = world.models.values()
-    return WorldSpec(
-        world.name,
-        tuple((replace(model.spec, name=model.name), model.initial_pose) for model in models),
-        world.physics,
-        tuple(world.lights.values()),
-        world.scene,
-        world.plugins,
-        tuple(map(state_of, models)),
-        world.clock.now,
-        world.parts,
-        tuple(_missing(world)),
+    return replace(
+        world.spec,  # its plugins, and the parts that nothing acts on
+        name=world.name,
+        models=tuple((replace(model.spec, name=model.name), model.initial_pose)
+                     for model in models),
+        physics=world.physics,
+        lights=tuple(world.lights.values()),
+        scene=world.scene,
+        states=tuple(map(state_of, models)),
+        time=world.clock.now,
+        faults=tuple(_missing(world)),
     )
 
 
 def _missing(world: World) -> Iterator[str]:
-    if world.faults:
-        yield f'{len(world.faults)} parts of its own file, which were left out'
+    if world.spec.faults:
+        yield f'{len(world.spec.faults)} parts of its own file, which were left out'
     for model in world.models.values():
         if model.spec.left_out:
             yield f"of model '{model.name}' what was left out: {', '.join(model.spec.left_out)}"

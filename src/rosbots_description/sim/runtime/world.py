@@ -16,15 +16,7 @@ from ..core import (
     SimClock,
     Twist,
 )
-from ..description import (
-    Element,
-    LightSpec,
-    ModelSpec,
-    PhysicsSettings,
-    PluginSpec,
-    SceneSpec,
-    WorldSpec,
-)
+from ..description import LightSpec, ModelSpec, PhysicsSettings, WorldSpec
 from ..physics import CompiledModel, EngineFactory, make_engine
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
@@ -71,7 +63,8 @@ class World:
         Args:
             make_engine: makes the physics engine.
         """
-        self.name = WorldSpec.name
+        self.spec = WorldSpec()  # as it was read; when saved, what nothing here acts on is as there
+        self.name, self.scene = self.spec.name, self.spec.scene
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
         self.schedule = Schedule()
@@ -81,11 +74,6 @@ class World:
         self.schedule.add(self.holds)
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightSpec] = {}
-        self.scene = SceneSpec()
-        # Of its file, for the one who saves it: nothing here acts on them.
-        self.plugins: tuple[PluginSpec, ...] = ()
-        self.parts: tuple[Element, ...] = ()
-        self.faults: tuple[str, ...] = ()
         self.listeners: list[Listener] = []
         self.resources = contextlib.ExitStack()  # of others, which end with the world
         self.paused = False

@@ -4,6 +4,7 @@ import logging
 import math
 
 import pytest
+from lxml import etree
 from support import LIBRARY, XACRO, box_urdf
 
 from rosbots_description.sim import Pose, SimError, World, from_rpy
@@ -114,6 +115,19 @@ def test_poses_that_are_changed_by_hand_are_believed(tmp_path):
     path.write_text(path.read_text().replace(z, '7.5'))
     with World.from_file(path) as other:
         assert other.model('crate').pose.position[2] == pytest.approx(7.5)
+
+
+def test_parts_of_its_file_that_nothing_acts_on_are_saved_again(tmp_path):
+    path, saved = tmp_path / 'a.world', tmp_path / 'saved.world'
+    path.write_text('<sdf version="1.6"><world name="w"><road name="r"><width>3</width></road>'
+                    '<light name="lamp" type="point"/><plugin name="p" filename="libp.so">'
+                    '<rate>5</rate></plugin></world></sdf>')
+    with World.from_file(path) as world:
+        world.save(saved)
+    root = etree.parse(saved)
+    assert [root.findtext(f'world/{part}') for part in ('road/width', 'plugin/rate')] == ['3', '5']
+    with World.from_file(saved) as again:
+        assert list(again.lights) == ['lamp']
 
 
 def test_what_is_not_in_the_file_is_named(tmp_path):
