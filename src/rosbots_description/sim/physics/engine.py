@@ -194,16 +194,15 @@ class PhysicsEngine(Protocol):
 
     def match_poses(
         self, body: EngineBody, axes: Mapping[str, Pose], links: Mapping[str, Pose]
-    ) -> bool:
+    ) -> None:
         """Move roots by rounding errors, so that they and the links are exactly where they were.
 
-        Roots and joints must have been set; velocities stay.
+        Roots and joints must have been set; velocities stay. Nothing is moved any further than
+        that, if the links are elsewhere now.
 
         Args:
             axes: what `settle_poses` returned.
             links: the poses of the links since then.
-        Returns:
-            whether that was possible; else they are there but for rounding errors.
         """
 
     def set_root_twist(self, body: EngineBody, link: str, twist: Twist) -> None:

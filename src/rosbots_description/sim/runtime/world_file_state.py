@@ -1,4 +1,4 @@
-"""The <state> of a saved world: apply it to a model, and tell it."""
+"""The <state> of a saved world: read it off a model, and apply it to one."""
 
 import math
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ _SAME = 1e-6  # [rad or m] between a joint's position and that of its links, at 
 
 
 def state_of(model: Model) -> ModelState:
-    """Return where a model is and how it moves; it is moved by rounding errors before."""
+    """Move a model by rounding errors, so that its poses can be restored, and return its state."""
     axes = model.engine.settle_poses(model.body)
     links = model.engine.link_states(model.body)
     return ModelState(
@@ -26,9 +26,10 @@ def state_of(model: Model) -> ModelState:
 
 
 def apply_state(model: Model, state: ModelState) -> None:
-    """Set a model's root poses and joint positions from a saved world, and velocities if told.
+    """Set a model's root poses and joint positions from a saved world; velocities and motors, too.
 
-    A reset still returns it to its spawn pose, as in Gazebo.
+    A state that Gazebo saved has no velocities and motors here. A reset still returns the model to
+    its spawn pose, as in Gazebo.
     """
     engine, body = model.engine, model.body
     if state.pose is not None:
@@ -49,15 +50,15 @@ def apply_state(model: Model, state: ModelState) -> None:
         engine.match_poses(body, state.axes, state.links)
 
 
-def _exact(position: float, told: tuple[float, float] | None) -> tuple[float, float]:
+def _exact(position: float, saved: tuple[float, float] | None) -> tuple[float, float]:
     """Return the position and velocity of a joint, given the position that its links have.
 
-    What is told has the full turns and the last bits; but links moved by an editor are believed.
+    The saved position has the full turns and the last bits; but links moved by an editor count.
     """
-    if told is None:
+    if saved is None:
         return position, 0.0
-    is_same = abs(math.remainder(told[0] - position, 2.0 * math.pi)) < _SAME
-    return (told[0] if is_same else position), told[1]
+    is_same = abs(math.remainder(saved[0] - position, 2.0 * math.pi)) < _SAME
+    return (saved[0] if is_same else position), saved[1]
 
 
 def joint_positions(spec: ModelSpec, state: ModelState) -> dict[str, float]:

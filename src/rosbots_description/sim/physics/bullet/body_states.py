@@ -141,7 +141,7 @@ class BodyStates:
         """Move roots by rounding errors so that `match_poses` restores all links; return axes."""
         axes = {}
         for root in body.roots:
-            placement = self._placement(body, root, list(body.parts))
+            placement = self._placement(body, root, body.parts)
             if root not in body.fixed_roots:
                 placement.settle()
                 self.placements += 1
@@ -150,14 +150,12 @@ class BodyStates:
 
     def match_poses(
         self, body: Body, axes: Mapping[str, Pose], links: Mapping[str, Pose]
-    ) -> bool:
+    ) -> None:
         """Move roots by rounding errors so that principal axes and links are these again."""
         self.placements += 1
-        matched = True
         for root in (root for root in body.roots if root in axes):
             mine = [pose for name, pose in links.items() if self._is_of(body, name, root)]
-            matched &= self._placement(body, root, links).match(axes[root], mine)
-        return matched
+            self._placement(body, root, links).match(axes[root], mine)
 
     def _placement(self, body: Body, root: str, links: Iterable[str]) -> ExactPlacement:
         names = [name for name in links if self._is_of(body, name, root)]

@@ -43,13 +43,12 @@ class ExactPlacement:
                 return
             axes = self._place(axes)
 
-    def match(self, axes: Pose, links: Sequence[Pose]) -> bool:
-        """Move by rounding errors so that axes and links are these; tell whether it is done."""
-        if self._read_links() == links:
-            return True
-        if not _are_close(self.axes, axes):
-            return False  # the links were moved since
-        return self._search(axes, links) or self._place(axes) == axes
+    def match(self, axes: Pose, links: Sequence[Pose]) -> None:
+        """Move by rounding errors so that axes and links are these, unless they were moved."""
+        if self._read_links() == links or not _are_close(self.axes, axes):
+            return
+        if not self._search(axes, links):
+            self._place(axes)
 
     def _search(self, axes: Pose, links: Sequence[Pose] | None = None) -> bool:
         """Place the root so that axes, and links if given, are reported so; tell if it is done."""
