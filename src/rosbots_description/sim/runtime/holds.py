@@ -15,7 +15,11 @@ class Holds(Hook):
         self._held: dict[Model, tuple[Pose, Callable[[], bool]]] = {}
 
     def hold(self, model: Model, pose: Pose, lasts: Callable[[], bool]) -> None:
-        """Hold a model from now on, while `lasts()`, which is called once a step; again: anew."""
+        """Hold a model at a pose in the world from now on, in place of an earlier pose of its own.
+
+        Args:
+            lasts: called once a step; the model is released when it returns False.
+        """
         self._held[model] = pose, lasts
         _place(model, pose)
         self._set_due()

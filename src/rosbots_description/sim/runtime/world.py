@@ -243,7 +243,8 @@ class World:
         From here on the world moves bit for bit as after each `restore` of this state. Saving makes
         the engine recompute all contacts, which moves bodies by less than 1 um/step.
         """
-        return SavedState(self, (self.external_forces, self._watchdog, *self._parts()))
+        own = self.external_forces, self.holds, self._watchdog
+        return SavedState(self, (*own, *self._parts()))
 
     def restore(self, state: SavedState) -> None:
         """Restore a saved state, including time and the state of plugins.

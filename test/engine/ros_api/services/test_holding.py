@@ -11,6 +11,7 @@ from support.bench import BOX, Bench, empty_world
 from rosbots_description.ros_api.services import holding
 from rosbots_description.sim.core.transforms import Pose as SimPose
 from rosbots_description.sim.formats import load_urdf
+from rosbots_description.sim.runtime import NEVER
 
 HIGH = Pose(PointMessage(0.0, 0.0, 5.0), Quaternion(0.0, 0.0, 0.0, 1.0))
 
@@ -65,7 +66,7 @@ def test_model_that_goes_and_a_reset_end_a_hold(clock, world, box):
     assert box.pose.position[2] == pytest.approx(0.5, abs=1e-3)
     hold(world, 10.0)
     world.delete('b')
-    world.run(10)
+    assert world.holds.due == NEVER
 
 
 @pytest.mark.parametrize(('duration', 'name', 'pose'), [

@@ -104,6 +104,21 @@ def test_time_forces_commands_and_readings_are_restored():
         assert crate.pose == moved
 
 
+def test_models_are_held_again_after_a_restore():
+    with World.empty() as world:
+        crate, high = world.spawn(CRATE, z=0.5), Pose((0.0, 0.0, 5.0))
+        loose = world.save_state()
+        world.run(500)
+        world.holds.hold(crate, high, lambda: True)
+        held = world.save_state()
+        world.restore(loose)
+        world.run(500)
+        assert crate.pose.position[2] == pytest.approx(0.5, abs=1e-3)
+        world.restore(held)
+        world.run(500)
+        assert crate.pose.position[2] == pytest.approx(5.0, abs=1e-3)
+
+
 def test_readers_are_not_restored():
     with World.empty() as world:
         drive = world.spawn(WATCHER, z=0.1).plugin('planar_move')
