@@ -176,16 +176,17 @@ class World(runtime.World):
         """Write the world as it stands as a world file, for `from_file`.
 
         There every pose is the same to the last bit, and the motion goes on. Plugins and sensors
-        begin anew: odometry, noise and commands are not in the file.
+        begin anew: odometry, noise and commands are not in the file. Saving moves models by
+        rounding errors, to poses that can be restored.
 
         Args:
             path: ends in .world or .sdf.
             overwrite: whether there may be a file already.
         Returns:
-            what of the world is not in the file, in words.
+            what else of the world is not in the file, a few words each.
 
         Raises:
-            SimError: the file exists or cannot be written.
+            SimError: the path ends otherwise, the file exists or cannot be written.
         """
         self._require_open()
         spec = describe(self)

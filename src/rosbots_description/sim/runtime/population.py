@@ -77,5 +77,7 @@ def _missing(world: World) -> Iterator[str]:
     for model in world.models.values():
         if model.spec.left_out:
             yield f"of model '{model.name}' what was left out: {', '.join(model.spec.left_out)}"
+        if (model.mass_scale, model.body.friction_scales) != (1.0, {}):
+            yield f"of model '{model.name}' the factors on mass and friction"
     if world.external_forces.are_pending:
         yield 'forces and efforts that act for a time'

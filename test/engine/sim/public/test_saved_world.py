@@ -137,8 +137,10 @@ def test_what_is_not_in_the_file_is_named(tmp_path):
     with World.empty() as world:
         hill = world.spawn(f'<sdf version="1.6"><model name="hill">{part}</model></sdf>')
         world.apply_wrench(hill.link('hill'), (1.0, 0.0, 0.0))
+        hill.link('hill').scale_friction(0.5)
         assert world.save(tmp_path / 'a.world') == (
             f"of model 'hill' what was left out: {hill.spec.left_out[0]}",
+            "of model 'hill' the factors on mass and friction",
             'forces and efforts that act for a time')
         assert 'heightmap' in hill.spec.left_out[0]
         assert '<sensor name="s" type="sonar"' in (tmp_path / 'a.world').read_text()
