@@ -16,9 +16,8 @@ from ..core import (
     as_vector,
     compose,
     normalise,
-    rotate,
 )
-from ..core.arrays import FloatArray
+from ..core.arrays import FloatArray, rotation_matrix
 from .model_spec import REVOLUTE, Inertial, JointSpec, LinkSpec
 
 # A body with a zero principal moment cannot be simulated. It gets that of a solid sphere of this
@@ -239,9 +238,7 @@ def mobility(link: LinkSpec, place: Vector, turn: Quaternion) -> FloatArray:
 
 
 def _matrix(q: Quaternion) -> FloatArray:
-    if q == NO_ROTATION:
-        return np.eye(3)
-    return np.array([rotate(q, axis) for axis in np.eye(3).tolist()]).T
+    return np.eye(3) if q == NO_ROTATION else rotation_matrix(q)
 
 
 def _quaternion(matrix: FloatArray) -> Quaternion:

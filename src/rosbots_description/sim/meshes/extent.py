@@ -2,12 +2,10 @@
 
 import numpy as np
 
-from ..core import Pose, compose, rotate
-from ..core.arrays import FloatArray
+from ..core import Pose, compose
+from ..core.arrays import FloatArray, rotation_matrix
 from ..description import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from .loader import mesh_ends, read_mesh
-
-_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
@@ -20,7 +18,7 @@ def extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
     Raises:
         ModelError: a mesh cannot be read.
     """
-    turn: FloatArray = np.stack([rotate(pose.orientation, axis) for axis in _AXES], axis=1)
+    turn = rotation_matrix(pose.orientation)
     match geometry:
         case Box(size):
             reach = np.abs(turn) @ np.divide(size, 2.0)

@@ -7,18 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Pose, Quaternion, Vector, rotate
+from ..core import Pose, Vector
+from ..core.arrays import rotation_matrix
 
 Floats = NDArray[np.float64]
 
-_AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _SIGNS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))  # of a box's corners
-
-
-def rotation_matrix(orientation: Quaternion) -> Floats:
-    """Return the rotation matrix (3, 3) of a unit quaternion."""
-    x, y, z = (rotate(orientation, axis) for axis in _AXES)
-    return np.array((x, y, z)).T
 
 
 class LinkSolids(NamedTuple):

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import ZERO, ModelError, Pose, Vector, compose, rotate
+from ..core.arrays import rotation_matrix
 from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import ray_shapes
-from .link_solids import LinkSolids, rotation_matrix
+from .link_solids import LinkSolids
 from .ray_fan import Indices, Patches, RayFan
 from .ray_mesh import RayMesh, build_later
 
