@@ -3,11 +3,9 @@
 from collections.abc import Iterable
 from itertools import product
 
-import numpy as np
-
-from ..sim.core import ModelError, Pose, Vector, compose
-from ..sim.description import Box, Cylinder, Geometry, Mesh, Plane, Sphere, Visual
-from ..sim.meshes import read_mesh
+from ..sim.core import IDENTITY, ModelError, Pose, Vector, compose
+from ..sim.description import Geometry, Visual
+from ..sim.meshes import rough_extent
 
 
 def corners(visuals: Iterable[Visual]) -> list[Vector]:
@@ -21,20 +19,8 @@ def corners(visuals: Iterable[Visual]) -> list[Vector]:
 
 def _corners(geometry: Geometry) -> list[Vector]:
     """Return the corners of a box around a shape, in its frame [m]; none for a plane."""
-    match geometry:
-        case Box(size):
-            high = np.divide(size, 2.0)
-        case Sphere(radius):
-            high = np.full(3, radius)
-        case Cylinder(radius, length):
-            high = np.array([radius, radius, length / 2.0])
-        case Mesh(path, scale):
-            try:
-                vertices, _ = read_mesh(path).triangles()
-            except ModelError:  # it is not shown
-                return []
-            ends = np.multiply([vertices.min(axis=0), vertices.max(axis=0)], scale)
-            return list(product(*ends.T.tolist()))
-        case Plane():
-            return []
-    return list(product(*np.stack([-high, high], axis=1).tolist()))
+    try:
+        ends = rough_extent(geometry, IDENTITY)
+    except ModelError:  # a mesh that is not shown
+        return []
+    return [] if ends is None else list(product(*ends.T.tolist()))
