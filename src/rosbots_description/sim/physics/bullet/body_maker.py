@@ -1,7 +1,7 @@
 """Creates PyBullet bodies from compiled models (compiler.py)."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, product
 
 from ...core import Pose, Vector, compose, inverse
@@ -146,11 +146,10 @@ class BodyMaker:
             del self._sides[place]
             self._soft.pop(place, None)
 
-    def scale_mass(self, body: Body, factor: float) -> None:
-        """Multiply all masses and moments that are described of a body by a factor."""
-        body.mass_scale = factor
-        for number, masses in body.masses.items():
-            for part in masses.scaled(factor).parts:
+    def set_masses(self, bodies: Mapping[int, Masses]) -> None:
+        """Give bodies, by PyBullet's numbers, other masses and moments."""
+        for number, masses in bodies.items():
+            for part in masses.parts:
                 # Two calls: the first one also sets moments, those of the shape.
                 pybullet.changeDynamics(
                     number, part.link, mass=part.mass, physicsClientId=self._client)

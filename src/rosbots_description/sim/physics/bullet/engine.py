@@ -226,8 +226,9 @@ class Engine(BodyStates):
         """Multiply the described masses and moments of inertia of a model by a factor."""
         if factor == body.mass_scale:
             return
-        self._maker.scale_mass(body, factor)
+        body.mass_scale = factor
         scaled = {number: masses.scaled(factor) for number, masses in body.masses.items()}
+        self._maker.set_masses(scaled)
         self._fast.add(scaled)
         self._fast.until_check = 0
         self._springs.add(scaled)
