@@ -49,8 +49,8 @@ class Plane:
 class Mesh:
     """A triangle mesh read from `path` (an absolute file path) and scaled along its axes.
 
-    `uri` is the address in the description, for messages and markers. `submesh` is the part of the
-    file there that `path` holds, '' for all; `is_centred`, whether it was moved to the origin.
+    `uri` is the address in the description, for messages, markers and saved worlds. `submesh` names
+    the part of that file which `path` holds, '' for all; `is_centred`: it was moved to the origin.
     """
 
     path: str
@@ -119,9 +119,9 @@ class Material:
     """How a visual looks.
 
     Cameras see the reflection and the alpha of `rgba` (red, green, blue, alpha in 0..1); windows
-    that know no reflection show `rgba`. `script` is Gazebo's name for it, `image` the path of a
-    texture, which only cameras see. `script_file` is
-    the path of the script that defines `script`; '' for those that Gazebo itself has.
+    that know no reflection show `rgba`. `script` is Gazebo's name for it, and `script_file` the
+    path of the file that defines it, '' for those of Gazebo itself. `image` is the path of a
+    texture, which only cameras see.
     """
 
     rgba: Colour = (0.7, 0.7, 0.7, 1.0)

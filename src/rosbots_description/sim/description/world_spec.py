@@ -48,9 +48,10 @@ class SceneSpec:
 class ModelState:
     """Poses of a model and its links in a saved world, in the world frame.
 
-    In a world that this simulator saved there are also the twists of links, in the world frame,
-    position [rad or m] and velocity [rad/s or m/s] of joints, target velocity and greatest effort
-    [N m or N] of their motors, and the poses of the principal axes of root links.
+    In a world that this simulator saved there are also the `twists` of links, in the world frame;
+    position [rad or m] and velocity [rad/s or m/s] of `joints`; target velocity [rad/s or m/s] and
+    greatest effort [N m or N] of their `motors`; and `axes`, the poses of the principal axes of
+    root links in the world. All are by name.
     """
 
     name: str
@@ -67,8 +68,8 @@ class WorldSpec:
     """A whole world. Models are in the order of the file, each with the pose it resets to.
 
     `states` and `time` [s] are those of a saved world's <state>. `parts` are elements that nothing
-    here acts on, as they were written; of <scene> what is not in `scene`. `faults` tells which
-    models were left out, and why.
+    here acts on, as they were written; of <scene> what is not in `scene`. `faults` are sentences:
+    which models and other parts were left out, and why.
     """
 
     name: str = 'default'

@@ -1,4 +1,4 @@
-"""Resolve the addresses of files, and open them safely."""
+"""Resolve the addresses of files, open them safely, and write world files."""
 
 from .new_file import require_world_path, write_world
 from .packages import PackageSearch

@@ -1,7 +1,7 @@
-"""What our world files tell beyond SDF, in attributes that other programs pass over.
+"""What our world files have beyond SDF, in attributes that other programs ignore.
 
-SDF gives rotations as roll, pitch and yaw, from which the last bits of a quaternion do not come
-back. So a quaternion is written beside them; whoever changes the angles by hand is believed.
+SDF gives rotations as roll, pitch and yaw, from which the last bits of a quaternion cannot be
+computed. So a quaternion is written beside them. If someone changes the angles, these count.
 """
 
 import math
@@ -42,12 +42,15 @@ def angle_between(one: Quaternion, other: Quaternion) -> float:
 
 
 def quaternion_text(q: Quaternion, rpy: Vector) -> str:
-    """Return what `orientation` needs to return `q` bit for bit; '' if the angles are enough."""
+    """Return what `orientation` needs besides the angles [rad] to return `q` bit for bit, or ''."""
     return '' if from_rpy(*rpy) == q else ' '.join(map(repr, q))
 
 
 def orientation(rpy: Vector, quaternion: str | None) -> Quaternion:
-    """Return the orientation of a <pose>, by its angles and the quaternion beside them, if any."""
+    """Return the orientation of a <pose>, by its angles [rad] and the quaternion beside them.
+
+    The quaternion counts if it is one and means the same as the angles but for rounding.
+    """
     turned = from_rpy(*rpy)
     exact = parse_numbers(quaternion, 4) if quaternion else None
     if exact is None or not angle_between(as_quaternion(exact), turned) < _SAME:

@@ -4,14 +4,13 @@ from dataclasses import replace
 
 from lxml import etree
 
-from ...core import Pose, Twist, as_quaternion, as_vector
+from ...core import NANOSECONDS, Pose, Twist, as_quaternion, as_vector
 from ...description import ModelState
 from ..xml import number, numbers
 from .document import SdfDocument
 from .exact import AXES, EXACT, MOTOR, VELOCITY
 from .values import number_of, numbers_of, pose_in
 
-_NANOSECONDS = 1e9
 _IDLE = ('wall_time', 'real_time', 'iterations', 'light')
 _LINK_IDLE = ('velocity', 'acceleration', 'wrench')
 
@@ -61,9 +60,9 @@ def _with_motion(state: ModelState, model: etree._Element) -> ModelState:
 
 
 def _twists(model: etree._Element) -> dict[str, Twist]:
-    numbers = {link.get('name', ''): numbers_of(link, 'velocity', (0.0,) * 6)
-               for link in model.iterfind('link')}
-    return {name: Twist(as_vector(six[:3]), as_vector(six[3:])) for name, six in numbers.items()}
+    found = {link.get('name', ''): numbers_of(link, 'velocity', (0.0,) * 6)
+             for link in model.iterfind('link')}
+    return {name: Twist(as_vector(six[:3]), as_vector(six[3:])) for name, six in found.items()}
 
 
 def _joints(model: etree._Element) -> dict[str, tuple[float, float]]:
@@ -75,8 +74,8 @@ def _motors(model: etree._Element) -> dict[str, tuple[float, float]]:
     found = {}
     for joint in model.iterfind('joint'):
         if joint.get(MOTOR) is not None:
-            target, most = numbers(joint, MOTOR, count=2)
-            found[joint.get('name', '')] = (target, most)
+            velocity, effort = numbers(joint, MOTOR, count=2)
+            found[joint.get('name', '')] = (velocity, effort)
     return found
 
 
@@ -91,7 +90,7 @@ def _axes(model: etree._Element) -> dict[str, Pose]:
 
 def _sim_time(element: etree._Element) -> float:
     """Return <sim_time>seconds nanoseconds</sim_time> in seconds, at least 0."""
-    numbers = (element.findtext('sim_time') or '').split()
-    if len(numbers) != 2 or not all(number.isdecimal() for number in numbers):
+    parts = (element.findtext('sim_time') or '').split()
+    if len(parts) != 2 or not all(part.isdecimal() for part in parts):
         return 0.0
-    return int(numbers[0]) + int(numbers[1]) / _NANOSECONDS
+    return int(parts[0]) + int(parts[1]) / NANOSECONDS

@@ -67,7 +67,7 @@ class Renderer:
         self._drop(self._images, {part.appearance.texture for part in scene.parts})
         self._drawables = [
             Drawable(self._context, part, *self._meshes[part.mesh], self._placed,
-                      self._images.get(part.appearance.texture))
+                     self._images.get(part.appearance.texture))
             for part in scene.parts
         ]
         self._static_bodies = sorted({part.body for part in scene.parts if part.still})
@@ -145,7 +145,7 @@ class Renderer:
     def _frame(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> Frame:
         eye_matrix = matrices(np.asarray(eye, dtype=float)[None])[0]
         frame = Frame(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
-                       matrices(poses))
+                      matrices(poses))
         frame.visible = []
         for drawable in self._drawables:
             drawable.place(frame)
