@@ -140,17 +140,17 @@ def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
     except AbsentError as error:
         raise ShapeError(str(error).removeprefix(f'{location(uri_element)}: '), uri) from error
     submesh = text_of(element, 'submesh/name')
-    centred = boolean_of(element, 'submesh/center')
+    centred = bool(submesh) and boolean_of(element, 'submesh/center')
+    address = uri
+    if submesh and '://' not in uri.removeprefix('file://'):
+        address = f'file://{path}'  # which `Mesh.path` does not tell: it has the part only
     try:
         if submesh:
-            address = uri if '://' in uri.removeprefix('file://') else f'file://{path}'
             path = submesh_file(path, submesh, centred)
-            check_mesh(path, scale)
-            return Mesh(path, scale, address, submesh, centred)
         check_mesh(path, scale)
     except ModelError as error:
         raise ShapeError(str(error), uri) from error
-    return Mesh(path, scale, uri)
+    return Mesh(path, scale, address, submesh, centred)
 
 
 def _surface(document: SdfDocument, collision: etree._Element) -> Surface:

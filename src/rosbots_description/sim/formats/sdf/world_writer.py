@@ -25,14 +25,13 @@ def sdf_of_world(spec: WorldSpec) -> str:
     root = new_document()
     world = etree.SubElement(root, 'world', name=spec.name)
     _add_physics(world, spec.physics)
-    _add_scene(world, spec.scene)
+    scene = _add_scene(world, spec.scene)
     for part in spec.parts:
-        scene = world.find('scene') if part.tag == 'scene' else None
-        if scene is None:
-            add_element(world, part)
-        else:
+        if part.tag == 'scene':
             for child in part.children:
                 add_element(scene, child)
+        else:
+            add_element(world, part)
     if spec.scene.user_camera is not None and world.find('gui') is None:
         camera = etree.SubElement(etree.SubElement(world, 'gui'), 'camera', name='user_camera')
         add_pose(camera, spec.scene.user_camera)
@@ -64,10 +63,11 @@ def _add_physics(world: etree._Element, physics: PhysicsSettings) -> None:
         put(element, FRICTION, CONE)
 
 
-def _add_scene(world: etree._Element, scene: SceneSpec) -> None:
+def _add_scene(world: etree._Element, scene: SceneSpec) -> etree._Element:
     element = etree.SubElement(world, 'scene')
     for field in READ_OF_SCENE:
         put(element, field, getattr(scene, field))
+    return element
 
 
 def _add_light(parent: etree._Element, spec: LightSpec) -> None:

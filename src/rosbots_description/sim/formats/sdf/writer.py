@@ -150,11 +150,10 @@ def _add_material(visual: etree._Element, spec: Material) -> None:
     base = gazebo_material(spec.script) or Material()
     if spec.script:
         script = etree.SubElement(etree.SubElement(visual, 'material'), 'script')
-        folder = os.path.dirname(spec.image)
-        for place in (spec.script_file, folder) if spec.script_file else (_SCRIPTS,):
-            if place:
-                etree.SubElement(script, 'uri').text = (
-                    place if place == _SCRIPTS else f'file://{place}')
+        places = [spec.script_file, os.path.dirname(spec.image)]
+        uris = [f'file://{place}' for place in places if place] if spec.script_file else [_SCRIPTS]
+        for uri in uris:
+            etree.SubElement(script, 'uri').text = uri
         put(script, 'name', spec.script)
     own, others = spec.reflection, base.reflection
     alpha = spec.rgba[3]
