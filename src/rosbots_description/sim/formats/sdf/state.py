@@ -8,7 +8,7 @@ from ...core import NANOSECONDS, Pose, Twist, as_quaternion, as_vector
 from ...description import ModelState
 from ..xml import number, numbers
 from .document import SdfDocument
-from .exact import AXES, EXACT, MOTOR, VELOCITY
+from .exact import AXES, EXACT, MOTOR, VELOCITY, is_unit
 from .values import number_of, numbers_of, pose_in
 
 _IDLE = ('wall_time', 'real_time', 'iterations', 'light')
@@ -84,7 +84,8 @@ def _axes(model: etree._Element) -> dict[str, Pose]:
     for link in model.iterfind('link'):
         if link.get(AXES) is not None:
             x, y, z, *turn = numbers(link, AXES, count=7)
-            found[link.get('name', '')] = Pose((x, y, z), as_quaternion(turn))
+            if is_unit(tuple(turn)):  # as it was written
+                found[link.get('name', '')] = Pose((x, y, z), as_quaternion(turn))
     return found
 
 

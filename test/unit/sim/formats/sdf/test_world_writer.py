@@ -162,6 +162,19 @@ def test_velocities_of_gazebos_own_states_are_not_applied_as_by_gazebo():
     assert spec.states[0].twists == {}
 
 
+def test_axes_that_are_no_rotation_do_not_count():
+    state = ModelState('m', links={'l': Pose()}, axes={'l': Pose(orientation=TURN)})
+    spec = WorldSpec(models=((ModelSpec('m', (BODY,), static=True), Pose()),), states=(state,))
+    root = etree.fromstring(sdf_of_world(spec))
+    link = root.find('world/state/model/link')
+    link.set('{urn:rosbots}axes', '0 0 0 0 0 0 0')
+    assert read(etree.tostring(root, encoding='unicode')).states[0].axes == {}
+    link.set('{urn:rosbots}axes', '0 0 0')
+    damaged = read(etree.tostring(root, encoding='unicode'))
+    assert damaged.states == ()
+    assert '0 0 0' in damaged.faults[0]
+
+
 def _without_lines(value):
     """Return a value as text, without the lines on which its elements were read."""
     def keep(part):
