@@ -23,7 +23,8 @@ REDUCED = f'{{{NAMESPACE}}}reduced'  # of a <frame>: a link that was merged into
 EXACT = f'{{{NAMESPACE}}}exact'  # of a <state>: its velocities and joint angles count
 AXES = f'{{{NAMESPACE}}}axes'  # of a <link> of a <state>: pose of its principal axes, x y z w
 VELOCITY = f'{{{NAMESPACE}}}velocity'  # of a <joint> of a <state> [rad/s or m/s]
-MOTOR = f'{{{NAMESPACE}}}motor'  # of the same: target velocity, greatest effort [N m or N]
+TARGET = f'{{{NAMESPACE}}}target'  # of the same: its motor's target velocity [rad/s or m/s]
+EFFORT = f'{{{NAMESPACE}}}effort'  # of the same: its motor's greatest effort [N m or N], or inf
 
 _SAME = 1e-6  # [rad] between the angles of a <pose> and its quaternion, at most
 

@@ -6,9 +6,9 @@ from lxml import etree
 
 from ...core import NANOSECONDS, Pose, Twist, as_quaternion, as_vector
 from ...description import ModelState
-from ..xml import number, numbers
+from ..xml import limit_number, number, numbers
 from .document import SdfDocument
-from .exact import AXES, EXACT, MOTOR, VELOCITY, is_unit
+from .exact import AXES, EFFORT, EXACT, TARGET, VELOCITY, is_unit
 from .values import number_of, numbers_of, pose_in
 
 _IDLE = ('wall_time', 'real_time', 'iterations', 'light')
@@ -71,12 +71,8 @@ def _joints(model: etree._Element) -> dict[str, tuple[float, float]]:
 
 
 def _motors(model: etree._Element) -> dict[str, tuple[float, float]]:
-    found = {}
-    for joint in model.iterfind('joint'):
-        if joint.get(MOTOR) is not None:
-            velocity, effort = numbers(joint, MOTOR, count=2)
-            found[joint.get('name', '')] = (velocity, effort)
-    return found
+    return {joint.get('name', ''): (number(joint, TARGET), limit_number(joint, EFFORT))
+            for joint in model.iterfind('joint') if joint.get(TARGET) is not None}
 
 
 def _axes(model: etree._Element) -> dict[str, Pose]:

@@ -14,7 +14,7 @@ from .elements import (
     text_of_document,
     text_of_value,
 )
-from .exact import AXES, EXACT, MOTOR, VELOCITY
+from .exact import AXES, EFFORT, EXACT, TARGET, VELOCITY
 from .physics import CONE, FRICTION, PATHS
 from .scene import READ_OF_SCENE
 from .writer import add_model
@@ -105,7 +105,9 @@ def _add_state(parent: etree._Element, state: ModelState) -> None:
     for name, (position, velocity) in state.joints.items():
         joint = etree.SubElement(model, 'joint', {'name': name, VELOCITY: repr(velocity)})
         if name in state.motors:
-            joint.set(MOTOR, text_of_value(state.motors[name]))
+            target, effort = state.motors[name]
+            joint.set(TARGET, repr(target))
+            joint.set(EFFORT, repr(effort))
         put(joint, 'angle', position)
         joint[0].set('axis', '0')
     for name, pose in state.links.items():

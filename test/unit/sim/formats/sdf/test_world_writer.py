@@ -120,13 +120,14 @@ def test_reduced_links_are_found_again():
     assert again(WorldSpec(models=((model, Pose()),))).models[0][0].reduced == reduced
 
 
-def test_a_state_is_read_bit_for_bit():
+@pytest.mark.parametrize('effort', [5.0, math.inf])
+def test_a_state_is_read_bit_for_bit(effort):
     model = ModelSpec('m', (BODY, replace(BODY, name='k')), (JointSpec('j', 'revolute', 'l', 'k'),),
                       static=True)
     state = ModelState(
         'm', Pose((0.1, 1 / 3, -2e-17), TURN), {'l': Pose((1.0, 2.0, 3.0), TURN), 'k': Pose()},
         {'l': Twist((0.1, 0.2, 0.3), (1e-300, 5.0, 6.0)), 'k': Twist()}, {'j': (37.3, -2 / 3)},
-        {'j': (0.5, 5.0)}, {'l': Pose((3.0, 2.0, 1.0), TURN)})
+        {'j': (0.5, effort)}, {'l': Pose((3.0, 2.0, 1.0), TURN)})
     spec = WorldSpec(models=((model, Pose()),), states=(state,), time=1234.567)
     found = again(spec)
     assert (found.states, found.time) == (spec.states, spec.time)
