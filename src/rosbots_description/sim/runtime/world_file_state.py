@@ -13,15 +13,18 @@ _SAME = 1e-6  # [rad or m] between a joint's position and that of its links, at 
 def state_of(model: Model) -> ModelState:
     """Move a model by rounding errors, so that its poses can be restored, and return its state."""
     axes = model.engine.settle_poses(model.body)
-    links = model.engine.link_states(model.body)
+    states = model.engine.link_states(model.body)
+    links = {name: states[name] for name in model.links}
+    anchors = _anchors(model)
     return ModelState(
         model.name,
-        model.pose,
+        # The model's frame moves with its first link, which may hang on a joint to the world.
+        states[anchors[0]][0] if anchors else model.pose,
         {name: pose for name, (pose, _) in links.items()},
         {} if model.static else {name: twist for name, (_, twist) in links.items()},
         {name: joint.state() for name, joint in model.joints.items()},
         {name: joint.motor for name, joint in model.joints.items()},
-        axes,
+        {name: axes[name] for name in links if name in axes},
     )
 
 
@@ -34,7 +37,9 @@ def apply_state(model: Model, state: ModelState) -> None:
     engine, body = model.engine, model.body
     if state.pose is not None:
         model.set_pose(state.pose)
-    roots = {name: state.links[name] for name in body.roots if name in state.links}
+    anchored = {} if state.pose is None else dict.fromkeys(_anchors(model), state.pose)
+    links = {**anchored, **state.links}
+    roots = {name: links[name] for name in body.roots if name in links}
     if roots:
         engine.set_root_poses(body, roots)
     for name in roots:
@@ -46,8 +51,12 @@ def apply_state(model: Model, state: ModelState) -> None:
     for name, motor in state.motors.items():
         if name in model.joints:
             model.joints[name].set_motor(*motor)  # until a plugin sets it
-    if state.axes:
-        engine.match_poses(body, state.axes, state.links)
+    engine.match_poses(body, {**anchored, **state.axes}, links)
+
+
+def _anchors(model: Model) -> list[str]:
+    """Return the roots that are no links: they stand for the world, to which joints lead."""
+    return [root for root in model.body.roots if root not in model.links]
 
 
 def _exact(position: float, saved: tuple[float, float] | None) -> tuple[float, float]:

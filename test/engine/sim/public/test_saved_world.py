@@ -25,6 +25,11 @@ ARM = f"""<sdf version="1.6"><model name="arm">{LINK.format('base', '0 0 0 0.1 0
 <axis><xyz>1 0.2 0</xyz><dynamics><friction>0.1</friction></dynamics></axis></joint>
 </model></sdf>"""
 
+DOORS = '<sdf version="1.6"><model name="doors">{}</model></sdf>'.format(''.join(
+    LINK.format(name, pose) + f'<joint name="{name}_hinge" type="revolute"><parent>world</parent>'
+    f'<child>{name}</child><pose>0.1 0.5 0 0 0 0</pose><axis><xyz>0 0 1</xyz></axis></joint>'
+    for name, pose in (('first', '0 1 0 0 0 0.1'), ('second', '0 -1 0.2 0.3 0 0'))))
+
 
 def poses(world):
     """Return the poses of all models and links."""
@@ -90,6 +95,21 @@ def test_bodies_in_flight_keep_their_poses_over_many_saves(tmp_path):
                 other.save(tmp_path / 'again.world', overwrite=True)
                 with World.from_file(tmp_path / 'again.world') as third:
                     assert poses(third) == poses(world)
+
+
+@pytest.mark.parametrize('place', [Pose((0.0, 0.0, 3.0)), Pose((1.0, 2.0, 3.0), TURN)])
+def test_models_on_joints_to_the_world_keep_their_poses(place, tmp_path):
+    with World.empty() as world:
+        doors = world.spawn(DOORS, pose=place)
+        doors.joint('first_hinge').set_position(3.0, 2.0)
+        doors.joint('second_hinge').set_motor(-2.0, math.inf)
+        for turn in range(3):
+            world.run(300)
+            assert world.save(tmp_path / f'{turn}.world') == ()
+            with World.from_file(tmp_path / f'{turn}.world') as other:
+                require_same(world, other)
+                assert other.model('doors').joint('second_hinge').motor == (-2.0, math.inf)
+        assert doors.joint('first_hinge').position > math.pi
 
 
 def test_a_reset_returns_models_to_where_they_were_spawned(tmp_path):
