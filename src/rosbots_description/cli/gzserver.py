@@ -31,7 +31,7 @@ def parser() -> argparse.ArgumentParser:
     add = made.add_argument
     add('world', nargs='?', default=EMPTY_WORLD,
         help='world file, by path or along GAZEBO_RESOURCE_PATH; included are worlds/empty.world, '
-             f'maze, room and shapes; default {EMPTY_WORLD}')
+             f'line, maze, room, rooms and shapes; default {EMPTY_WORLD}')
     add('-u', '--pause', action='store_true', help='start paused')
     add('-e', '--physics', metavar='ENGINE', default=ENGINE,
         help='accepted for compatibility; the engine is always PyBullet')

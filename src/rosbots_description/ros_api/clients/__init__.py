@@ -2,6 +2,5 @@
 
 __all__ = [
     'demo', 'gazebo_interface', 'gz', 'joint_follower', 'joint_sliders', 'planar_sample',
-    'save_world', 'scenario_run', 'server_watch', 'service_program', 'spawn_model',
-    'velocity_publisher',
+    'save_world', 'scenario_run', 'server_watch', 'spawn_model', 'velocity_publisher',
 ]

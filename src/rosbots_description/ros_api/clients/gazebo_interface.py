@@ -31,7 +31,7 @@ def interruptibly(function: Callable[[], Result], timeout: float = math.inf) -> 
     runs on a separate thread, which may be abandoned.
 
     Args:
-        patience: longest time to wait [s, wall].
+        timeout: longest time to wait [s, wall].
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
         rospy.ROSException: `timeout` has passed.

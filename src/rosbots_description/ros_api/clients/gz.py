@@ -33,6 +33,7 @@ from .service_program import NODE, START, Call, CommandError, Lines
 PERIOD = 0.2  # of the lines of `gz stats`, as Gazebo's [s, wall]
 SAMPLES = 20  # over which the real-time factor is taken, as in Gazebo
 
+
 def run(command: str, flags: argparse.Namespace, ros_arguments: Sequence[str]) -> int:
     """Do a command of gz on the running simulator; return the exit code.
 

@@ -30,7 +30,7 @@ class ServerWatch:
         """Start in the state unknown.
 
         Args:
-            tell: called with False when the simulator has gone, and with True when it is back.
+            report: called with False when the simulator has gone, and with True when it is back.
             node: the simulator's name, relative to this program's namespace.
         """
         self._report = report

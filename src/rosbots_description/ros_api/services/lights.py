@@ -1,4 +1,4 @@
-"""Services about lights. Lights are stored for clients; they do not affect rendering here."""
+"""Services about lights, by which cameras see; RViz has a light of its own."""
 
 from dataclasses import replace
 
