@@ -1,5 +1,6 @@
 """A simulator that a test starts and ends, with the test's ROS master or another one."""
 
+import contextlib
 import os
 import signal
 import socket
@@ -117,6 +118,15 @@ class MasterProcess:
         address = f'http://localhost:{self._port}'
         wait_until(rosgraph.Master('/test', address).is_online, 'the second master')
         return address
+
+    @contextlib.contextmanager
+    def silenced(self):
+        """Let it answer nothing for the length of a `with` statement."""
+        self._process.send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self._process.send_signal(signal.SIGCONT)
 
     def kill(self):
         """Kill it, like a crash."""

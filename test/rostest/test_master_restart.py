@@ -14,6 +14,8 @@ import rostest
 from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure, ReconfigureRequest
 from gazebo_msgs.srv import (
+    DeleteModel,
+    DeleteModelRequest,
     GetWorldProperties,
     GetWorldPropertiesRequest,
     SpawnModel,
@@ -106,6 +108,7 @@ class MasterRestartTest(unittest.TestCase):
         for topic, where in (('/odom', 0), ('/part2_cmr/cmd_vel', 1)):
             self.assertIn(topic, before[where])
         step = self.graph.getParam('/gazebo/time_step')
+        self._assert_it_needs_no_answers(now)
         self.master.kill()
         gone = now()
         wait_until(lambda: now() > gone + 0.2, 'advance of time without a master')
@@ -122,6 +125,13 @@ class MasterRestartTest(unittest.TestCase):
         browser.click('Play')
         browser.wait_until(lambda: browser.control('Pause'))
         self._assert_it_works()
+
+    def _assert_it_needs_no_answers(self, now):
+        delete = self._client('delete_model', DeleteModel)
+        with self.master.silenced():
+            self.assertFalse(delete(DeleteModelRequest('nobody')).success)  # which is logged
+            begin = now()
+            wait_until(lambda: now() > begin + 0.2, 'advance of time')
 
     def test_robot_spawned_without_a_master_is_registered_with_the_next(self):
         topics_out, topics_in, services = self._of_server()

@@ -38,7 +38,6 @@ from ..transport import (
     guard_messages,
     init_node,
     is_master_running,
-    leave_rosout,
     node_name,
     replacing_node,
     require_address,
@@ -217,7 +216,6 @@ def _end(loop: Loop) -> None:
     if not loop.stopping:  # shut down by the master or by rosnode kill
         name = rospy.get_name()
         if other := replacing_node(name, rospy.get_node_uri()):
-            leave_rosout()
             logger.warning('this simulator ends: %s has taken over the name %s', other, name)
         loop.stop()
 

@@ -3,7 +3,7 @@
 from .client_node import is_running, own_parameters, start_node
 from .handshake import guard_handshakes
 from .incoming import caller_waits, guard_messages, wait_for_answers
-from .log_bridge import connect_logging, leave_rosout, set_level
+from .log_bridge import connect_logging, set_level
 from .master import (
     NO_MASTER,
     AddressError,
@@ -51,7 +51,6 @@ __all__ = [
     'is_master_running',
     'is_node',
     'is_running',
-    'leave_rosout',
     'next_number',
     'node_address',
     'node_name',

@@ -4,7 +4,7 @@ import logging
 from collections.abc import Callable
 
 import rospy
-from rospy.impl.rosout import RosOutHandler
+from rospy.impl.paramserver import get_param_server_cache
 from rospy.rostime import _set_rostime
 
 from ...sim.core import one_line
@@ -12,6 +12,7 @@ from ...sim.core import one_line
 _ROOT = __name__.partition('.')[0]  # the package, by the name it was imported as
 _PLUGINS = f'{_ROOT}.sim.plugins.'  # they log only while loading
 _REMEMBERED = 1000  # distinct messages
+_WITHOUT_TOPICS = '/rosout_disable_topics_generation'  # a parameter of rospy
 _LEVELS = {
     'debug': logging.DEBUG,
     'info': logging.INFO,
@@ -35,6 +36,7 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
         ours.addHandler(handler)
     ours.setLevel(rosout.level)
     ours.propagate = False
+    _remember_parameter()
     for name in tuple(logging.root.manager.loggerDict):
         if name.startswith(_PLUGINS):
             logging.getLogger(name).addFilter(DuplicateFilter())
@@ -50,16 +52,14 @@ def set_level(name: str) -> None:
         logging.getLogger(_ROOT).setLevel(level)
 
 
-def leave_rosout() -> None:
-    """Stop logging to /rosout, after another node has taken this one's name.
+def _remember_parameter() -> None:
+    """Read the parameter that rospy needs for each message to /rosout.
 
-    For each message to /rosout rospy looks up a parameter, which registers this node again: the
-    master would shut the other node down.
+    Unless it is set, rospy would ask the master anew for each message, and a master that does not
+    answer would stop the simulation. rospy has no public API for its cache.
     """
-    for logger in (logging.getLogger(_ROOT), logging.getLogger('rosout')):
-        for handler in tuple(logger.handlers):
-            if isinstance(handler, RosOutHandler):
-                logger.removeHandler(handler)
+    value = rospy.get_param_cached(_WITHOUT_TOPICS, False)
+    get_param_server_cache().set(_WITHOUT_TOPICS, value)
 
 
 def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:

@@ -1,9 +1,15 @@
 """Each log record reaches the handlers as one line, whatever names it contains."""
 
 import logging
+from unittest.mock import Mock
 
 import pytest
+import rospy
+import rospy.client
+from rospy.impl import paramserver, rosout
+from rospy.msproxy import MasterProxy
 
+from rosbots_description.ros_api.transport import log_bridge
 from rosbots_description.ros_api.transport.log_bridge import DuplicateFilter, RecordPreparation
 
 
@@ -36,3 +42,19 @@ def test_repeated_message_is_suppressed_until_it_is_forgotten(logger, caplog):
         logger.removeFilter(duplicates)
     assert caplog.messages[:2] == ['<torque> is not read', '<legacyMode> is not read']
     assert caplog.messages.count('<torque> is not read') == 2
+
+
+@pytest.mark.parametrize(('answer', 'value'), [({}, False), (True, True)])  # {}: it is not set
+def test_a_message_to_rosout_asks_the_master_nothing(monkeypatch, answer, value):
+    master = MasterProxy('http://localhost:9')
+    master.target = Mock(subscribeParam=Mock(return_value=(1, '', answer)))
+    monkeypatch.setattr(rospy.client, '_param_server', master)
+    monkeypatch.setattr(paramserver, '_param_server_cache', None)
+    log_bridge._remember_parameter()
+    asked = master.target.subscribeParam
+    (_, _, name), = (call.args for call in asked.call_args_list)
+    assert rospy.get_param_cached(name, False) is value
+    asked.assert_called_once()
+    # It is what rospy looks up, and that way.
+    assert name in rosout._rosout.__code__.co_consts
+    assert 'get_param_cached' in rosout._rosout.__code__.co_names

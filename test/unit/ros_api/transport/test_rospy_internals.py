@@ -9,7 +9,7 @@ import rospy.core
 import rospy.exceptions
 import rospy.impl.init
 import rospy.topics
-from rospy.impl import registration, rosout, tcpros_base, tcpros_service
+from rospy.impl import registration, tcpros_base, tcpros_service
 from rospy.impl.tcpros_pubsub import TCPROSSub
 from rospy.rostime import _set_rostime
 
@@ -53,7 +53,6 @@ HELD = {  # what makes an object, and the attributes that we read or set
     registration.get_registration_listeners: 'listeners',
     registration.get_service_manager: 'get_services',
     registration.get_topic_manager: 'get_publications get_subscriptions',
-    lambda: rosout.RosOutHandler: 'emit',
     lambda: registration.Registration: 'PUB SUB SRV',
     lambda: rospy.exceptions: 'TransportException TransportTerminated',
 }
