@@ -143,8 +143,9 @@ class _Run:
                 self._send(command.topic, command.message)
             if is_over:
                 return
-            rospy.sleep(max(1e-3, min(ticks * scenario.period, scenario.duration)
-                            - (rospy.get_time() - begin)))
+            soon = min([ticks * scenario.period, scenario.duration,
+                        *(command.at for command in commands[:1])])
+            rospy.sleep(max(1e-3, soon - (rospy.get_time() - begin)))
 
     def _read_states(self) -> None:
         for name, record in self._scenario.record.items():

@@ -62,16 +62,26 @@ def paused() -> Iterator[None]:
     try:
         yield
     finally:
-        with contextlib.suppress(rospy.ServiceException):
+        with contextlib.suppress(ScenarioError):
             unpause()
 
 
 def _service(name: str, service_type: Any) -> Callable[..., Any]:  # noqa: ANN401
-    try:
-        rospy.wait_for_service(f'/gazebo/{name}', DEADLINE)
-    except rospy.ROSException:
-        raise ScenarioError(f'there is no service /gazebo/{name}; start the simulator') from None
-    return rospy.ServiceProxy(f'/gazebo/{name}', service_type)
+    """Return what calls a service; it raises a `ScenarioError` if there is no answer."""
+    path = f'/gazebo/{name}'
+
+    def call(*arguments: object) -> Any:  # noqa: ANN401  of each service's own type
+        try:
+            rospy.wait_for_service(path, DEADLINE)
+            return rospy.ServiceProxy(path, service_type)(*arguments)
+        except rospy.ROSInterruptException:
+            raise
+        except rospy.ROSException:
+            raise ScenarioError(f'there is no service {path}; start the simulator') from None
+        except rospy.ServiceException as error:
+            raise ScenarioError(f'the call of {path} failed: {error}') from None
+
+    return call
 
 
 def _require(answer: Any) -> None:  # noqa: ANN401
