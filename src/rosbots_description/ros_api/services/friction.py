@@ -13,7 +13,7 @@ from rosbots_msgs.srv import (
 
 from ...sim.core import NotFoundError
 from ...sim.description import Collision
-from ...sim.runtime import CollisionFrame, Link, Model, World
+from ...sim.runtime import CollisionFrame, Link, World
 from ..messages import RequestError, require_finite
 from ..server import Server
 from .registry import EXTENSIONS, service
@@ -58,9 +58,10 @@ def _collisions(world: World, name: str) -> list[CollisionFrame]:
     Raises:
         NotFoundError: there is none of them.
     """
+    model = world.find_model(name)
+    if model is not None:
+        return [one for link in model.links.values() for one in link.collisions.values()]
     match world.find_entity(name):
-        case Model() as model:
-            return [one for link in model.links.values() for one in link.collisions.values()]
         case Link() as link:
             return list(link.collisions.values())
         case CollisionFrame() as collision:

@@ -25,4 +25,5 @@ def hold_model(server: Server, request: HoldModelRequest) -> HoldModelResponse:
     server.world.holds.hold(model, read_pose(request.pose), lambda: time.monotonic() < end)
     if request.duration == 0.0:
         server.world.holds.release(model)
+        return HoldModelResponse(True, 'HoldModel: the model is free')
     return HoldModelResponse(True, 'HoldModel: the model is held')

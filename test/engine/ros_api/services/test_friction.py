@@ -8,8 +8,13 @@ from support import urdf_spec
 from support.bench import Bench, box_urdf, empty_world
 
 from rosbots_description.sim.core.transforms import Pose, Twist
+from rosbots_description.sim.formats import load_sdf
 
 GRAVITY = 9.8  # [m/s^2]
+BALL = """<link name="{}"><collision name="c"><geometry><sphere><radius>0.1</radius></sphere>
+</geometry></collision></link>"""
+NESTED = f"""<sdf version="1.6"><model name="outer">{BALL.format('body')}
+<model name="arm">{BALL.format('hand')}</model></model></sdf>"""
 TWO = """<gazebo reference="box"><mu1>0.5</mu1><mu2>0.25</mu2></gazebo>"""
 
 
@@ -57,6 +62,14 @@ def test_what_cannot_be_is_refused_in_a_sentence(bench, request_, sentence):
     answer = bench.call('set_friction', request_)
     assert (answer.success, answer.status_message) == (False, f'SetFriction: Failure - {sentence}')
     assert friction(bench, 'a') == {'a::box::box_collision': (0.5, 0.25)}
+
+
+def test_a_nested_model_has_the_friction_of_its_own_links(bench):
+    outer, _ = load_sdf(NESTED, 'outer', find_model=lambda _: None)
+    bench.world.spawn(outer, 'outer', Pose((5.0, 0.0, 1.0)))
+    assert bench.call('set_friction', SetFrictionRequest('outer::arm', 0.2, 0.1)).success
+    assert friction(bench, 'outer') == {
+        'outer::body::c': (1.0, 1.0), 'outer::arm::hand::c': (0.2, 0.1)}
 
 
 def test_a_link_that_touches_nothing_has_no_friction(bench):
