@@ -25,7 +25,7 @@ from .demo_report import (
     table,
 )
 from .launched import Launched
-from .program import run
+from .program import INTERRUPTED, run
 
 if TYPE_CHECKING:
     from ..ros_api.clients.demo import DemoClient
@@ -36,7 +36,6 @@ _START = 30.0  # [s] wall time for the simulator to start on a slow machine
 _SPAWN = 30.0  # [s] wall time for one spawn.launch
 _POLL = 0.1  # [s] wall time between two looks at a log
 _LANDED = -0.10  # [m] the wheels touch the ground when base_footprint is at -0.12
-_INTERRUPTED = 130  # exit code
 
 _DRIVE_IT_YOURSELF = """\
 Drive it yourself, each line in a terminal of its own:
@@ -65,7 +64,7 @@ def main(argv: list[str] | None = None) -> int:
         _run(arguments.output, arguments.web)
     except KeyboardInterrupt:
         print('\ndemo: interrupted; all its processes have ended', file=sys.stderr)
-        return _INTERRUPTED
+        return INTERRUPTED
     except (DemoError, OSError) as error:
         print(f'demo: {error}', file=sys.stderr)
         return 1
@@ -114,7 +113,8 @@ def _run(folder: Path, web: bool) -> None:
         _spawn(client, folder / 'second_spawn.log', environment)
         _report(rows, folder)
         if web and sys.stdin.isatty():
-            input('The browser shows the robot until you press Enter. ')
+            print('The browser shows the robot until you press Enter. ', end='', flush=True)
+            sys.stdin.readline()  # as input(), but the end of input is no error
 
 
 def window_line(log: Path, timeout: float = _START) -> str:
