@@ -44,7 +44,8 @@ class GzTest(SimulatorTest):
         self.assertEqual(self.world().sim_time, 0.0)
         gz('world', '-s', '-m', '24')
         self.assertEqual(self.world().sim_time, 0.025)
-        gz('world', '-r', '-p', '0')
+        gz('world', '-r')
+        gz('world', '-p', '0')
         running = proxy('get_physics_properties', GetPhysicsProperties)
         self.assertFalse(running().pause)
 

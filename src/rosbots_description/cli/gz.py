@@ -154,8 +154,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code: 0 done, 1 failed or not supported (one sentence says why), 2 wrong usage.
     """
     own, remappings = split_remappings(sys.argv[1:] if arguments is None else arguments)
-    if own and own[0] in NOT_HERE:
-        return _fail(own[0], f'this command of Gazebo is not supported; {NOT_HERE[own[0]]}')
+    command = next((word for word in own if word != 'help'), '')
+    if command in NOT_HERE:
+        return _fail(command, f'this command of Gazebo is not supported; {NOT_HERE[command]}')
     options = parser()
     flags = options.parse_args(without_exponents(own))
     if flags.command == 'help':
@@ -172,7 +173,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _require_something(options: argparse.ArgumentParser, flags: argparse.Namespace) -> None:
     """End with 2 if the options do not say what to do."""
-    given = {name for name, value in vars(flags).items() if value not in (None, False)}
+    given = {name for name, value in vars(flags).items()
+             if value is not None and value is not False}  # 0 is a value
     given -= {'command', 'world_name'}
     if flags.command == 'model' and not flags.list and flags.model_name is None:
         options.error('model: the name of a model is needed: -m NAME')

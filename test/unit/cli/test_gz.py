@@ -24,11 +24,12 @@ def test_help_names_every_command_and_gazebos_long_options(capsys):
 
 @pytest.mark.parametrize('command', gz.NOT_HERE)
 def test_a_command_that_is_not_there_says_so_in_one_sentence(command, capsys):
-    assert gz.main([command, '-x', 'any']) == 1
-    printed = capsys.readouterr()
-    assert printed.out == ''
-    assert printed.err.startswith(f'gz {command}: this command of Gazebo is not supported; ')
-    assert printed.err.count('\n') == 1
+    for arguments in ([command, '-x', 'any'], ['help', command]):
+        assert gz.main(arguments) == 1
+        printed = capsys.readouterr()
+        assert printed.out == ''
+        assert printed.err.startswith(f'gz {command}: this command of Gazebo is not supported; ')
+        assert printed.err.count('\n') == 1
 
 
 @pytest.mark.parametrize(('arguments', 'complaint'), [
@@ -59,7 +60,8 @@ def test_an_option_that_is_not_there_says_so(arguments, capsys):
 
 
 @pytest.mark.parametrize('arguments', [
-    ['stats'], ['world', '-p', '1'], ['model', '-l'], ['topic', '-l'], ['physics', '-i', '3']])
+    ['stats'], ['world', '-p', '1'], ['model', '-l'], ['topic', '-l'], ['physics', '-i', '3'],
+    ['world', '-p', '0'], ['model', '-m', 'box', '-x', '0'], ['physics', '-u', '0']])
 def test_without_a_master_one_sentence_says_what_to_start(arguments, monkeypatch, capsys):
     monkeypatch.setenv('ROS_MASTER_URI', NO_MASTER)
     monkeypatch.setattr('rospy.signal_shutdown', lambda _reason: None)  # not of this process
