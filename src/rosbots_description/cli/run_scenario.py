@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from .gzserver import split_remappings
 
 NAME = 'run_scenario'
+FAILED, USAGE = 1, 2  # exit codes
 
 
 def parser() -> argparse.ArgumentParser:
@@ -27,7 +28,12 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Make the run; return the exit code: 0 if all conditions hold."""
+    """Make the run; return the exit code.
+
+    Returns:
+        0 all conditions hold, 1 one does not or the run could not be made, 2 wrong usage; 0 under
+        rostest, which reads the report.
+    """
     given = list(sys.argv[1:] if arguments is None else arguments)
     own, remappings = split_remappings(given)
     test_flags = [one for one in own if one.startswith('--gtest_output') or one == '--text']
@@ -37,16 +43,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from ..ros_api.transport import AddressError, start_node
     from ..sim.core import SimError
 
+    def fault() -> str:
+        """Make the run, and print its row; return why it failed, or nothing."""
+        try:
+            row = run_scenario(file, options.run)
+        except (SimError, PolicyError, AssertionError) as error:
+            return str(error)
+        for name, value in row.items():
+            print(f'{name}: {value}')
+        return ''
+
     class ScenarioTest(unittest.TestCase):
         """The run, as rostest takes it."""
 
         def test_conditions_hold(self) -> None:
-            try:
-                row = run_scenario(file, options.run)
-            except (SimError, PolicyError) as error:
-                self.fail(str(error))
-            for name, value in row.items():
-                print(f'{name}: {value}')
+            if sentence := fault():
+                self.fail(sentence)
 
     try:
         file = ScenarioFile.read(options.scenario)
@@ -60,10 +72,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         importlib.import_module('rostest').rosrun(
             'rosbots_simulator', NAME, ScenarioTest, [sys.argv[0], *test_flags])
         return 0
-    result = unittest.TextTestRunner().run(ScenarioTest('test_conditions_hold'))
-    return 0 if result.wasSuccessful() else 1
+    sentence = fault()
+    return _fail(sentence, FAILED) if sentence else 0
 
 
-def _fail(sentence: str) -> int:
+def _fail(sentence: str, code: int = USAGE) -> int:
     sys.stderr.write(f'{NAME}: {sentence}\n')
-    return 2
+    return code
