@@ -50,7 +50,7 @@ class DrivePanel(Panel):
     def __init__(self, gui: viser.GuiApi, robots: Robots, keys: CameraKeys) -> None:
         self._robots, self._camera_keys = robots, keys
         self._lock = threading.Lock()
-        self._end = threading.Timer(0.0, lambda: None)
+        self._ends: dict[str, threading.Timer] = {}  # stop what is driven, by its topic
         self._topics: Sequence[str] = ()
         self._folder = gui.add_folder('Drive', visible=False)
         with self._folder:
@@ -89,12 +89,14 @@ class DrivePanel(Panel):
             topic = self._topic.value
             if topic not in self._topics:
                 return
-            self._end.cancel()
+            if topic in self._ends:  # another robot stops when its time has come
+                self._ends.pop(topic).cancel()
             self._robots.drive(topic, ahead * self._speed.value, left * self._turn.value)
             if ahead or left:
-                self._end = threading.Timer(HOLD, self._robots.drive, (topic, 0.0, 0.0))
-                self._end.daemon = True
-                self._end.start()
+                end = self._ends[topic] = threading.Timer(
+                    HOLD, self._robots.drive, (topic, 0.0, 0.0))
+                end.daemon = True
+                end.start()
 
     def _bind(self) -> None:
         """Let the camera's keys drive, or leave them to the camera."""

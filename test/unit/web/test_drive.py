@@ -80,10 +80,23 @@ def test_a_held_button_goes_on_and_stop_ends_it_once(browser, robots, panel, mon
         browser.hold('Backward')
         browser.wait_until(lambda count=count: len(robots.commands) == count)
     assert robots.commands == [('/b/cmd_vel', -0.5, 0.0)] * 5
+    end = panel._ends['/b/cmd_vel']
     browser.press('K')
     browser.wait_until(lambda: robots.commands[-1] == STOP)
-    panel._end.join(timeout=20.0)  # it was cancelled: it sends nothing more
+    end.join(timeout=20.0)  # it was cancelled: it sends nothing more
     assert len(robots.commands) == 6
+
+
+def test_a_robot_that_is_no_longer_chosen_stops_too(browser, robots, panel, monkeypatch):
+    monkeypatch.setattr(drive, 'HOLD', 0.5)
+    choose_second(browser, panel)
+    browser.press('I')
+    browser.wait_until(lambda: robots.commands)
+    browser.choose('Topic', '/a/cmd_vel')
+    browser.press('I')
+    browser.wait_until(lambda: len(robots.commands) == 4)
+    assert sorted(robots.commands) == [
+        ('/a/cmd_vel', 0.0, 0.0), ('/a/cmd_vel', 0.5, 0.0), STOP, ('/b/cmd_vel', 0.5, 0.0)]
 
 
 @pytest.mark.parametrize(('key', 'ahead', 'left'), [

@@ -1,7 +1,7 @@
 """Velocity commands to robots.
 
 Publishes:
-    the topic of `drive` (geometry_msgs/Twist), from its first command on.
+    the topics of `drive` (geometry_msgs/Twist), each from its first command on.
 """
 
 import time
@@ -19,7 +19,7 @@ class RosRobots:
 
     def __init__(self, topics: TopicGraph) -> None:
         self._topics = topics
-        self._commands: rospy.Publisher | None = None
+        self._publishers: dict[str, rospy.Publisher] = {}
 
     def drive_topics(self) -> list[str]:
         """Return the topics of velocity commands that other nodes subscribe to; [] if unknown."""
@@ -28,13 +28,11 @@ class RosRobots:
 
     def drive(self, topic: str, forward: float, left: float) -> None:
         """Publish a velocity command: forward [m/s], and turning left [rad/s]."""
-        if self._commands is None or self._commands.name != topic:
-            if self._commands is not None:
-                self._commands.unregister()
-            self._commands = rospy.Publisher(topic, Twist, queue_size=1)
+        if topic not in self._publishers:
+            made = self._publishers[topic] = rospy.Publisher(topic, Twist, queue_size=1)
             end = time.monotonic() + CONNECTION
-            while not self._commands.get_num_connections() and time.monotonic() < end:
+            while not made.get_num_connections() and time.monotonic() < end:
                 time.sleep(0.01)
         command = Twist()
         command.linear.x, command.angular.z = forward, left
-        self._commands.publish(command)
+        self._publishers[topic].publish(command)
