@@ -126,16 +126,21 @@ class TakeButton:
     def _click(self, event: Click) -> None:
         if event.client is None:
             return
-        if self._running is not None:
+        with self._lock:  # a second click waits, and ends what the first one began
+            begins = self._running is None
+            if begins:
+                self._begin(event.client)
+        if begins:
+            self._label()
+        else:
             self._hand_over()
-            return
+
+    def _begin(self, client: viser.ClientHandle) -> None:
         try:
-            with self._lock:
-                self._running = (self._make(event.client), event.client)
+            self._running = (self._make(client), client)
         except ImportError as error:
             self._complain(f"No {self._called}: the Python package '{error.name}' is not "
                            'installed; ./rosbots setup does that.')
-        self._label()
 
     def _stop(self) -> tuple[Take, viser.ClientHandle] | None:
         with self._lock:

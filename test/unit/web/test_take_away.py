@@ -4,8 +4,10 @@ import base64
 import io
 import re
 import sys
+import threading
 import time
 from functools import partial
+from types import SimpleNamespace
 
 import av
 import msgspec
@@ -18,6 +20,7 @@ from support.window import clock, model
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import SceneChange
 from rosbots_description.web import takes
+from rosbots_description.web.take_away import TakeButton
 
 SIZE = (100, 100)  # [pixels] of the browser's picture
 
@@ -119,6 +122,27 @@ def test_takes_end_with_the_last_browser(site, simulator, page):
         other.wait_until(lambda: other.control('Record a recording')
                          and other.control('Record a video'))
     assert site._websock_server._record_handles == []
+
+
+def test_two_clicks_at_once_begin_one_take_and_end_it(site):
+    begun, go_on, complaints = [], threading.Event(), []
+
+    def make(_client):
+        begun.append(SimpleNamespace(finish=lambda: b''))
+        go_on.wait(20.0)
+        return begun[-1]
+
+    button = TakeButton(site.gui, 'video', 'video.mp4', '', make, complaints.append)
+    clicks = [threading.Thread(target=button._click, args=(SimpleNamespace(client=1),))
+              for _ in range(2)]
+    for click in clicks:
+        click.start()
+    clicks[1].join(0.2)
+    go_on.set()
+    for click in clicks:
+        click.join()
+    assert (len(begun), len(complaints)) == (1, 1)  # there was no picture yet
+    assert button._running is None
 
 
 def test_without_pyav_the_page_says_so(browser, monkeypatch):
