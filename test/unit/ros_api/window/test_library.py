@@ -1,6 +1,7 @@
 """Files and values as texts that the simulator takes."""
 
 import pytest
+import rospy
 
 from rosbots_description.ros_api.window.library import RosLibrary
 from rosbots_description.sim.core import SimError
@@ -61,6 +62,17 @@ def test_shapes_and_lights_are_read_as_they_were_written(library):
     for light in (lamp((1.0, 2.0, 0.0), (1.0, 0.5, 0.0)),
                   LightSpec('s', 'spot', spot_inner_angle=0.2, spot_outer_angle=0.4)):
         assert load_sdf_light(library.light(light).xml, light.name) == light
+
+
+def test_each_parameter_is_read_once(library, monkeypatch):
+    held, read = {'/a/robot_description': '<robot name="a"/>', '/rate': 50, '/note': 'text'}, []
+    monkeypatch.setattr(rospy, 'get_param_names', lambda: list(held))
+    monkeypatch.setattr(rospy, 'get_param', lambda name, _: read.append(name) or held[name])
+    assert library.parameters() == library.parameters() == ['/a/robot_description']
+    assert sorted(read) == sorted(held)
+    held['/b'] = '<robot name="b"/>'
+    assert library.parameters() == ['/a/robot_description', '/b']
+    assert len(read) == 4
 
 
 def test_model_of_the_model_path_is_included_whatever_its_name(library):
