@@ -80,9 +80,9 @@ class Browser:
         self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
                    'updates': {'value': value}})
 
-    def look_at(self, point):
-        """Turn the camera to a point."""
-        self.send({**CAMERA, 'look_at': point})
+    def look_at(self, point, position=CAMERA['position']):
+        """Turn the camera to a point, or move it, too."""
+        self.send({**CAMERA, 'look_at': point, 'position': position})
 
     def click_node(self, name):
         """Click on a node of the scene."""
@@ -94,6 +94,7 @@ class Browser:
         """Set the value of a control that is about to come."""
         self.wait_until(lambda: self.control(label))
         self.choose(label, value)
+
     def grab(self, node):
         """Begin to drag a handle of the scene."""
         self.send({'type': 'TransformControlsDragStartMessage', 'name': node, 'owner': ''})

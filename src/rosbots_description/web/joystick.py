@@ -38,6 +38,7 @@ class Joystick(Panel):
         self._box = site.gui.add_checkbox(
             'Joystick', initial_value=False, hint='a pad in the picture, for a finger or the mouse')
         self._box.on_update(lambda _: self.refresh())
+        site.on_client_connect(self._watch)
 
     def refresh(self) -> None:
         """Give all that look a pad, or none."""
@@ -52,6 +53,7 @@ class Joystick(Panel):
                 for pad in self._pads.values():
                     pad.frame.remove()
                 self._pads.clear()
+                self._held.clear()
 
     def _add(self, client: viser.ClientHandle) -> None:
         scene, height = client.scene, 2.0 * DEPTH * math.tan(client.camera.fov / 2.0)
@@ -62,17 +64,29 @@ class Joystick(Panel):
                                    cast_shadow=False, receive_shadow=False)
         pad = self._pads[client.client_id] = _Pad(frame, knob, RADIUS * height)
         place(frame, corner(client.camera))
-        client.camera.on_update(lambda camera: place(frame, corner(camera)))
 
         async def drag(event: viser.SceneNodeDragEvent[viser.IcosphereHandle]) -> None:
             self._drag(event, pad)  # not in threads, which would change the order
         knob.on_drag(drag)
 
+    def _watch(self, client: viser.ClientHandle) -> None:
+        client.camera.on_update(self._follow)
+
+    def _follow(self, camera: viser.CameraHandle) -> None:
+        """Keep a pad in its corner."""
+        with self._lock:
+            pad = self._pads.get(camera.client.client_id)
+            if pad is not None:
+                place(pad.frame, corner(camera))
+
     def _drag(self, event: viser.SceneNodeDragEvent[viser.IcosphereHandle], pad: _Pad) -> None:
         with self._lock:
-            if event.phase == 'end':
+            # A drag goes on when its pad has been removed, and ends when its browser has gone.
+            is_there = (self._pads.get(event.client_id) is pad
+                        and event.client_id in self._site.get_clients())
+            if event.phase == 'end' or not is_there:
                 self._held.pop(event.client_id, None)
-                if event.client_id in self._site.get_clients():  # else it is the end of its drag
+                if is_there:
                     pad.knob.position = (0.0, 0.0, 0.0)
                 return
             camera = event.client.camera

@@ -32,11 +32,12 @@ def browser(site, joystick):
 
 def drag(browser, joystick, phase, right=0.0, down=0.0):
     """Drag the knob to a place on the pad, in parts of its radius."""
-    (pad,) = joystick._pads.values()
-    at = [float(pad.frame.position[i]) for i in range(3)]
-    # The camera of the browser looks ahead along z, x is right and y is down.
-    at[0] += right * pad.radius
-    at[1] += down * pad.radius
+    at = [0.0, 0.0, 0.0]
+    for pad in joystick._pads.values():
+        # The camera of the browser looks ahead along z, x is right and y is down.
+        at = [float(part) for part in pad.frame.position]
+        at[0] += right * pad.radius
+        at[1] += down * pad.radius
     owner = next(m['owner'] for m in browser.messages if m.get('name') == KNOB and 'owner' in m)
     browser.send({
         'type': 'SceneNodeDragMessage', 'phase': phase, 'name': KNOB, 'instance_index': None,
@@ -58,6 +59,26 @@ def test_the_pad_is_in_the_lower_left_corner(browser, joystick, site):
     assert x < camera[0]
     assert y > camera[1]
     assert z > camera[2]
+
+
+def test_it_stays_there_while_the_camera_moves_and_only_while_it_is_there(
+        browser, joystick, site, capfd):
+    def moves():
+        return [m['position'] for m in browser.messages
+                if m['type'] == 'SetPositionMessage' and m['name'] == NODE]
+
+    (client,) = site.get_clients().values()
+    browser.look_at([1.0, 0.0, 0.0], position=[5.0, 0.0, 0.0])
+    browser.wait_until(lambda: moves()[-1:] == [pytest.approx(
+        corner(client.camera).position, abs=1e-3)])
+    browser.choose('Joystick', False)
+    browser.wait_until(lambda: KNOB not in browser.nodes)
+    told = len(moves())
+    browser.look_at([1.0, 0.0, 0.0], position=[6.0, 0.0, 0.0])
+    wait_until(lambda: client.camera.position[0] == 6.0)
+    browser.read(0.2)
+    assert len(moves()) == told
+    assert 'Traceback' not in capfd.readouterr().err  # viser prints what its callbacks raise
 
 
 def test_it_steers_while_it_is_held_and_then_stops(browser, joystick, commands):
@@ -85,6 +106,20 @@ def test_a_browser_that_goes_while_it_steers_lets_go(browser, joystick, commands
     browser.wait_until(lambda: commands)
     browser._connection.close()
     wait_until(lambda: commands[-1] == (0.0, 0.0))
+
+
+def test_a_pad_that_is_removed_while_it_is_dragged_lets_go(
+        browser, joystick, commands, site, capfd):
+    drag(browser, joystick, 'start')
+    drag(browser, joystick, 'update', down=-1.0)
+    browser.wait_until(lambda: commands)
+    browser.choose('Joystick', False)
+    browser.wait_until(lambda: commands[-1] == (0.0, 0.0) and KNOB not in browser.nodes)
+    for phase in ('update', 'end'):
+        drag(browser, joystick, phase)
+    browser.read(0.2)
+    assert commands[-1] == (0.0, 0.0)
+    assert 'Traceback' not in capfd.readouterr().err
 
 
 def test_each_browser_has_its_own_while_the_box_is_checked(browser, joystick, site):
