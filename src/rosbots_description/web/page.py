@@ -170,7 +170,7 @@ class Page:
         site.on_client_disconnect(self._leave)
 
     def poll(self) -> None:
-        """Tell those who look what has gone or come; to be called about once a second."""
+        """Tell those who look what has gone or come; to be called about twice a second."""
         if self._is_open:
             for panel in self._panels:
                 panel.refresh()
@@ -181,6 +181,8 @@ class Page:
 
     def _enter(self, client: viser.ClientHandle) -> None:
         with self._lock:
+            if client.client_id not in self._site.get_clients():
+                return  # it has gone, and `_leave` may have come first
             self._new.append(client)
             if not self._is_open:
                 self._is_open, self._is_complete = True, False

@@ -1,6 +1,7 @@
 """The page as a browser gets it: the scene, the clock, and what its controls do."""
 
 import time
+from types import SimpleNamespace
 
 from support.browser import Browser
 from support.window import clock, model
@@ -155,6 +156,11 @@ def test_the_speed_of_the_simulator_is_shown_and_not_told_to_it(browser, simulat
     browser.wait_until(lambda: ['Speed', '0.1x'] in (
         [props.get('label'), props.get('value')] for _, props in browser.controls.values()))
     assert simulator.told == []
+
+
+def test_a_browser_that_has_gone_before_it_is_let_in_opens_nothing(simulator, page):
+    page._enter(SimpleNamespace(client_id=99))
+    assert simulator.change is None
 
 
 def test_a_refusal_is_shown(browser, simulator):
