@@ -109,7 +109,10 @@ class Door:
     def guarding(self, process: Process) -> Process:
         """Return `process` for those requests only that are let in."""
         def guarded(connection: ServerConnection, request: Request) -> Response | None:
-            reason = self.refusal(request.path, request.headers)
+            try:
+                reason = self.refusal(request.path, request.headers)
+            except ValueError:  # of urlsplit
+                reason = 'The address in this request is malformed.'
             if reason:
                 return connection.respond(http.HTTPStatus.FORBIDDEN, reason + '\n')
             response = process(connection, request)

@@ -14,14 +14,6 @@ from rosbots_description.web import Site, WindowError
 
 
 @pytest.fixture
-def local():
-    """A window for this machine."""
-    site = Site('127.0.0.1', 0)
-    yield site
-    site.stop()
-
-
-@pytest.fixture
 def public():
     """A window for all; its address is the one by which this machine reaches it."""
     site = Site('0.0.0.0', 0)
@@ -47,25 +39,30 @@ def refusal(address, **headers):
     return text
 
 
-def test_this_machine_is_let_in_without_a_token(local, capfd):
-    assert local.token == ''
-    status, _, text = get(local.address)
+def test_this_machine_is_let_in_without_a_token(site, capfd):
+    assert site.token == ''
+    status, _, text = get(site.address)
     assert (status, '<html' in text) == (200, True)
-    with Browser(local.address) as browser:
+    with Browser(site.address) as browser:
         browser.wait_until(lambda: browser.messages)
     assert capfd.readouterr().out == ''  # viser is not asked to tell
 
 
 @pytest.mark.parametrize('name', ['localhost', '127.0.0.1'])
-def test_a_tunnel_to_this_machine_is_let_in(local, name):
-    assert get(local.address, Host=f'{name}:9999')[0] == 200
+def test_a_tunnel_to_this_machine_is_let_in(site, name):
+    assert get(site.address, Host=f'{name}:9999')[0] == 200
 
 
-def test_other_pages_in_the_same_browser_are_not(local):
-    assert 'other pages' in refusal(local.address, Origin='http://evil.example')
-    assert 'this machine only' in refusal(local.address, Host='evil.example')
+def test_other_pages_in_the_same_browser_are_not(site):
+    assert 'other pages' in refusal(site.address, Origin='http://evil.example')
+    assert 'this machine only' in refusal(site.address, Host='evil.example')
     with pytest.raises(InvalidStatus):
-        Browser(local.address, {'Origin': 'http://evil.example'})
+        Browser(site.address, {'Origin': 'http://evil.example'})
+
+
+@pytest.mark.parametrize('headers', [{'Host': '['}, {'Origin': 'http://['}])
+def test_a_malformed_address_is_refused_in_a_sentence(site, headers):
+    assert 'malformed' in refusal(site.address, **headers)
 
 
 def test_a_token_is_needed_elsewhere(public):
@@ -97,12 +94,12 @@ def test_the_address_for_others_has_name_and_token():
 
 
 @pytest.mark.parametrize('path', ['../site.py', '%2e%2e/site.py', '..%5csite.py', 'etc/passwd'])
-def test_a_path_that_climbs_leads_nowhere(local, path):
-    assert get(local.address + path)[0] == 404
+def test_a_path_that_climbs_leads_nowhere(site, path):
+    assert get(site.address + path)[0] == 404
 
 
-def test_the_page_is_not_published_through_other_servers(local):
-    assert local.request_share_url() is None
+def test_the_page_is_not_published_through_other_servers(site):
+    assert site.request_share_url() is None
 
 
 def test_a_port_in_use_is_refused_in_a_sentence():
