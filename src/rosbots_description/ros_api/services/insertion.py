@@ -22,7 +22,7 @@ from ...sim.description import LightSpec
 from ...sim.formats import copy_of_model
 from ...sim.resources import model_names, own_name
 from ...sim.runtime import World
-from ..messages import fill_pose, require_finite
+from ..messages import RequestError, fill_pose, require_finite
 from ..server import Server
 from .model_setters import set_model_configuration
 from .placement import box_around, placed
@@ -34,9 +34,8 @@ _NUMBER = re.compile(r'_\d+$')
 
 @dataclass(frozen=True)
 class _Insertion:
-    """A model or light under a name that is free, and the request for it."""
+    """A model or light, and the request for it."""
 
-    name: str
     prepared: PreparedModel | LightSpec
     box: FloatArray | None  # around the model
     request: InsertModelRequest
@@ -46,8 +45,7 @@ def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertMod
     """Parse, compile and test; called beside the loop."""
     require_finite(request)
     if len(request.joint_names) != len(request.joint_positions):
-        return refuse(InsertModelResponse(), 'InsertModel: Failure - joint_names and '
-                      'joint_positions have different lengths')
+        raise RequestError('joint_names and joint_positions have different lengths')
     wanted = request.model_name or own_name(request.model_xml, 'model_xml')
     name = server.loop.call(lambda: free_name(server.world, wanted))
     prepared = read_description(server, SpawnModelRequest(
@@ -56,13 +54,15 @@ def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertMod
         return _response(prepared)
     box = (box_around(prepared.model.spec, prepared.pose)
            if isinstance(prepared, PreparedModel) else None)
-    return _Insertion(name, prepared, box, request)
+    return _Insertion(prepared, box, request)
 
 
 @service('insert_model', InsertModel, prepare=_read, registers=True, table=EXTENSIONS)
 def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
     """Spawn a model or light that was prepared."""
     prepared, box, request = insertion.prepared, insertion.box, insertion.request
+    # Its name was free before it was prepared, perhaps at the same time as another of that name.
+    prepared = replace(prepared, name=free_name(server.world, prepared.name))
     if isinstance(prepared, PreparedModel) and box is not None:
         prepared = replace(prepared, pose=placed(
             server.world, prepared.pose, box, request.on_ground, request.beside))
@@ -71,8 +71,8 @@ def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
         return _response(response)
     if request.joint_names:
         set_model_configuration(server, SetModelConfigurationRequest(
-            insertion.name, '', request.joint_names, request.joint_positions))
-    return _response(response, insertion.name)
+            prepared.name, '', request.joint_names, request.joint_positions))
+    return _response(response, prepared.name)
 
 
 @service('get_model_description', GetModelDescription, table=EXTENSIONS)

@@ -6,7 +6,7 @@ import pytest
 from geometry_msgs.msg import Point, Pose, Quaternion
 from rosbots_msgs.srv import GetModelDescriptionRequest, InsertModelRequest
 from support import robot_spec
-from support.bench import BOX, DOOR, LAMP, Bench, empty_world
+from support.bench import ALL, BOX, DOOR, LAMP, Bench, empty_world
 
 from rosbots_description.sim.core.transforms import IDENTITY, from_rpy
 
@@ -47,6 +47,16 @@ def test_names_are_free(bench, world):
              for _ in range(2)]
     assert lamps == ['lamp', 'lamp_0']
     assert list(world.lights) == ['sun', 'lamp', 'lamp_0']
+
+
+@pytest.mark.parametrize(('text', 'names'), [(BOX, ['b', 'b_0']), (LAMP, ['lamp', 'lamp_0'])])
+def test_two_that_are_prepared_at_once_get_different_names(bench, text, names):
+    service = ALL['insert_model']
+    prepared = [service.prepare(bench.server, InsertModelRequest(model_xml=text))
+                for _ in range(2)]
+    responses = [service.answer(bench.server, one) for one in prepared]
+    assert [one.model_name for one in responses] == names
+    assert all(one.success for one in responses)
 
 
 def test_model_stands_on_the_ground_however_it_is_turned(bench):
