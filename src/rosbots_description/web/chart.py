@@ -35,10 +35,15 @@ class Chart:
             samples.clear()
 
     def note(self, curve: str, time: float, value: float) -> None:
-        """Add a sample; a time before the last one [s] means that time was reset."""
+        """Add a sample; one long before the last one [s] means that time was reset.
+
+        One that is late, such as of the second publisher of a topic, takes the time of the last.
+        """
         samples = self._curves[curve]
-        if samples and time < samples[-1][0]:
+        if samples and time < samples[-1][0] - HOLD:
             samples.clear()
+        if samples:
+            time = max(time, samples[-1][0])
         while samples and time - samples[0][0] > 2.0 * WINDOW:
             samples.popleft()
         samples.append((time, value if math.isfinite(value) else math.nan))
