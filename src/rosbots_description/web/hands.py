@@ -8,6 +8,7 @@ import viser
 
 from ..sim.core import Pose, SimError, Vector
 from ..sim.description import ModelText
+from .descriptions import scoped_name
 from .history import History
 from .models import Models
 from .panel import Panel, attempt
@@ -85,7 +86,7 @@ class HandsPanel(Panel):
         shown = self._models.all.get(model)
         if shown is None:
             raise SimError(f"model '{model}' has gone")
-        return f'{model}::{self._selection.link or shown.links[0].name}'
+        return scoped_name(model, self._selection.link or shown.links[0].name)
 
     def _duplicate(self, model: str) -> None:
         name = self._hands.insert(self._hands.describe(model), beside=True)

@@ -14,6 +14,7 @@ from viser import uplot
 from ..sim.core import SimError
 from ..sim.description import ShownMotion
 from .chart import WINDOW, Chart
+from .panel import fill
 from .reading import ReadingPanel
 
 PERIOD = 0.2  # [s, wall] between two pictures of the plot
@@ -88,8 +89,7 @@ class PlotPanel(ReadingPanel):
 
     def _choose_field(self) -> None:
         if self._field.value:
-            name = f'{self._topic.value}/{self._field.value}'
-            self._curve.value = name  # type: ignore[misc]  # viser's setter has no type
+            fill(self._curve, f'{self._topic.value}/{self._field.value}')
 
     def _add_curve(self, curve: str) -> None:
         with self._lock:

@@ -22,7 +22,7 @@ class SensorRow:
     def __init__(self, site: viser.ViserServer, topic: str, kind: str, checked: bool,
                  choose: Callable[[bool], None]) -> None:
         """Add the box; `choose` is called when somebody changes it."""
-        self._site, self._topic, self.kind = site, topic, kind
+        self._site, self._topic = site, topic
         self._box = site.gui.add_checkbox(topic, checked, hint=kind)
         self._box.on_update(lambda _: choose(self._box.value))
         self._folder = site.gui.add_folder(kind, visible=False)
