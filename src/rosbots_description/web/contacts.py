@@ -33,7 +33,7 @@ class ContactsPanel(Panel):
         self, site: viser.ViserServer, contacts: Contacts, lock: threading.RLock
     ) -> None:
         self._site, self._contacts, self._lock = site, contacts, lock
-        self._looked_at = self._is_open = False
+        self._looked_at = self._is_open = self._is_scaled = False
         self._nodes: tuple[viser.PointCloudHandle, viser.LineSegmentsHandle] | None = None
         self._box = site.gui.add_checkbox('Contacts and forces', False)
         self._scale = site.gui.add_number(
@@ -59,11 +59,13 @@ class ContactsPanel(Panel):
             elif self._is_open and not wanted:
                 self._contacts.close()
                 self._clear()
+                self._is_scaled = False
             self._is_open = wanted
 
     def _set_scale(self, greatest: float) -> None:
         """Let the greatest force have a length that can be seen well."""
         if greatest > 0.0:
+            self._is_scaled = True
             fill(self._scale, float(f'{greatest / LENGTH:.1g}'))
 
     def _clear(self) -> None:
@@ -83,7 +85,7 @@ class ContactsPanel(Panel):
             # Of the two opposite forces, that on the upper body is seen best.
             forces = np.array([one.force for one in contacts])
             forces *= np.where(forces[:, 2:] < 0.0, -1.0, 1.0)
-            if self._nodes is None:
+            if not self._is_scaled:
                 self._set_scale(float(np.linalg.norm(forces, axis=1).max()))
             forces /= self._scale.value
             lines = np.stack([points, points + forces], axis=1)

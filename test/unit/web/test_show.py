@@ -131,6 +131,10 @@ def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, si
     browser.wait_until(lambda: length_after(simulator, lines, up) == pytest.approx(2.0))
     simulator.contacts.show([])
     browser.wait_until(lambda: '/contacts/points' not in browser.nodes)
+    simulator.contacts.show([ShownContact((3.0, 0.0, 0.0), (0.0, 0.0, 1.0), up)])  # it jumped
+    browser.wait_until(lambda: '/contacts/points' in browser.nodes)
+    lines = site.scene.get_handle_by_name('/contacts/forces')
+    assert length_after(simulator, lines, up) == pytest.approx(2.0)  # as it was set
     browser.choose('Contacts and forces', False)
     browser.wait_until(lambda: simulator.contacts.show is None)
 
