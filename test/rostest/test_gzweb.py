@@ -164,9 +164,7 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: friction('ball').mu == (0.25,))
         browser.choose('Mass [kg]', -1.0)
         browser.click('Set mass')
-        browser.wait_until(lambda: any(
-            m['type'] == 'NotificationShowMessage' and 'mass is -1.0; link' in str(m)
-            for m in browser.messages))
+        browser.wait_until(lambda: any('mass is -1.0; link' in note for note in browser.notes()))
 
     def show_contacts(self, browser):
         browser.choose('Contacts and forces', True)

@@ -1,7 +1,6 @@
 """What is done to the selected model: it is moved, pushed, duplicated and deleted."""
 
 import threading
-import time
 
 import pytest
 from support.browser import Browser
@@ -186,7 +185,7 @@ def test_another_selection_releases_the_model(chosen, simulator, page):
     chosen.grab(NODE)
     chosen.wait_until(lambda: moves(simulator))
     page.selection.choose('b')
-    time.sleep(3 * gizmo.PERIOD)
+    chosen.wait_until(lambda: simulator.told[-1][3] == 0.0)
     told = len(simulator.told)
-    time.sleep(3 * gizmo.PERIOD)
+    chosen.read(3 * gizmo.PERIOD)
     assert len(simulator.told) == told

@@ -161,8 +161,7 @@ def test_a_refusal_is_shown_and_leaves_nothing_to_undo(world, simulator, page):
     simulator.fault = 'SetLinkProperties: Failure - mass is -1.'
     world.choose('Mass [kg]', -1.0)
     world.click('Set mass')
-    world.wait_until(lambda: any(m['type'] == 'NotificationShowMessage' and simulator.fault in
-                                 str(m) for m in world.messages))
+    world.wait_until(lambda: world.notes() == [simulator.fault])
     assert world.control('Undo')
 
 

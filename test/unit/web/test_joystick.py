@@ -1,10 +1,10 @@
 """The joystick: a knob that is dragged steers, and returns when it is let go."""
 
 import math
-import time
 
 import pytest
 from support.browser import Browser
+from support.window import wait_until
 
 from rosbots_description.web.joystick import NODE, Joystick, corner
 
@@ -43,13 +43,6 @@ def drag(browser, joystick, phase, right=0.0, down=0.0):
         'type': 'SceneNodeDragMessage', 'phase': phase, 'name': KNOB, 'instance_index': None,
         'start_position': at, 'start_screen_pos': [0.5, 0.5], 'end_position': at,
         'end_screen_pos': [0.5, 0.5], 'button': 'left', 'modifier': None, 'owner': owner})
-
-
-def wait_until(condition):
-    end = time.monotonic() + 20.0
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def test_the_pad_is_in_the_lower_left_corner(browser, joystick, site):

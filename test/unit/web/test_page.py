@@ -1,10 +1,9 @@
 """The page as a browser gets it: the scene, the clock, and what its controls do."""
 
-import time
 from types import SimpleNamespace
 
 from support.browser import Browser
-from support.window import clock, model
+from support.window import clock, model, wait_until
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import LightSpec, Mesh, Plane, SceneChange, SceneSpec
@@ -12,13 +11,6 @@ from rosbots_description.web import page as page_module
 from rosbots_description.web.scene import SceneView
 
 SUN = LightSpec('sun', 'directional', direction=(0.0, 0.0, -1.0), cast_shadows=True)
-
-
-def wait_until(condition):
-    end = time.monotonic() + 20.0
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def shown(browser):
@@ -167,8 +159,7 @@ def test_a_refusal_is_shown(browser, simulator):
     browser.wait_until(lambda: browser.control('Pause'))
     simulator.fault = 'no: because.'
     browser.click('Pause')
-    browser.wait_until(lambda: any(m['type'] == 'NotificationShowMessage' and 'no: because.' in
-                                   str(m) for m in browser.messages))
+    browser.wait_until(lambda: browser.notes() == ['no: because.'])
 
 
 def test_a_simulator_that_has_gone_and_returns_is_told_of(browser, simulator, page, monkeypatch):
@@ -180,5 +171,5 @@ def test_a_simulator_that_has_gone_and_returns_is_told_of(browser, simulator, pa
     page.poll()
     browser.wait_until(lambda: any(page_module.GONE in text for text in browser.texts()))
     simulator.motion(clock())
-    browser.wait_until(lambda: any(page_module.BACK in str(m) for m in browser.messages))
+    browser.wait_until(lambda: page_module.BACK in browser.notes())
     browser.wait_until(lambda: not any(page_module.GONE in text for text in browser.texts()))

@@ -47,7 +47,6 @@ def add(browser, signals, *curves):
         browser.wait_until(lambda curve=curve: browser.control(curve))
 
 
-
 def last_values(panel):
     """Return the newest value of each curve that is drawn."""
     return [float(values[-1]) for values in panel._plot.data[1:]]

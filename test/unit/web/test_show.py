@@ -1,12 +1,11 @@
 """What else is shown in the scene, and cameras that follow."""
 
 import math
-import time
 
 import numpy as np
 import pytest
 from support.browser import CAMERA, Browser
-from support.window import clock, model
+from support.window import clock, model, wait_until
 
 from rosbots_description.sim.core import Pose, from_rpy
 from rosbots_description.sim.description import (
@@ -96,7 +95,6 @@ def test_a_box_has_the_inertia_that_it_shows():
 def test_visuals_are_drawn_in_another_way_but_grounds(browser, simulator, look):
     simulator.change(SceneChange(True, (model('a', 1), model('ground', 2, Plane()))))
     browser.wait_until(lambda: '/models/ground/link/0 v/grid' in browser.nodes)
-    browser.choose('Visuals', look)
     for value in (look, 'solid'):
         browser.choose('Visuals', value)
         before = len(files(browser, '/models/a'))
@@ -148,10 +146,7 @@ def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
     browser.choose_when_there('Contacts and forces', True)
     browser.wait_until(lambda: simulator.contacts.show)
     browser.__exit__()
-    end = time.monotonic() + 20.0
-    while simulator.contacts.show is not None:
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    wait_until(lambda: simulator.contacts.show is None)
     with Browser(site.address) as later:
         later.wait_until(lambda: simulator.contacts.show)
 

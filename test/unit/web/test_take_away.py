@@ -31,11 +31,6 @@ def image(kind, colour):
     return made.getvalue()
 
 
-def notes(browser):
-    return [message['props']['title'] for message in browser.messages
-            if message['type'] == 'NotificationShowMessage']
-
-
 def download(browser, file):
     browser.wait_until(lambda: (browser.download() or ('',))[0] == file)
     return browser.download()[1]
@@ -52,7 +47,7 @@ def test_a_world_that_cannot_be_saved_is_told(browser, simulator):
     simulator.fault = 'the simulator does not answer'
     browser.wait_until(lambda: browser.control('World'))
     browser.click('World')
-    browser.wait_until(lambda: notes(browser) == ['the simulator does not answer'])
+    browser.wait_until(lambda: browser.notes() == ['the simulator does not answer'])
 
 
 def test_a_picture_has_the_size_and_the_colours_of_the_browser(browser):
@@ -108,7 +103,7 @@ def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page
     simulator.motion(clock(real_time=3.5))
     page.poll()
     assert scene_of(download(browser, 'recording.html').decode())['durationSeconds'] == 2.5
-    assert 'The recording is as long as it can be, and ends.' in notes(browser)
+    assert 'The recording is as long as it can be, and ends.' in browser.notes()
 
 
 def test_takes_end_with_the_last_browser(site, simulator, page):
@@ -149,7 +144,7 @@ def test_without_pyav_the_page_says_so(browser, monkeypatch):
     monkeypatch.setitem(sys.modules, 'av', None)
     browser.wait_until(lambda: browser.control('Record a video'))
     browser.click('Record a video')
-    browser.wait_until(lambda: any("'av' is not installed" in note for note in notes(browser)))
+    browser.wait_until(lambda: any("'av' is not installed" in note for note in browser.notes()))
 
 
 def scene_of(page):
