@@ -121,10 +121,17 @@ class Page:
         scene = SceneView(site, self.selection.click)
         self._bar = Bar(site.gui, simulator.time, self._notify)
         history = History(site.gui, self._notify)
-        keys = CameraKeys(site.gui)
         self._panels: list[Panel] = [
             models, self._start, scene, self.selection,
             Outline(site.scene, models, self.selection), self._bar, history]
+        self._add_tabs(simulator, models, scene, history)
+        site.on_client_connect(self._enter)
+        site.on_client_disconnect(self._leave)
+
+    def _add_tabs(self, simulator: Simulator, models: Models, scene: SceneView,
+                  history: History) -> None:
+        site = self._site
+        keys = CameraKeys(site.gui)
         tabs = site.gui.add_tab_group()
         if simulator.robots is not None:
             with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
@@ -166,8 +173,6 @@ class Page:
         with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
             # First, as a recording stamps what moves after it.
             self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
-        site.on_client_connect(self._enter)
-        site.on_client_disconnect(self._leave)
 
     def poll(self) -> None:
         """Tell those who look what has gone or come; to be called about twice a second."""
