@@ -213,7 +213,8 @@ class Page:
             for panel in self._panels:
                 panel.apply(change)
             self._is_complete = True
-            self._look()
+            if self._new:
+                self._look()
 
     def _look(self) -> None:
         """Let those who are new look at everything."""

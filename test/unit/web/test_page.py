@@ -94,6 +94,17 @@ def test_everything_is_in_view_and_the_start_looks_there(browser, simulator):
                                 'SetCameraLookAtMessage' and m['look_at'] == [5.0, 0.0, 1.0]])
 
 
+def test_a_view_is_chosen_for_those_who_come_only(browser, simulator, site, page, monkeypatch):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    chosen = []
+    monkeypatch.setattr(page._start, 'choose',
+                        lambda: chosen.append(1) or ((3.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    simulator.change(SceneChange(models=(model('b', 2),)))
+    assert chosen == []
+    with Browser(site.address) as second:
+        second.wait_until(lambda: chosen == [1])
+
+
 def test_lights_are_those_of_the_world(browser, simulator):
     lamp = LightSpec('lamp', 'point', Pose((1.0, 2.0, 3.0)), (1.0, 0.5, 0.0, 1.0))
     spot = LightSpec('spot', 'spot', spot_outer_angle=1.0, spot_inner_angle=0.5)
