@@ -55,7 +55,8 @@ class FrameFinder:
             self._listener = None
 
     def _look(self, frame: str, links: Collection[str]) -> tuple[str, Pose] | None:
-        parents = yaml.safe_load(self._buffer.all_frames_as_yaml()) or {}
+        # Up to 15 times a second, and of all robots: the parser in C takes a sixth of the time.
+        parents = yaml.load(self._buffer.all_frames_as_yaml(), yaml.CSafeLoader) or {}
         above, seen = frame.lstrip('/'), set[str]()
         while above not in seen:
             link = next((name for name in (above, above.rpartition('/')[2]) if name in links), None)
