@@ -46,11 +46,7 @@ class TakeAwayPanel(Panel):
             TakeButton(gui, 'recording', 'recording.html',
                        'the scene as it moves, as a page that needs no simulator',
                        lambda _: SceneTake(site), complain))
-
-    def close(self) -> None:
-        """End what is recorded for nobody."""
-        for take in self._takes:
-            take.drop()
+        site.on_client_disconnect(self._leave)
 
     def move(self, motion: ShownMotion) -> None:
         """Let recordings go on."""
@@ -61,6 +57,10 @@ class TakeAwayPanel(Panel):
         """Hand over what has reached its greatest length."""
         for take in self._takes:
             take.hand_over_if_full()
+
+    def _leave(self, client: viser.ClientHandle) -> None:
+        for take in self._takes:
+            take.drop(client)
 
     def _button(self, label: str, icon: Any, act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
                 gui: viser.GuiApi, hint: str) -> None:
@@ -117,9 +117,11 @@ class TakeButton:
             self._complain(f'The {self._called} is as long as it can be, and ends.')
             threading.Thread(target=self._hand_over, daemon=True).start()
 
-    def drop(self) -> None:
-        """End a take that nobody waits for."""
-        running = self._stop()
+    def drop(self, client: viser.ClientHandle) -> None:
+        """End the take of a browser that has gone."""
+        with self._lock:
+            is_its = self._running is not None and self._running[1] is client
+        running = self._stop() if is_its else None
         if running is not None:
             threading.Thread(target=running[0].finish, daemon=True).start()
 

@@ -15,7 +15,7 @@ import numpy as np
 import zstandard
 from PIL import Image
 from support.browser import Browser
-from support.window import clock, model
+from support.window import clock, model, wait_until
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import SceneChange
@@ -106,17 +106,18 @@ def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page
     assert 'The recording is as long as it can be, and ends.' in browser.notes()
 
 
-def test_takes_end_with_the_last_browser(site, simulator, page):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control('Record a recording'))
-        browser.click('Record a recording')
-        browser.click('Record a video')
-        browser.wait_until(lambda: browser.control('Stop the recording')
-                           and browser.control('Stop the video'))
+def test_takes_end_with_their_browser(site, simulator, page):
     with Browser(site.address) as other:
+        with Browser(site.address) as browser:
+            browser.wait_until(lambda: browser.control('Record a recording'))
+            browser.click('Record a recording')
+            browser.click('Record a video')
+            other.wait_until(lambda: other.control('Stop the recording')
+                             and other.control('Stop the video'))
         other.wait_until(lambda: other.control('Record a recording')
                          and other.control('Record a video'))
-    assert site._websock_server._record_handles == []
+        wait_until(lambda: site._websock_server._record_handles == [])
+        assert other.notes() == []
 
 
 def test_two_clicks_at_once_begin_one_take_and_end_it(site):
