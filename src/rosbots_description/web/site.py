@@ -9,6 +9,7 @@ import hmac
 import http
 import secrets
 import socket
+import warnings
 from collections.abc import Callable
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
@@ -58,6 +59,8 @@ class Site(viser.ViserServer):
                          **options)
 
         rich.reconfigure(quiet=True)  # viser's own lines
+        # Somebody has left, which is no fault.
+        warnings.filterwarnings('ignore', r'Queued a \w+ on a closed connection')
         # Viser looks for a free port by itself and takes no socket and no guard.
         with mock.patch('websockets.asyncio.server.serve', serve_here):
             super().__init__(host, port, verbose=False)

@@ -8,6 +8,7 @@ from contextlib import closing
 
 import pytest
 from support.browser import Browser
+from support.window import wait_until
 from websockets.exceptions import InvalidStatus
 
 from rosbots_description.web import Site, WindowError
@@ -46,6 +47,19 @@ def test_this_machine_is_let_in_without_a_token(site, capfd):
     with Browser(site.address) as browser:
         browser.wait_until(lambda: browser.messages)
     assert capfd.readouterr().out == ''  # viser is not asked to tell
+
+
+def test_what_is_sent_to_a_browser_that_has_left_makes_no_noise(recwarn):
+    site = Site('127.0.0.1', 0)
+    try:
+        with Browser(site.address) as browser:
+            browser.wait_until(site.get_clients)
+            (client,) = site.get_clients().values()
+        wait_until(lambda: not site.get_clients())
+        client.send_file_download('a', b'a')
+    finally:
+        site.stop()
+    assert not [one for one in recwarn if 'closed connection' in str(one.message)]
 
 
 @pytest.mark.parametrize('name', ['localhost', '127.0.0.1'])
