@@ -20,6 +20,7 @@ from .hands import Hands, HandsPanel
 from .history import History
 from .insert import InsertPanel, Library
 from .inspector import Inspector
+from .interpolation import Interpolation
 from .joints import JointPanel, Joints
 from .joystick import Joystick
 from .models import Models
@@ -107,6 +108,7 @@ class Page:
     def __init__(self, site: Site, simulator: Simulator) -> None:
         self._site, self._view = site, simulator.view
         self._lock = threading.RLock()
+        self._motions = Interpolation(self._lock, self._move)
         self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
         self._is_open = self._is_complete = False  # the view, and what it has shown
         self._heard = 0.0  # when the last motion came [s, monotonic]
@@ -192,7 +194,8 @@ class Page:
             if not self._is_open:
                 self._is_open, self._is_complete = True, False
                 self._heard = time.monotonic()
-                self._view.open(self._change, self._move)
+                self._motions.open()
+                self._view.open(self._change, self._hear)
                 for panel in self._panels:
                     panel.open()
             elif self._is_complete:
@@ -205,11 +208,14 @@ class Page:
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
                 self._view.close()
+                self._motions.close()
                 for panel in self._panels:
                     panel.close()
 
     def _change(self, change: SceneChange) -> None:
         with self._lock:
+            if change.reset:
+                self._motions.forget()
             for panel in self._panels:
                 panel.apply(change)
             self._is_complete = True
@@ -225,15 +231,18 @@ class Page:
             client.camera.position, client.camera.look_at = eye, target
         self._new.clear()
 
-    def _move(self, motion: ShownMotion) -> None:
+    def _hear(self, motion: ShownMotion) -> None:
         with self._lock:
             self._heard = time.monotonic()
             if self._lost:
                 self._lost = False
                 self._bar.warn('')
                 self._notify(BACK)
-            for panel in self._panels:
-                panel.move(motion)
+            self._motions.take(motion)
+
+    def _move(self, motion: ShownMotion) -> None:
+        for panel in self._panels:
+            panel.move(motion)
 
     def _notify(self, sentence: str) -> None:
         for client in self._site.get_clients().values():

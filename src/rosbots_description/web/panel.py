@@ -41,7 +41,7 @@ class Panel:
         """Take in a change of the scene."""
 
     def move(self, motion: ShownMotion) -> None:
-        """Take in the clock and new poses, up to 30 times a second."""
+        """Take in the clock and new poses, up to 60 times a second."""
 
     def refresh(self) -> None:
         """Look again at what nobody tells of; about twice a second."""

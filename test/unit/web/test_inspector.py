@@ -96,6 +96,8 @@ def test_pose_and_velocity_are_set_one_without_the_other_and_undone(world, simul
     now = Pose((1.0, 2.0, 3.0)), Twist((0.5, 0.0, 0.0))
     simulator.where = now
     simulator.motion(clock(_1=Pose((7.0, 0.0, 0.0))))
+    world.wait_until(lambda: world.nodes.get(
+        '/models/cart/base', [0, 0])[1] == [7.0, 0.0, 0.0])
     page.selection.choose('cart', 'base')
     world.wait_until(lambda: world.value('Position [m]') == [7.0, 0.0, 0.0])
     world.choose('Position [m]', [4.0, 5.0, 6.0])

@@ -72,6 +72,16 @@ def test_a_simulator_that_restarted_shows_its_own_models(browser, simulator):
     assert len([m for m in browser.messages if m['type'] == 'GlbMessage']) == before
 
 
+def test_poses_of_a_simulator_that_restarts_are_not_those_of_the_next(browser, simulator, page):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    with page._lock:  # so that nothing is shown meanwhile
+        simulator.motion(clock(_1=Pose((5.0, 0.0, 0.0))))
+        simulator.change(SceneChange(True, (model('b', 1), model('c', 2))))
+    simulator.motion(clock(_2=Pose((6.0, 0.0, 0.0))))
+    browser.wait_until(lambda: browser.nodes.get('/models/c/link', [0, 0])[1] == [6.0, 0.0, 0.0])
+    assert browser.nodes['/models/b/link'][1] == [0.0, 0.0, 0.0]
+
+
 def test_a_mesh_that_cannot_be_read_is_left_out(browser, simulator, caplog):
     simulator.change(SceneChange(True, (model('a', 1, Mesh('/gone.stl')), model('b', 2))))
     browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
@@ -128,6 +138,7 @@ def test_a_world_without_shadows_has_none(browser, simulator):
 
 def test_the_clock_shows_times_and_the_real_time_factor(browser, simulator):
     simulator.motion(clock(10.0, 20.0))
+    browser.wait_until(lambda: any('00:00:10.000' in text for text in browser.texts()))
     simulator.motion(clock(10.5, 21.0))
     browser.wait_until(lambda: any('00:00:10.500' in text and '00:00:21.000' in text
                                    and '0.50' in text and '10500' in text

@@ -83,7 +83,9 @@ def test_a_recording_plays_the_scene_without_a_server(browser, simulator):
     browser.click('Record a recording')
     browser.wait_until(lambda: browser.control('Stop the recording'))
     for moment in (0.0, 0.25, 1.5):
-        simulator.motion(clock(real_time=7.0 + moment, _1=Pose((moment, 0.0, 0.0))))
+        place = [moment, 0.0, 2.0]
+        simulator.motion(clock(real_time=7.0 + moment, _1=Pose(tuple(place))))
+        browser.wait_until(lambda place=place: browser.nodes['/models/a/link'][1] == place)
     browser.click('Stop the recording')
     recorded = scene_of(download(browser, 'recording.html').decode())
     assert recorded['durationSeconds'] == 1.5
@@ -98,10 +100,11 @@ def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page
     browser.click('Record a recording')
     browser.wait_until(lambda: browser.control('Stop the recording'))
     simulator.motion(clock(real_time=1.0))
+    browser.wait_until(lambda: any('00:00:01.000' in text for text in browser.texts()))
     page.poll()
     assert browser.control('Stop the recording')
     simulator.motion(clock(real_time=3.5))
-    page.poll()
+    browser.wait_until(lambda: page.poll() or browser.control('Record a recording'))
     assert scene_of(download(browser, 'recording.html').decode())['durationSeconds'] == 2.5
     assert 'The recording is as long as it can be, and ends.' in browser.notes()
 

@@ -24,8 +24,9 @@ class RosView:
         """Subscribe; the callbacks are called from threads of their own."""
         self._subscribers = [
             rospy.Subscriber('gazebo/view/scene', String, lambda m: change(scene_change(m))),
+            # Each message: it alone has the poses of links that have come to rest since.
             rospy.Subscriber('gazebo/view/motion', Float64MultiArray,
-                             lambda m: motion(read_motion(m)), queue_size=1, tcp_nodelay=True)]
+                             lambda m: motion(read_motion(m)), tcp_nodelay=True)]
 
     def close(self) -> None:
         """Unsubscribe: the simulator computes nothing for this view any more."""
