@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Iterator
-from functools import partial
 from typing import NamedTuple
 
 import viser
@@ -35,6 +34,9 @@ class ModelTree(Panel):
     ) -> None:
         self._gui, self._models, self._selection, self._lock = gui, models, selection, lock
         self._rows: dict[TreeRow, viser.GuiButtonHandle] = {}
+        # Used again: if a button is changed and removed between two frames of a browser, viser's
+        # page removes it first and then complains of the change.
+        self._hidden: list[viser.GuiButtonHandle] = []
         self._find = gui.add_text('Find', '', hint='a part of the name')
         self._find.on_update(lambda _: self._draw())
         self._folder = gui.add_folder('In the world')
@@ -49,13 +51,12 @@ class ModelTree(Panel):
         with self._lock:
             wanted = list(self._wanted())
             for row in self._rows.keys() - set(wanted[:MOST]):
-                self._rows.pop(row).remove()
+                button = self._rows.pop(row)
+                button.visible = False
+                self._hidden.append(button)
             for order, row in enumerate(wanted[:MOST]):
                 if row not in self._rows:
-                    with self._folder:
-                        button = self._gui.add_button(row.text)
-                    button.on_click(partial(self._choose, row))
-                    self._rows[row] = button
+                    self._rows[row] = self._button(row.text)
                 button = self._rows[row]
                 button.order = float(order)
                 chosen = row == (self._selection.model, self._selection.link)
@@ -64,6 +65,16 @@ class ModelTree(Panel):
             self._rest.visible = left > 0
             if left > 0:
                 self._rest.content = f'and {left} more; *Find* shows those with a part of the name'
+
+    def _button(self, text: str) -> viser.GuiButtonHandle:
+        if self._hidden:
+            button = self._hidden.pop()
+            button.label, button.visible = text, True
+        else:
+            with self._folder:
+                button = self._gui.add_button(text)
+            button.on_click(self._choose)
+        return button
 
     def _wanted(self) -> Iterator[TreeRow]:
         """Return the rows that have what is looked for in their names, the selected model first."""
@@ -78,5 +89,8 @@ class ModelTree(Panel):
                     if matches or part in link.name.lower():
                         yield TreeRow(name, link.name)
 
-    def _choose(self, row: TreeRow, _event: object) -> None:
-        self._selection.choose(*row)
+    def _choose(self, event: viser.GuiEvent[viser.GuiButtonHandle]) -> None:
+        with self._lock:
+            row = next((row for row, button in self._rows.items() if button is event.target), None)
+            if row is not None:
+                self._selection.choose(*row)

@@ -10,7 +10,7 @@ from rosbots_description.web import tree
 def rows(browser):
     """Return the labels of the buttons in the tree, from the top."""
     buttons = [props for kind, props in browser.controls.values() if kind == 'GuiButtonMessage'
-               and props['color'] in ('gray', 'orange')]
+               and props['color'] in ('gray', 'orange') and props['visible']]
     return [props['label'] for props in sorted(buttons, key=lambda props: props['order'])]
 
 
@@ -28,8 +28,17 @@ def test_models_come_and_go_and_a_click_selects(browser, simulator, page):
     browser.click('└ wheel')
     browser.wait_until(lambda: (page.selection.model, page.selection.link) == ('a', 'wheel'))
     browser.wait_until(lambda: browser.controls[browser.control('└ wheel')][1]['color'] == 'orange')
+    before = len(browser.controls)
     simulator.change(SceneChange(removed=('a',)))
     browser.wait_until(lambda: rows(browser) == ['b'])
+    simulator.change(SceneChange(models=(model('c', 5),)))
+    browser.wait_until(lambda: rows(browser) == ['b', 'c'])
+    browser.click('c')
+    browser.wait_until(lambda: page.selection.model == 'c')
+    # No button is ever removed, so the page has none to miss.
+    assert not [m for m in browser.messages if m['type'] == 'GuiRemoveMessage']
+    browser.wait_until(lambda: rows(browser) == ['c', '└ link', 'b'])
+    assert len(browser.controls) == before
 
 
 def test_a_large_world_is_searched(browser, simulator, page, monkeypatch):
