@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure what the window in the browser costs the server, and how fast bodies reach it.
+"""Measure what the window in the browser costs the server, and how fast it shows what happens.
 
 A client that decodes the page's connection takes the browser's place: what a browser draws is its
 own affair. Each window of time with it is compared with one without, turn by turn, so that other
@@ -16,16 +16,19 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from article import robot_urdf
 from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import SetModelState
+from gazebo_msgs.srv import DeleteModel, SetModelState
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
-from server import SYSTEM_TIME, USER_TIME, Server, run_in_new_process
+from server import PATIENCE, SYSTEM_TIME, USER_TIME, Server, run_in_new_process
 from support.browser import Browser
 
 WINDOW = 3.0  # [s, wall]
 ROUNDS = 4
 MOST_CPU = 5.0  # [% of a core] that a page adds to the server
 LEAST_RATE = 20.0  # [Hz] at which bodies reach the page
+LATEST = 200.0  # [ms] until models have come to the page, or gone from it
+CHANGES = 10  # spawns of each model
 BODIES = 100, 300
 SPEED = 0.05  # [m/s] of bodies that float
 BALL = """<robot name="ball"><link name="body"><inertial><mass value="1"/><inertia ixx=".001"
@@ -94,6 +97,40 @@ def measure_robot() -> None:
               f'{MOST_CPU:g}), real-time factor {factor:.3f} (target 1.00)')
 
 
+def measure_changes() -> None:
+    """Print how long after the call of a service a page has a model, and no longer has it."""
+    with Server() as server, Window() as window, Browser(window.address) as browser:
+        browser.wait_until(lambda: has(browser, 'ground_plane'))
+        for name, text in (('ball', BALL), ('robot', robot_urdf())):
+            measure_model(server, browser, name, text)
+
+
+def measure_model(server: Server, browser: Browser, name: str, text: str) -> None:
+    """Print that of one model, which is spawned and deleted several times."""
+    delete = server.service('delete_model', DeleteModel)
+    come, gone = [], []
+    for _ in range(CHANGES):
+        come.append(delay(browser, lambda: server.spawn_urdf(name, text),
+                          lambda: has(browser, name)))
+        gone.append(delay(browser, lambda: delete(name), lambda: not has(browser, name)))
+    for what, found in (('spawned', come), ('deleted', gone)):
+        print(f'a {name} is {what} and a page shows that within {statistics.median(found):.0f} ms, '
+              f'at most {max(found):.0f} (target {LATEST:g})')
+
+
+def delay(
+    browser: Browser, act: Callable[[], object], condition: Callable[[], bool]
+) -> float:
+    """Return the time from the beginning of an act until a page's condition holds [ms]."""
+    begin = time.monotonic()
+    act()
+    while not condition():
+        browser.read(0.001)
+        if time.monotonic() > begin + PATIENCE:
+            raise TimeoutError(f'not on the page within {PATIENCE:g} s')
+    return 1000.0 * (time.monotonic() - begin)
+
+
 def measure_bodies(count: int) -> None:
     """Print how often each of so many moving bodies reaches a page, and what that costs."""
     with Server() as server, Window() as window:
@@ -132,6 +169,7 @@ def has(browser: Browser, model: str) -> bool:
 def main() -> int:
     """Run each measurement in its own process; return the exit code."""
     run_in_new_process(measure_robot)
+    run_in_new_process(measure_changes)
     for count in BODIES:
         run_in_new_process(measure_bodies, count)
     return 0
