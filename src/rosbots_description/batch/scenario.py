@@ -71,7 +71,6 @@ class RecordEntry(Struct, frozen=True, forbid_unknown_fields=True):
     link: str = ''
     joint: str = ''
 
-
     def check(self, name: str) -> None:
         """Raise a `ScenarioError` for what its types leave open; `name` is the record's."""
         if not name.isidentifier():
@@ -119,7 +118,7 @@ class Scenario(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ScenarioFile:
-    """A scenario with its parameters, as it is written; `run` gives what one run does."""
+    """A scenario with its parameters, as it is written; `scenario` gives what one run does."""
 
     def __init__(self, document: Mapping[str, Any], folder: str | os.PathLike[str] = '.') -> None:
         """Take the content of a YAML file; paths in it are relative to `folder`.
@@ -137,14 +136,10 @@ class ScenarioFile:
         self._rest = rest
         first = self.scenario(self.parameters.run(0))
         self.columns = first.columns
-        known = {*self.columns, *self.parameters.names}
         taken = {'run', 'seed', 'outcome', 'reason', *self.columns} & set(self.parameters.names)
         if taken:
             raise ScenarioError(f"the parameter '{min(taken)}' has the name of a column; rename it")
-        try:
-            self.conditions = [Condition(text, known) for text in first.conditions]
-        except ValueError as error:
-            raise ScenarioError(str(error)) from None
+        self.conditions(first)
 
     @classmethod
     def read(
@@ -187,6 +182,18 @@ class ScenarioFile:
             raise ScenarioError(str(error)) from None
         scenario.check()
         return scenario
+
+    def conditions(self, scenario: Scenario) -> list[Condition]:
+        """Return the conditions of a run, of which `scenario` is given.
+
+        Raises:
+            ScenarioError: one of them is not an expression over its row.
+        """
+        try:
+            return [Condition(text, [*self.columns, *self.parameters.names])
+                    for text in scenario.conditions]
+        except ValueError as error:
+            raise ScenarioError(str(error)) from None
 
     def locate(self, path: str) -> str:
         """Return a path relative to the scenario's folder as absolute, if there is such a file."""

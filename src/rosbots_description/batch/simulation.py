@@ -28,11 +28,13 @@ def simulate(file: ScenarioFile, number: int) -> dict[str, Any]:
     run = file.parameters.run(number)
     row = empty_row(file, run)
     try:
+        scenario = file.scenario(run)
+        conditions = file.conditions(scenario)
         with _logged_errors() as errors:
-            row |= _Simulation(file, run).columns()
+            row |= _Simulation(file, run, scenario).columns()
         if errors:
             raise ScenarioError(errors[0])
-        faults = filter(None, (condition.fault(row) for condition in file.conditions))
+        faults = filter(None, (condition.fault(row) for condition in conditions))
         reason = next(faults, '')
     except (SimError, PolicyError, ValueError, OSError) as error:
         return {**row, 'outcome': ERROR, 'reason': one_line(str(error))}
@@ -50,12 +52,11 @@ def empty_row(file: ScenarioFile, run: Run) -> dict[str, Any]:
 class _Simulation:
     """The world of one run."""
 
-    def __init__(self, file: ScenarioFile, run: Run) -> None:
-        self._file, self._run = file, run
-        self._scenario = file.scenario(run)
-        self._statistics = {name: Statistics() for name, record in self._scenario.record.items()
+    def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
+        self._file, self._run, self._scenario = file, run, scenario
+        self._statistics = {name: Statistics() for name, record in scenario.record.items()
                             if record.value}
-        self._readings: dict[str, Any] = dict.fromkeys(self._scenario.record)
+        self._readings: dict[str, Any] = dict.fromkeys(scenario.record)
         self._fault: ScenarioError | None = None
         self._models: dict[str, tuple[Any, RecordEntry]] = {}  # records of what is in the world
 

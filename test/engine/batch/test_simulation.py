@@ -51,6 +51,14 @@ def test_a_condition_that_does_not_hold_fails_the_run_with_its_values():
     assert row['reason'].startswith("'x_end > 0.5' does not hold: x_end = 0.25")
 
 
+def test_a_parameter_in_a_condition_has_the_value_of_the_run():
+    scenario = pushed_ball(conditions=['x_end > $least'], parameters={
+        'force': 3.0, 'least': {'grid': [0.5, 1.0]}})
+    rows = run(scenario, workers=0).table.to_pylist()
+    assert [row['outcome'] for row in rows] == ['passed', 'failed']
+    assert rows[1]['reason'].startswith("'x_end > 1.0' does not hold: x_end = 0.7")
+
+
 def test_commands_come_at_their_times(floating):
     push = {'topic': 'push', 'message': {'force': {'x': 2.0}}}
     row = only_row(pushed_ball(

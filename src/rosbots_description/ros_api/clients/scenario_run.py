@@ -19,6 +19,8 @@ from ...batch import (
     ModelEntry,
     Policy,
     RecordEntry,
+    Run,
+    Scenario,
     ScenarioError,
     ScenarioFile,
     Statistics,
@@ -47,9 +49,11 @@ def run_scenario(file: ScenarioFile, number: int) -> dict[str, Any]:
         /gazebo/pause_physics, unpause_physics, spawn_urdf_model, spawn_sdf_model, delete_model,
         get_model_state, get_link_state, get_joint_properties
     """
-    ran = _Run(file, number)
-    row = {**file.parameters.run(number).parameters, **ran.columns()}
-    for condition in file.conditions:
+    run = file.parameters.run(number)
+    scenario = file.scenario(run)
+    conditions = file.conditions(scenario)
+    row = {**run.parameters, **_Run(file, run, scenario).columns()}
+    for condition in conditions:
         fault = condition.fault(row)
         assert not fault, fault
     return row
@@ -58,12 +62,11 @@ def run_scenario(file: ScenarioFile, number: int) -> dict[str, Any]:
 class _Run:
     """The models, topics and records of one run."""
 
-    def __init__(self, file: ScenarioFile, number: int) -> None:
-        self._file, self._run = file, file.parameters.run(number)
-        self._scenario = file.scenario(self._run)
-        self._statistics = {name: Statistics() for name, record in self._scenario.record.items()
+    def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
+        self._file, self._run, self._scenario = file, run, scenario
+        self._statistics = {name: Statistics() for name, record in scenario.record.items()
                             if record.value}
-        self._readings: dict[str, Any] = dict.fromkeys(self._scenario.record)
+        self._readings: dict[str, Any] = dict.fromkeys(scenario.record)
         self._publishers: dict[str, rospy.Publisher] = {}
         self._end = contextlib.ExitStack()
         self._fault: ScenarioError | None = None
