@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..sim import Joint, Link, Model, Odometry, SimError, World
-from ..sim.core import one_line
+from ..sim.core import NANOSECONDS, one_line
 from .parameters import Run
 from .policy import Policy, PolicyError, commands_of, in_words, load_policy
 from .records import JointReading, Statistics, value_at
@@ -107,12 +107,12 @@ class _Simulation:
 
     def _advance(self, world: World) -> None:
         """Run to the end, with commands and records in between; the policy acts first."""
-        scenario = self._scenario
+        scenario, begin = self._scenario, world.clock.steps  # not 0 in a world that was saved
         steps = _StepsOf(scenario, world)
         policy = load_policy(scenario.policy, self._file.folder, self._run) \
             if scenario.policy else None
         for step in steps.all:
-            world.run(step - world.clock.steps)
+            world.run(begin + step - world.clock.steps)
             if self._fault:
                 raise self._fault
             if step in steps.ticks or step == steps.end:
@@ -121,7 +121,7 @@ class _Simulation:
             if step == steps.end:
                 break
             if policy and step in steps.ticks:
-                self._act(policy, world.time)
+                self._act(policy, step * world.clock.step_ns / NANOSECONDS)
             for index in steps.commands.get(step, ()):
                 command = scenario.commands[index]
                 with _within(f'commands[{index}]'):
@@ -135,14 +135,14 @@ class _Simulation:
 
 
 class _StepsOf:
-    """The steps at which something is done in a run."""
+    """The steps at which something is done in a run, counted from its beginning."""
 
     def __init__(self, scenario: Scenario, world: World) -> None:
         size = world.physics.step_size
+        period = max(scenario.period, size)
         self.end = max(1, round(scenario.duration / size))
-        count = math.ceil(scenario.duration / max(scenario.period, size))
-        self.ticks = {tick for index in range(count)
-                      if (tick := round(index * scenario.period / size)) < self.end}
+        self.ticks = {tick for index in range(math.ceil(scenario.duration / period))
+                      if (tick := round(index * period / size)) < self.end}
         self.commands: dict[int, list[int]] = {}  # indices of the commands
         for index, command in sorted(enumerate(scenario.commands), key=lambda one: one[1].at):
             self.commands.setdefault(round(command.at / size), []).append(index)

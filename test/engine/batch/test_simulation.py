@@ -85,6 +85,18 @@ def test_a_policy_acts_each_period_on_what_is_recorded(policy, floating):
     assert (row['outcome'], row['reason']) == ('passed', '')
 
 
+def test_time_begins_at_0_in_a_saved_world_and_a_short_period_is_a_step(policy, tmp_path):
+    saved = tmp_path / 'saved.world'
+    saved.write_text(FLOATING.replace(
+        '</world>', '<state world_name="default"><sim_time>5 0</sim_time></state></world>'))
+    push = policy("return {'push': {'force': {'x': 2.0 if 0.25 <= time < 0.75 else 0.0}}}")
+    row = only_row(pushed_ball(
+        world=str(saved), policy=push, commands=[], period=0.0004, conditions=[],
+        record={'v': {'model': 'ball', 'value': 'twist.linear.x'}}))
+    assert row['reason'] == ''
+    assert row['v_end'] == pytest.approx(2.0 / MASS * 0.5, rel=1e-6)
+
+
 def test_a_random_run_is_the_same_each_time_it_is_made():
     noisy = pushed_ball(parameters={'force': {'uniform': [1.0, 3.0]}}, repeat=2, seed=5)
     first, second = (run(noisy, workers=0).table for _ in range(2))
