@@ -3,10 +3,15 @@
 import importlib
 import importlib.util
 import os
+import sys
+import sysconfig
 from collections.abc import Callable, Mapping
+from traceback import walk_tb
 from typing import Any
 
 from .parameters import Run
+
+_STDLIB = sysconfig.get_path('stdlib')
 
 # Topic -> message, such as {'linear': {'x': 0.5}}.
 Commands = Mapping[str, Mapping[str, Mapping[str, float]]]
@@ -36,6 +41,7 @@ def load_policy(address: str, folder: str, run: Run) -> Policy:
             spec = importlib.util.spec_from_file_location('rosbots_policy', path)
             assert spec is not None and spec.loader is not None
             module = importlib.util.module_from_spec(spec)
+            sys.modules[spec.name] = module  # where dataclasses look for it
             spec.loader.exec_module(module)
         else:
             module = importlib.import_module(place)
@@ -73,10 +79,8 @@ def commands_of(
 
 
 def in_words(error: BaseException) -> str:
-    """Return an exception's type and text, and the line of a user's file that raised it."""
-    trace, line = error.__traceback__, ''
-    while trace is not None:
-        file = trace.tb_frame.f_code.co_filename
-        line = f' ({os.path.basename(file)}, line {trace.tb_lineno})'
-        trace = trace.tb_next
-    return f'{type(error).__name__}: {error}{line}'
+    """Return an exception's type and text, and the line of a user's file that raised it, if any."""
+    _, *files = ((frame.f_code.co_filename, line) for frame, line in walk_tb(error.__traceback__))
+    lines = [f' ({os.path.basename(file)}, line {line})' for file, line in files
+             if not file.startswith(('<', _STDLIB)) and '-packages' not in file]
+    return f'{type(error).__name__}: {error}{lines[-1] if lines else ""}'

@@ -149,6 +149,7 @@ def test_bad_input_is_said_in_the_row(changes, said):
 
 @pytest.mark.parametrize(('lines', 'said'), [
     (["raise KeyError('lost')"], "at 0 s raised KeyError: 'lost' (policy.py, line 3)"),
+    (['import json', "json.loads('{')"], 'line 1 column 2 (char 1) (policy.py, line 4)'),
     (["return {'push': {'force': {'x': float('nan')}}}"],
      "at 0 s, topic 'push': force.x is nan; numbers must be finite"),
     (["return {'puhs': {}}"], "topic 'puhs': no plugin takes commands on the topic 'puhs'; did"),
@@ -158,6 +159,32 @@ def test_what_a_policy_does_wrong_is_said_in_the_row(policy, lines, said):
     row = only_row(pushed_ball(policy=policy(*lines)))
     assert row['outcome'] == 'error'
     assert said in row['reason']
+
+
+@pytest.mark.parametrize(('text', 'said'), [
+    ('def make(run:', "policy.py:make' cannot be loaded: SyntaxError: '(' was never closed "
+     '(policy.py, line 1)'),
+    ('import nowhere', "ModuleNotFoundError: No module named 'nowhere' (policy.py, line 1)"),
+    (None, "policy.py'"),
+])
+def test_a_policy_that_cannot_be_loaded_is_said_in_the_row(tmp_path, text, said):
+    if text:
+        (tmp_path / 'policy.py').write_text(text)
+    assert only_row(pushed_ball(policy=f'{tmp_path}/policy.py:make'))['reason'].endswith(said)
+
+
+def test_a_policy_may_be_a_dataclass(tmp_path, floating):
+    (tmp_path / 'policy.py').write_text('''from __future__ import annotations
+from dataclasses import dataclass
+
+@dataclass
+class Push:
+    run: object
+    def __call__(self, time, readings):
+        return {'push': {'force': {'x': self.run.parameters['force']}}}
+''')
+    row = only_row(pushed_ball(world=floating, policy=f'{tmp_path}/policy.py:Push', commands=[]))
+    assert row['outcome'] == 'passed', row['reason']
 
 
 def test_a_part_of_a_model_that_is_left_out_is_an_error():
