@@ -45,7 +45,8 @@ class Table:
             try:
                 (self._folder / PARTS).mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise ScenarioError(f'rows cannot be written to {folder}: {error}') from None
+                raise ScenarioError(
+                    f'rows cannot be written to {folder}: {_why(error)}') from None
             self._load(self._folder)
 
     def _load(self, folder: Path) -> None:
@@ -53,14 +54,17 @@ class Table:
         self._parts = 1 + max((int(part.stem) for part in parts if part.stem.isdecimal()),
                               default=-1)
         for part in (folder / FINAL, *parts):
-            # A file of 0 bytes remains of a machine that lost its power.
-            with contextlib.suppress(FileNotFoundError, pa.ArrowInvalid):
+            try:
                 found = parquet.read_table(part)
-                if (found.schema.metadata or {}).get(_KEY) != self.schema.metadata[_KEY]:
-                    raise ScenarioError(f'{folder} holds the rows of another scenario; name '
-                                        'another folder, or remove it')
-                rows: list[Any] = found.to_pylist()
-                self.rows |= {row['run']: row for row in rows}
+            except (FileNotFoundError, pa.ArrowInvalid):
+                continue  # a file of 0 bytes remains of a machine that lost its power
+            except OSError as error:
+                raise ScenarioError(f'{part} cannot be read: {_why(error)}') from None
+            if (found.schema.metadata or {}).get(_KEY) != self.schema.metadata[_KEY]:
+                raise ScenarioError(f'{folder} holds the rows of another scenario; name '
+                                    'another folder, or remove it')
+            rows: list[Any] = found.to_pylist()
+            self.rows |= {row['run']: row for row in rows}
 
     def add(self, row: Mapping[str, Any]) -> None:
         """Add the row of a run."""
@@ -105,8 +109,11 @@ class Table:
         except OSError as error:
             with contextlib.suppress(OSError):
                 temporary.unlink()
-            why = os.strerror(error.errno) if error.errno else str(error)
-            self.fault = f'rows cannot be written to {path.parent}: {why}'
+            self.fault = f'rows cannot be written to {path.parent}: {_why(error)}'
             return False
         self.fault = ''
         return True
+
+
+def _why(error: OSError) -> str:
+    return os.strerror(error.errno) if error.errno else str(error)

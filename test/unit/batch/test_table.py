@@ -1,5 +1,7 @@
 """Rows in files: complete at any time, kept, in order, and no worse for a full disk."""
 
+import errno
+
 import pytest
 from pyarrow import parquet
 from support.batches import full_disk, pushed_ball
@@ -75,6 +77,16 @@ def test_a_folder_that_cannot_be_made_is_named(file, tmp_path):
     (tmp_path / 'taken').touch()
     with pytest.raises(ScenarioError, match=r'rows cannot be written to .*taken'):
         Table(file, tmp_path / 'taken')
+
+
+def test_rows_that_cannot_be_read_are_named(file, tmp_path, monkeypatch):
+    def refuse(_path):  # as root, nothing else does
+        raise PermissionError(errno.EACCES, 'no')
+
+    monkeypatch.setattr(parquet, 'read_table', refuse)
+    path = tmp_path / 'rows.parquet'
+    with pytest.raises(ScenarioError, match=f'{path} cannot be read: Permission denied'):
+        Table(file, tmp_path)
 
 
 def test_rows_wait_for_a_full_disk(file, tmp_path):
