@@ -46,79 +46,70 @@ def rows(
         ClusterError: see `run`.
     """
     with _connected(workers, address) as ray:
-        starts = ray.remote(num_cpus=0)(_Starts).options(
-            scheduling_strategy=ray.util.scheduling_strategies.NodeAffinitySchedulingStrategy(
-                ray.get_runtime_context().get_node_id(), soft=False)).remote()
+        _require_worker(ray)
         task = ray.remote(num_cpus=1, max_retries=ATTEMPTS - 1)(_simulate)
         shared = ray.put(file)
-        _require_worker(ray, starts)
-        waiting, pending, done = iter(numbers), {}, 0
+        waiting, pending, repeated = iter(numbers), {}, 0
         try:
             while True:
                 for number in waiting:
-                    pending[task.remote(shared, number, starts)] = number
+                    pending[task.remote(shared, number)] = number
                     if len(pending) >= MAX_PENDING:
                         break
                 if not pending:
                     return
-                ready, _ = ray.wait(list(pending), num_returns=1)
-                more, _ = ray.wait(list(pending), num_returns=len(pending), timeout=WAIT)
-                again = ray.get(starts.repeated.remote())
-                for reference in {*ready, *more}:
-                    yield _row(ray, file, pending.pop(reference), reference), again
-                    done += 1
+                ray.wait(list(pending), num_returns=1)
+                ready, _ = ray.wait(list(pending), num_returns=len(pending), timeout=WAIT)
+                for reference in ready:
+                    row, attempts = _result(ray, file, pending.pop(reference), reference)
+                    repeated += attempts - 1
+                    yield row, repeated
         finally:
             for reference in pending:
                 with contextlib.suppress(Exception):
                     ray.cancel(reference, force=True)
 
 
-def _require_worker(ray: Any, starts: Any) -> None:  # noqa: ANN401
+def _require_worker(ray: Any) -> None:  # noqa: ANN401
     """Wait for the first answer of a worker."""
     from ray.exceptions import RayError
 
     try:
-        ray.get(starts.repeated.remote())
+        ray.get(ray.remote(num_cpus=0, max_retries=ATTEMPTS - 1)(_attempt).remote())
     except RayError as error:
-        last = str(error).strip().splitlines()[-1]
-        raise ClusterError(f'the workers of the Ray cluster cannot make runs: {last}') from None
+        raise ClusterError('the workers of the Ray cluster cannot make runs: '
+                           f'{str(error).strip().splitlines()[-1]}') from None
 
 
-def _simulate(file: ScenarioFile, number: int, starts: Any) -> dict[str, Any]:  # noqa: ANN401
-    starts.add.remote(number)  # not waited for: Ray would lend the processor to another run
-    return simulate(file, number)
+def _simulate(file: ScenarioFile, number: int) -> tuple[dict[str, Any], int]:
+    """Return the row of a run, and which attempt has made it."""
+    return simulate(file, number), _attempt()
 
 
-class _Starts:
-    """Counts how often runs were begun; an actor beside who waits for the rows."""
+def _attempt() -> int:
+    """Return which attempt this is to make a task of Ray, from 1."""
+    from ray._private import worker
 
-    def __init__(self) -> None:
-        self._begun: set[int] = set()
-        self._repeated = 0
-
-    def add(self, number: int) -> None:
-        """Count the start of a run."""
-        self._repeated += number in self._begun
-        self._begun.add(number)
-
-    def repeated(self) -> int:
-        """Return how many starts were not the first of their run."""
-        return self._repeated
+    own: Any = worker.global_worker  # its core is compiled, without types
+    return 1 + int(own.core_worker.get_current_task_attempt_number())
 
 
-def _row(ray: Any, file: ScenarioFile, number: int, reference: Any) -> dict[str, Any]:  # noqa: ANN401
-    """Return the row of a task that has ended, in whatever way."""
+def _result(
+    ray: Any, file: ScenarioFile, number: int, reference: Any  # noqa: ANN401
+) -> tuple[dict[str, Any], int]:
+    """Return the row of a task that has ended, in whatever way, and its number of attempts."""
     from ray.exceptions import RayError, RayTaskError
 
+    attempts = 1
     try:
-        row: dict[str, Any] = ray.get(reference)
+        row, attempts = ray.get(reference)
     except RayTaskError as error:  # as where this library is not installed
         reason = f'the worker could not make the run: {str(error).strip().splitlines()[-1]}'
     except RayError:
-        reason = f'the worker ended in each of {ATTEMPTS} attempts'
+        attempts, reason = ATTEMPTS, f'the worker ended in each of {ATTEMPTS} attempts'
     else:
-        return row
-    return {**empty_row(file, file.parameters.run(number)), 'reason': one_line(reason)}
+        return row, attempts
+    return {**empty_row(file, file.parameters.run(number)), 'reason': one_line(reason)}, attempts
 
 
 @contextlib.contextmanager
@@ -188,13 +179,11 @@ def _silent() -> Iterator[None]:
 
 def _ray() -> Any:  # noqa: ANN401  the module
     try:
-        ray = importlib.import_module('ray')
-        importlib.import_module('ray.util.scheduling_strategies')
+        return importlib.import_module('ray')
     except ImportError:
         raise ClusterError("the Python package ray is not installed; ./rosbots setup or "
                            "pip install '.[ray]' installs it, and with 0 workers the runs are made "
                            'in one process without it') from None
-    return ray
 
 
 @contextlib.contextmanager

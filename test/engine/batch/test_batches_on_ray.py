@@ -24,14 +24,12 @@ PATIENCE = 60.0  # [s, wall] for what takes a few, on a busy machine
 MORTAL = """
 import os, signal
 from pathlib import Path
-from time import sleep
 
 def make(run):
     mark = Path(__file__).with_name(f'{{run.number}} ended')
     def act(time, readings):
         if time > 0.4 and (run.number in {always} or run.number in {once} and not mark.exists()):
             mark.touch()
-            sleep(0.5)  # in which the start of the run is counted
             for victim in {victims}:
                 os.kill(victim, signal.SIGKILL)
     return act
@@ -67,7 +65,7 @@ def test_lost_workers_lose_no_run_but_those_that_always_end_them(tmp_path, capfd
     rows = made.table.to_pylist()
     assert made.outcomes == {'passed': 9, 'failed': 10, 'error': 1}
     assert rows[12]['reason'] == f'the worker ended in each of {cluster.ATTEMPTS} attempts'
-    assert 3 <= made.repeated <= 2 + cluster.ATTEMPTS - 1  # an attempt may end before it begins
+    assert made.repeated == 2 + cluster.ATTEMPTS - 1
     assert rows[:12] + rows[13:] == expected[:12] + expected[13:]
     assert addresses
     assert all(address.endswith(LOOPBACK) for address in addresses)
