@@ -3,8 +3,8 @@
 A run needs no ROS. Ray, which only `run` imports, spreads runs over processes and machines.
 """
 
-from .cluster import ClusterError
 from .conditions import Condition
+from .local_ray import ClusterError
 from .parameters import Parameters, Run
 from .policy import Commands, Policy, PolicyError, commands_of, load_policy
 from .records import JointReading, Statistics, check_vectors, value_at

@@ -5,19 +5,15 @@ Ray decides where a run is made, and repeats it elsewhere when its worker or mac
 
 import contextlib
 import importlib
-import os
-import secrets
-import shutil
 import signal
 import socket
-import tempfile
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ..sim import SimError
 from ..sim.core import one_line
+from .local_ray import ClusterError, own_folder, private_environment
 from .scenario import ScenarioFile
 from .simulation import empty_row, simulate
 
@@ -26,15 +22,6 @@ MAX_PENDING = 2000  # runs that Ray knows of; a few for each of a thousand proce
 WAIT = 0.2  # longest wait for further rows before those that are there are taken [s, wall]
 CONNECT_TIMEOUT = 10.0  # [s, wall]
 STORE_BYTES = 100_000_000  # of the shared memory for objects; rows do not need it
-_MAX_PLACE = 30  # characters of a folder in which Ray's sockets have names that Linux takes
-# For Ray on this machine alone: only the loopback interface (the switch is named after the systems
-# where it is off by default), only processes that have the token, and no statistics sent.
-_PRIVATE = {'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0', 'RAY_AUTH_MODE': 'token',
-            'RAY_USAGE_STATS_ENABLED': '0'}
-
-
-class ClusterError(SimError):
-    """Ray is not installed, cannot be started or cannot be reached."""
 
 
 def rows(
@@ -78,7 +65,7 @@ def _require_worker(ray: Any) -> None:  # noqa: ANN401
         ray.get(ray.remote(num_cpus=0, max_retries=ATTEMPTS - 1)(_attempt).remote())
     except RayError as error:
         raise ClusterError('the workers of the Ray cluster cannot make runs: '
-                           f'{str(error).strip().splitlines()[-1]}') from None
+                           f'{_lines(error)[-1]}') from None
 
 
 def _simulate(file: ScenarioFile, number: int) -> tuple[dict[str, Any], int]:
@@ -104,7 +91,7 @@ def _result(
     try:
         row, attempts = ray.get(reference)
     except RayTaskError as error:  # as where this library is not installed
-        reason = f'the worker could not make the run: {str(error).strip().splitlines()[-1]}'
+        reason = f'the worker could not make the run: {_lines(error)[-1]}'
     except RayError:
         attempts, reason = ATTEMPTS, f'the worker ended in each of {ATTEMPTS} attempts'
     else:
@@ -125,7 +112,7 @@ def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
         with _session(ray, address=address, runtime_env={'py_modules': [library]}):
             yield ray
         return
-    with _place() as place, private_environment(), _session(
+    with own_folder() as place, private_environment(), _session(
             ray, num_cpus=workers, include_dashboard=False, _temp_dir=place,
             object_store_memory=STORE_BYTES, address='local'):
         yield ray
@@ -156,7 +143,7 @@ def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
         ray.shutdown()
         where = arguments['address']
         what = 'Ray cannot be started' if where == 'local' else f"no Ray cluster at '{where}'"
-        raise ClusterError(f'{what}: {str(error).strip().splitlines()[0]}') from None
+        raise ClusterError(f'{what}: {_lines(error)[0]}') from None
     try:
         with _silent():
             yield
@@ -186,46 +173,6 @@ def _ray() -> Any:  # noqa: ANN401  the module
                            'in one process without it') from None
 
 
-@contextlib.contextmanager
-def private_environment() -> Iterator[None]:
-    """Set the environment of a Ray that is started here; Ray may have been imported before."""
-    values = {**_PRIVATE, 'RAY_AUTH_TOKEN': secrets.token_hex(32)}
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    _read_environment()
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
-        _read_environment()
-
-
-def _read_environment() -> None:
-    """Let Ray read the environment again, as its own tests do."""
-    from ray import _raylet
-    from ray._private import ray_constants
-
-    ray_constants.ENABLE_RAY_CLUSTER = ray_constants.env_bool(
-        ray_constants.ENABLE_RAY_CLUSTERS_ENV_VAR, True)
-    inner: Any = _raylet  # compiled, without types
-    inner.Config.initialize('')
-    inner.AuthenticationTokenLoader.instance().reset_cache()
-
-
-@contextlib.contextmanager
-def _place() -> Iterator[str]:
-    """Yield a folder for Ray's files; remove it, and end the processes that still use it."""
-    parent = tempfile.gettempdir()
-    made = tempfile.mkdtemp(prefix='rb', dir=parent if len(parent) <= _MAX_PLACE else '/tmp')
-    try:
-        yield made
-    finally:
-        for process in Path('/proc').glob('[0-9]*'):  # Ray leaves some where it could not start
-            with contextlib.suppress(OSError):
-                if made.encode() in (process / 'cmdline').read_bytes():
-                    os.kill(int(process.name), signal.SIGKILL)
-        shutil.rmtree(made, ignore_errors=True)
+def _lines(error: Exception) -> list[str]:
+    """Return the lines of an exception's text, or its type if it has none."""
+    return str(error).strip().splitlines() or [type(error).__name__]

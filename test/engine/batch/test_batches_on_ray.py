@@ -14,7 +14,7 @@ import yaml
 from pyarrow import parquet
 from support.batches import pushed_ball
 
-from rosbots_description.batch import ClusterError, cluster, run
+from rosbots_description.batch import ClusterError, cluster, local_ray, run
 from rosbots_description.cli.launched import descendants
 
 pytest.importorskip('ray')
@@ -88,7 +88,7 @@ def listening(processes):
 
 def test_a_lost_machine_of_several_loses_no_run(tmp_path, monkeypatch):
     expected = run(scenario(tmp_path), workers=0).table
-    with tempfile.TemporaryDirectory(prefix='rb') as place, cluster.private_environment():
+    with tempfile.TemporaryDirectory(prefix='rb') as place, local_ray.private_environment():
         Path(place, 'ray').mkdir()  # for what Cluster writes
         monkeypatch.setenv('RAY_TMPDIR', place)
         monkeypatch.setenv('RAY_health_check_period_ms', '500')  # by default it takes 15 s

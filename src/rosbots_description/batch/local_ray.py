@@ -1,0 +1,97 @@
+"""Folder and environment of a Ray that is started on this machine for one batch."""
+
+import contextlib
+import fcntl
+import os
+import secrets
+import shutil
+import signal
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any
+
+from ..sim import SimError
+
+_PREFIX, _LOCK = 'rb', 'rosbots.lock'  # of the folder of a Ray that is started here
+_MAX_PLACE = 30  # characters of a folder in which Ray's sockets have names that Linux takes
+# For Ray on this machine alone: only the loopback interface (the switch is named after the systems
+# where it is off by default), only processes that have the token, and no statistics sent.
+_PRIVATE = {'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0', 'RAY_AUTH_MODE': 'token',
+            'RAY_USAGE_STATS_ENABLED': '0'}
+
+
+class ClusterError(SimError):
+    """Ray is not installed, cannot be started or cannot be reached."""
+
+
+@contextlib.contextmanager
+def private_environment() -> Iterator[None]:
+    """Set the environment of a Ray that is started here; Ray may have been imported before."""
+    values = {**_PRIVATE, 'RAY_AUTH_TOKEN': secrets.token_hex(32)}
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    _read_environment()
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+        _read_environment()
+
+
+def _read_environment() -> None:
+    """Let Ray read the environment again, as its own tests do."""
+    from ray import _raylet
+    from ray._private import ray_constants
+
+    ray_constants.ENABLE_RAY_CLUSTER = ray_constants.env_bool(
+        ray_constants.ENABLE_RAY_CLUSTERS_ENV_VAR, True)
+    inner: Any = _raylet  # compiled, without types
+    inner.Config.initialize('')
+    inner.AuthenticationTokenLoader.instance().reset_cache()
+
+
+@contextlib.contextmanager
+def own_folder() -> Iterator[str]:
+    """Yield a folder for Ray's files; remove it, and those of programs that were killed.
+
+    Raises:
+        ClusterError: it cannot be made, as on a full disk.
+    """
+    try:
+        made, lock = _locked_folder()
+    except OSError as error:
+        raise ClusterError(f'Ray needs a folder for its files: {error}') from None
+    try:
+        with lock:
+            yield str(made)
+    finally:
+        _remove(made)
+
+
+def _locked_folder() -> tuple[Path, IO[str]]:
+    """Return a new folder, and the file in it that is locked as long as its program lives."""
+    place = tempfile.gettempdir()
+    place = place if len(place) <= _MAX_PLACE else '/tmp'
+    for path in Path(place).glob(f'{_PREFIX}*/{_LOCK}'):
+        with contextlib.suppress(OSError), path.open() as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _remove(path.parent)
+    made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=place))
+    lock = (made / 'new').open('w')
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    (made / 'new').rename(made / _LOCK)
+    return made, lock
+
+
+def _remove(folder: Path) -> None:
+    """Remove a folder of Ray, and end the processes that still use it."""
+    for process in Path('/proc').glob('[0-9]*'):  # Ray leaves some where it could not start
+        with contextlib.suppress(OSError):
+            if bytes(folder) in (process / 'cmdline').read_bytes():
+                os.kill(int(process.name), signal.SIGKILL)
+    shutil.rmtree(folder, ignore_errors=True)

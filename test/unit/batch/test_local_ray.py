@@ -1,0 +1,40 @@
+"""The folder of a Ray of one's own: whose it is, and that none stays behind."""
+
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from rosbots_description.batch import ClusterError, local_ray
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """Return the folder in which temporary folders are made."""
+    monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path))
+    monkeypatch.setattr(local_ray, '_MAX_PLACE', 1000)
+    return tmp_path
+
+
+def test_folders_of_killed_programs_are_removed_with_their_processes_and_no_others(place):
+    abandoned, foreign = place / 'rb_abandoned', place / 'rb_foreign'
+    for folder in (abandoned, foreign):
+        folder.mkdir()
+    (abandoned / 'rosbots.lock').touch()
+    with subprocess.Popen([sys.executable, '-c', 'input()', f'{abandoned}/socket'],
+                          stdin=subprocess.PIPE) as left, local_ray.own_folder() as living:
+        assert left.wait(timeout=30.0) == -signal.SIGKILL
+        with local_ray.own_folder() as other:
+            assert set(place.iterdir()) == {Path(living), Path(other), foreign}
+        assert set(place.iterdir()) == {Path(living), foreign}
+    assert list(place.iterdir()) == [foreign]
+
+
+def test_a_folder_that_cannot_be_made_is_named(place):
+    place.rmdir()
+    with pytest.raises(ClusterError, match=f'Ray needs a folder for its files: .*{place}'), \
+            local_ray.own_folder():
+        pass
