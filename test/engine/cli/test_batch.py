@@ -1,5 +1,7 @@
 """The command line of ./rosbots batch: what it prints, and its exit codes."""
 
+import io
+
 import pytest
 import yaml
 from support.batches import pushed_ball
@@ -20,6 +22,15 @@ def test_all_passed(write, tmp_path, capsys):
     assert batch.main(write(conditions=['x_end >= 0'])) == 0
     assert capsys.readouterr() == (
         f'2 runs: 2 passed, 0 failed, 0 with an error\nrows: {tmp_path}/out/rows.parquet\n', '')
+
+
+def test_progress_is_shown_on_a_terminal(write, monkeypatch):
+    terminal = io.StringIO()
+    terminal.isatty = lambda: True
+    monkeypatch.setattr('sys.stderr', terminal)
+    monkeypatch.setenv('TERM', 'xterm')
+    assert batch.main(write(conditions=[])) == 0
+    assert '2/2' in terminal.getvalue()
 
 
 def test_reasons_are_printed_the_most_frequent_first(write, capsys):
