@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from ..sim.sensors import Sensor
 from .placement import Range, move_freely
 
 Colour = tuple[float, float, float, float]
+
+_FACTORS = 'mass', 'friction', 'light', 'noise'
 
 
 @dataclass(frozen=True)
@@ -35,16 +37,21 @@ class Randomisation:
     obstacles: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in (one.name for one in fields(self)):
-            value = getattr(self, name)
-            if name in ('pose', 'obstacles'):
-                shifts = list(value.values() if name == 'obstacles' else value)
-                if not all(0.0 <= shift < math.inf for shift in shifts):
-                    raise ValueError(f'randomisation of {name} is {value}; shifts are finite '
-                                     'numbers of at least 0')
-            elif value is not None and not 0.0 < value[0] <= value[1] < math.inf:
-                raise ValueError(f'randomisation of {name} is {value}; it is a range of factors, '
-                                 'the least and the greatest, both above 0')
+        for name in _FACTORS:
+            limits = getattr(self, name)
+            if limits is not None and not (
+                    len(found := _numbers(limits)) == 2 and 0.0 < found[0] <= found[1]):
+                self._refuse(name, 'it is a range of factors, the least and the greatest, both '
+                                   'above 0')
+        if not (len(shifts := _numbers(self.pose)) == 3 and min(shifts) >= 0.0):
+            self._refuse('pose', 'it is three shifts, finite numbers of at least 0')
+        if not isinstance(self.obstacles, Mapping) or not all(
+                _numbers([shift]) and shift >= 0.0 for shift in self.obstacles.values()):
+            self._refuse('obstacles', 'it is a dict of shifts by names of models, finite numbers '
+                                      'of at least 0')
+
+    def _refuse(self, name: str, right: str) -> NoReturn:
+        raise ValueError(f'randomisation of {name} is {getattr(self, name)!r}; {right}')
 
     def require(self, world: World, robot: Model) -> None:
         """Raise a `SimError` if the world or the robot lacks what is to differ."""
@@ -58,7 +65,7 @@ class Randomisation:
         """Change the world, which has just been restored; return what was drawn, by name."""
         world.seed = int(random.integers(1 << 63))
         drawn: dict[str, Any] = {
-            name: random.uniform(*limits) for name in ('mass', 'friction', 'light', 'noise')
+            name: random.uniform(*limits) for name in _FACTORS
             if (limits := getattr(self, name)) is not None}
         if 'mass' in drawn:
             robot.scale_mass(drawn['mass'])
@@ -85,6 +92,15 @@ class Randomisation:
             drawn['pose'] = move_freely(
                 world, robot, world.touching(robot), random, xs, ys, yaws)
         return drawn
+
+
+def _numbers(values: Any) -> list[float]:  # noqa: ANN401  what a user gave
+    """Return values as finite numbers; none of them if they are not."""
+    try:
+        numbers = [float(value) for value in values]
+    except (TypeError, ValueError):
+        return []
+    return numbers if all(map(math.isfinite, numbers)) else []
 
 
 def _noisy(robot: Model) -> list[Sensor]:

@@ -83,7 +83,10 @@ def test_noise_of_a_sensor_differs_between_seeds_only():
     ({'mass': (0.0, 1.0)}, ValueError, 'randomisation of mass is (0.0, 1.0)'),
     ({'friction': (2.0, 1.0)}, ValueError, 'range of factors'),
     ({'light': (1.0, float('nan'))}, ValueError, 'range of factors'),
+    ({'mass': 1.5}, ValueError, 'randomisation of mass is 1.5; it is a range of factors'),
     ({'pose': (-1.0, 0.0, 0.0)}, ValueError, 'at least 0'),
+    ({'pose': (1.0, 1.0)}, ValueError, 'randomisation of pose is (1.0, 1.0); it is three shifts'),
+    ({'obstacles': ['barrel']}, ValueError, "is ['barrel']; it is a dict of shifts by names"),
     ({'obstacles': {'piano': 1.0}}, NotFoundError, "no model 'piano'"),
     ({'noise': (1.0, 2.0)}, SimError, 'no sensor'),
 ])
