@@ -77,9 +77,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             SimError: the world or the robot cannot be loaded, or has no such sensor or plugin.
             ValueError: a number is out of range.
         """
-        if render_mode is not None and render_mode not in self.metadata['render_modes']:
-            raise ValueError(f"render_mode is '{render_mode}'; it is one of "
-                             f"{', '.join(self.metadata['render_modes'])}, or None")
+        self._require_mode(render_mode)
         end_with_parent()
         self.render_mode = render_mode
         self._randomise = randomise or Randomisation()
@@ -98,6 +96,12 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self.action_space = self._stage.actions.space
         self.metadata = {**self.metadata, 'render_fps': max(1, round(1.0 / period))}
         self._ready = False
+
+    def _require_mode(self, render_mode: str | None) -> None:
+        modes = self.metadata['render_modes']
+        if render_mode is not None and render_mode not in modes:
+            raise ValueError(f"render_mode is '{render_mode}'; it is one of {', '.join(modes)}, or "
+                             'None')
 
     # What a task defines.
 
