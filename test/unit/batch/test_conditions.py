@@ -42,7 +42,7 @@ def test_what_is_no_condition_is_named(text, said):
 
 
 @pytest.mark.parametrize('text', ['1 / (x_end - 3) > 0', 'x_end < name', 'name.upper.__class__',
-                                  '9 ** 9 ** 9 ** 9 > 1', "x_end.__class__ == 1"])
+                                  '9 ** 9 ** 9 ** 9 > 1', "x_end.__class__ == 1", "name[9] == 'r'"])
 def test_what_cannot_be_computed_is_said(text):
     with pytest.raises(ValueError, match='cannot be computed'):
         Condition(text, ROW).fault(ROW)
