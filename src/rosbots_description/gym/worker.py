@@ -17,6 +17,7 @@ logger = logging.getLogger(__name__)
 
 _MOST_RESTARTS = 5  # in a row, without an answer between
 _DYING = 10.0  # [s, wall] that a process may take to end after its pipe did
+_RESTARTED = {'worker_restarted': True}  # in info
 
 Start = Callable[[], tuple[BaseProcess, Connection]]
 
@@ -40,7 +41,7 @@ class Worker:
         self._mode, self._start = mode, start
         self.process, self._pipe = process, pipe
         self._request: tuple[str, Any] = ('', None)
-        self._begun: tuple[Any, dict[str, Any]] | None = None  # what the next step returns
+        self._steps: list[Any] = []  # what the next steps return, in place of the worker's answers
         self._seed: int | None = None
         self._restarts = 0
         self.fault: WorkerError | None = None  # that nothing could be done about
@@ -56,27 +57,30 @@ class Worker:
 
     def poll(self, timeout: float) -> bool:
         """Return whether there is an answer within a time [s, wall]."""
-        return self._begun is not None or self._pipe.poll(timeout)
+        return self._has_step or self._pipe.poll(timeout)
 
     def send(self, request: tuple[str, Any]) -> None:
         """Send a request; one that does not arrive is answered by `recv`."""
         self._request = request
         name, data = request
         if name == 'reset':
-            self._begun = None
+            self._steps = []
             self._seed = data['seed'] if data['seed'] is not None else self._seed
-        if self._begun is None or name != 'step':
+        if not self._has_step:
             self._pass_on(request)
 
     def recv(self) -> tuple[Any, bool]:
         """Return the answer to the last request, and whether it was fulfilled."""
-        if self._begun is not None and self._request[0] == 'step':
-            (observation, info), self._begun = self._begun, None
-            return (observation, 0.0, False, False, info), True
+        if self._has_step:
+            return self._steps.pop(0), True
         try:
             return self._pipe.recv()
         except (EOFError, ConnectionError):
             return self._replaced()
+
+    @property
+    def _has_step(self) -> bool:
+        return bool(self._steps) and self._request[0] == 'step'
 
     def _replaced(self) -> tuple[Any, bool]:
         """Return the answer of a new worker."""
@@ -93,24 +97,29 @@ class Worker:
         return None, False
 
     def _answered(self) -> tuple[Any, bool]:
+        """Return the answer of a worker that was just started, and has no episode yet."""
         name, data = self._request
-        if name not in ('step', 'reset', 'reset-noop'):
-            self._pass_on(self._request)
-            return self._pipe.recv()
         self._pass_on(('reset', data if name == 'reset' else {'seed': self._new_seed()}))
         answer, fulfilled = self._pipe.recv()
         if not fulfilled:
             return None, False
         observation, info = answer
-        told = {'worker_restarted': True}
-        if name != 'step':
-            return (observation, info | told), True
+        if name in ('reset', 'reset-noop'):
+            return (observation, info | _RESTARTED), True
+        self._steps = self._first_steps(observation, info)
+        if name == 'step':
+            return self._steps.pop(0), True
+        self._pass_on(self._request)
+        return self._pipe.recv()
+
+    def _first_steps(self, observation: Any, info: dict[str, Any]) -> list[Any]:  # noqa: ANN401
+        """Return the steps that end the episode of the worker that died, and begin the next one."""
         if self._mode == AutoresetMode.SAME_STEP:
-            return (observation, 0.0, False, True,
-                    {'final_obs': observation, 'final_info': told, **info, **told}), True
-        if self._mode == AutoresetMode.NEXT_STEP:
-            self._begun = observation, info
-        return (observation, 0.0, False, True, told), True
+            return [(observation, 0.0, False, True, {
+                'final_obs': observation, 'final_info': _RESTARTED, **info, **_RESTARTED})]
+        end = (observation, 0.0, False, True, _RESTARTED)
+        return [end, (observation, 0.0, False, False, info)] \
+            if self._mode == AutoresetMode.NEXT_STEP else [end]
 
     def _pass_on(self, request: tuple[str, Any]) -> None:
         with contextlib.suppress(ConnectionError):  # recv answers

@@ -138,6 +138,9 @@ def test_worker_killed_between_two_steps_repeats_with_the_seed():
             seen.append(observations['odometry'].tobytes())
         found.append(seen)
         os.kill(envs.processes[0].pid, signal.SIGKILL)
+        assert envs.get_attr('step_count') == (0, 2)  # the episode of the new process has begun
+        assert envs.step(np.zeros((2, 2)))[3].tolist() == [True, False]
+        os.kill(envs.processes[0].pid, signal.SIGKILL)
         assert envs.reset(seed=4)[1]['worker_restarted'].tolist() == [True, False]
         envs.close()
     assert found[0] == found[1]
