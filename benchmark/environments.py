@@ -4,6 +4,7 @@
     goal     rosbots/GoToGoal-v0: the article's robot in a room, with a scan of 361 rays
     reset    the same; only its resets, and each counts as a step
     vector   `PER_CORE` of them for each core, by gymnasium.make_vec; a step of all is one
+    core     `PER_CORE` of them in the same way, all on one core, with their parent
     step     the same task over ROS, by scripts/ros_environment.py and /gazebo/step; without its
              contact sensor, which would take two thirds of the time
     pause    the same between unpause_physics and pause_physics
@@ -83,8 +84,10 @@ def reset() -> Iterator[Steps]:
 
 
 @contextlib.contextmanager
-def vector() -> Iterator[Steps]:
+def vector(one_core: bool) -> Iterator[Steps]:
     """Yield the step function of environments in parallel, each in its process."""
+    if one_core:
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     with contextlib.closing(gymnasium.make_vec(TASK, PER_CORE * cores())) as environments:
         seen, _ = environments.reset(seed=0)
 
@@ -142,7 +145,8 @@ def main() -> int:
     """Measure windows until the input ends; return the exit code."""
     logging.disable(logging.WARNING)
     kind = sys.argv[1]
-    loops = {'goal': goal, 'reset': reset, 'vector': vector, 'r2d2': r2d2,
+    loops = {'goal': goal, 'reset': reset, 'r2d2': r2d2,
+             'vector': lambda: vector(one_core=False), 'core': lambda: vector(one_core=True),
              'step': lambda: ros(exact=True), 'pause': lambda: ros(exact=False)}
     with loops[kind]() as step:
         answer(step)

@@ -126,11 +126,11 @@ def _memory(observations: Any) -> Any:  # noqa: ANN401  arrays in dicts
 def _cores(count: int) -> list[set[int]]:
     """Return the cores that each of `count` workers may use.
 
-    With several workers per core each keeps to one core: the others cost it a tenth of its speed
-    when it moves and finds its data in none of the caches.
+    With several workers per core, and as many on each, each keeps to its core: a worker that moves
+    finds its data in no cache, which costs a tenth of the speed.
     """
     cores = sorted(os.sched_getaffinity(0))
-    if count < 2 * len(cores):
+    if count < 2 * len(cores) or count % len(cores):
         return [set(cores)] * count
     return [{cores[index % len(cores)]} for index in range(count)]
 

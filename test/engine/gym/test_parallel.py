@@ -73,7 +73,7 @@ def test_make_vec_gives_the_bits_of_single_environments_in_processes():
     assert not any(is_running(process.pid) for process in envs.processes)
 
 
-def test_several_workers_per_core_keep_to_one_core_each_and_few_to_none():
+def test_as_many_workers_for_each_core_keep_to_one_core_and_others_to_none():
     cores = sorted(os.sched_getaffinity(0))
 
     def allowed(count):
@@ -84,6 +84,7 @@ def test_several_workers_per_core_keep_to_one_core_each_and_few_to_none():
 
     assert allowed(2 * len(cores)) == 2 * [{core} for core in cores]
     assert allowed(1) == [set(cores)]
+    assert allowed(2 * len(cores) + 1)[0] == set(cores)
     assert os.sched_getaffinity(0) == set(cores)
 
 
