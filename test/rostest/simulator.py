@@ -1,6 +1,8 @@
 """Shared code of tests of the running simulator: services, and waiting for conditions."""
 
+import contextlib
 import subprocess
+import sys
 import time
 import unittest
 
@@ -64,6 +66,16 @@ def spawn_model(name, text):
 
 class SimulatorTest(unittest.TestCase):
     """Starts each test with an empty world, unpaused."""
+
+    @contextlib.contextmanager
+    def subTest(self, *name, **parameters):
+        """As in unittest, and print what fails: rosunit tells only that one of them did."""
+        with super().subTest(*name, **parameters):
+            try:
+                yield
+            except AssertionError as error:
+                print(f'{self.id()} {name or parameters}: {error}', file=sys.__stderr__)
+                raise
 
     def setUp(self):
         self.spawn_service = proxy('spawn_urdf_model', SpawnModel)

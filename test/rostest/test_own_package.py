@@ -43,7 +43,7 @@ ROOT=$PWD
 source tools/setup.bash
 find_workspace
 mkdir -p "$WORKSPACE/devel"
-touch "$WORKSPACE/devel/setup.bash"
+touch -d @0 "$WORKSPACE/devel/setup.bash"  # CMake replaces no file of the same second
 ln -s "{readme.ROOT}/.ws/venv" "$WORKSPACE/venv"
 link_packages
 for part in packages python workspace; do mark_done $part "$(${{part}}_fingerprint)"; done
