@@ -68,7 +68,7 @@ class SimulatorTest(unittest.TestCase):
     """Starts each test with an empty world, unpaused."""
 
     @contextlib.contextmanager
-    def subTest(self, *name, **parameters):
+    def subTest(self, *name, **parameters):  # noqa: N802 (unittest's name)
         """As in unittest, and print what fails: rosunit tells only that one of them did."""
         with super().subTest(*name, **parameters):
             try:

@@ -42,6 +42,7 @@ FASTEST = 0.6  # [m/s] bound of the neighbour's speed
 TURNS = 0.15  # [rad/s] least yaw rate; half the command
 HEIGHT, SINKS = -0.12, 0.02  # [m] height of its origin at rest, and tolerance
 AFTERWARDS = 5  # odometry messages, every 10 ms of simulated time
+STEADY = 50  # odometry messages after which the neighbour counts as driving
 AWAY = (30.0, 30.0, 0.5)  # [m] spawn position, away from the neighbour
 HUGE = (math.nan, math.inf, -math.inf, 1e308)
 ODD_NAMES = ('a/b', '/a', 'a b', 'ünï', '🤖', "a'b\"c", '<a>', '%s{}', '::', '$(a)', '~', '..')
@@ -90,7 +91,10 @@ class HostileTest(SimulatorTest):
 
     def _is_driving(self):
         self._drive(FORWARD, TURN)  # repeated: the first may reach a deleted robot
-        return self.model_state('neighbour', '').twist.angular.z > 0.9 * TURN  # beyond its ramp
+        # Beyond its ramp, and beyond the swing after its drop to the ground.
+        latest = list(self._odometry)[-STEADY:]
+        return len(latest) == STEADY and all(
+            reading.twist.twist.angular.z > 0.9 * TURN for reading in latest)
 
     def _memory(self):
         """Return the resident memory of the server [bytes]."""
