@@ -80,7 +80,8 @@ def _locked_folder() -> tuple[Path, IO[str]]:
     for path in Path(place).glob(f'{_PREFIX}*/{_LOCK}'):
         with contextlib.suppress(OSError), path.open() as lock:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            _remove(path.parent)
+            if path.parent.stat().st_uid == os.getuid():
+                _remove(path.parent)
     made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=place))
     lock = (made / 'new').open('w')
     fcntl.flock(lock, fcntl.LOCK_EX)
