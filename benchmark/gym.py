@@ -24,7 +24,7 @@ KINDS = ('goal', 'reset', 'vector', 'core', 'step', 'pause', 'r2d2')
 PERIOD = 0.1  # [s, simulated] of a control step
 RESET = 2.0  # [ms] at most
 FASTER = 20.0  # least ratio to the task over ROS with pause and unpause, and to real time
-LINEAR = 0.9  # least share of the speed of one process times the cores
+LINEAR = 0.9  # least share of the speed of one process, or on one core, times the cores
 ROOM = ('gazebo_ros', 'empty_world.launch', 'gui:=false', 'world_name:=worlds/room.world')
 
 
