@@ -1,6 +1,6 @@
 """Draws the view of cameras of a scene."""
 
-from typing import Any
+from typing import Any, cast
 
 import moderngl
 import numpy as np
@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from .cameras import camera_view, matrices, projection
 from .drawable import Drawable, Frame, PlacedPrograms, gl_matrix
 from .render_target import RenderTarget
-from .shaders import ShaderVariant, surface_shaders
+from .shaders import ShaderVariant, light_block, surface_shaders
 from .shadows import Shadows, Sweeps, uniform
 from .values import DIRECTIONAL, Lens, Scene
 
 SAMPLES = 4  # per pixel, for antialiasing
 MAX_SMOOTHED = 4_000_000  # pixels of a picture; larger ones have no antialiasing
 MAX_LIGHTS = 8
+_LIGHTS = 0  # binding point of the block of lights
 _DULL = 0.5 / 255.0  # specular light that cannot be seen
 
 
@@ -30,6 +31,7 @@ class Renderer:
         self._targets: dict[tuple[int, int, str], RenderTarget] = {}
         self._placed = PlacedPrograms(context)
         self._shadows: Shadows | None = None
+        self._light_block = context.buffer(light_block(()))
         self._drawables: list[Drawable] = []
         self._programs: dict[ShaderVariant, moderngl.Program] = {}
         self._program_key: tuple[object, ...] = ()  # of the lights for which they were written
@@ -54,6 +56,8 @@ class Renderer:
         """Set the scene; meshes and images that it does not use are freed."""
         self._scene = scene
         self._lights = scene.lights[:MAX_LIGHTS]
+        self._light_block.release()
+        self._light_block = self._context.buffer(light_block(self._lights))
         casting = [number for number, light in enumerate(self._lights)
                    if light.type == DIRECTIONAL and light.casts_shadow]
         self._sun = casting[0] if scene.shadows and casting else None
@@ -85,6 +89,8 @@ class Renderer:
             types = [light.type for light in self._lights]
             program = self._programs[variant] = self._context.program(
                 *surface_shaders(types, self._sun, variant))
+            if 'Lights' in program:
+                cast(moderngl.UniformBlock, program['Lights']).binding = _LIGHTS
         if variant not in frame.prepared:
             frame.prepared.add(variant)
             self._set_frame(program, frame)
@@ -126,6 +132,7 @@ class Renderer:
         target = self._target(lens, 'colour', samples)
         target.use()
         self._context.clear(*self._scene.background, 1.0, depth=1.0)
+        self._light_block.bind_to_uniform_block(_LIGHTS)
         self._draw_surfaces(frame)
         return target.read()
 
@@ -163,15 +170,6 @@ class Renderer:
         uniform(program, 'view').write(gl_matrix(frame.view))
         _set(program, 'eye', tuple(frame.eye[:3, 3]))
         _set(program, 'scene_ambient', self._scene.ambient)
-        lights = self._lights
-        if lights:
-            _set(program, 'light_position', [light.position for light in lights])
-            _set(program, 'light_direction', [light.direction for light in lights])
-            _set(program, 'light_diffuse', [light.diffuse for light in lights])
-            _set(program, 'light_specular', [light.specular for light in lights])
-            _set(program, 'light_attenuation',
-                 [(*light.attenuation, light.range) for light in lights])
-            _set(program, 'light_spot', [light.spot for light in lights])
         if self._shadows is not None:
             self._shadows.use(program)
 

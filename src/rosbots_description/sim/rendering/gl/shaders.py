@@ -8,14 +8,32 @@ The contribution of a light is attenuated by distance and, for the sun, by shado
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .values import DIRECTIONAL, POINT, SPOT
+import numpy as np
+
+from .values import DIRECTIONAL, POINT, SPOT, Light
+
+# All lights in one block of std140 layout. Its size is fixed, whereas compilers shorten arrays of
+# uniforms to the elements that a shader reads, which differ by the types of the lights.
+_LIGHT_BLOCK = """
+struct Light {
+    vec4 position;
+    vec4 direction;
+    vec4 diffuse;
+    vec4 specular;
+    vec4 attenuation;  // constant, linear, quadratic; range
+    vec4 spot;         // cosine of inner and outer half cone; falloff
+};
+layout(std140) uniform Lights {
+    Light lights[LIGHTS];
+};
+"""
 
 _SURFACE_VERTEX = """
 #version 330
 uniform mat4 placement;
 uniform mat3 normal_placement;
 uniform mat4 view;
-uniform vec3 light_direction[LIGHTS];
+LIGHT_BLOCK
 uniform mat4 still_view;
 uniform float still_texel;              // its width in the world
 uniform mat4 moving_view;
@@ -32,7 +50,7 @@ out vec3 moving_point;
 vec3 map_point(mat4 map_view, float texel) {
     // Off the surface, the more so the more it is slanted, or it would be in its own shadow.
     vec3 turned = world_normal / max(length(world_normal), 1e-9);
-    float slant = 1.0 + dot(turned, light_direction[SUN]);
+    float slant = 1.0 + dot(turned, lights[SUN].direction.xyz);
     return 0.5 * (map_view * vec4(world + turned * texel * (0.7 + 2.0 * slant), 1.0)).xyz + 0.5;
 }
 
@@ -55,12 +73,7 @@ uniform vec4 diffuse;       // with alpha
 uniform vec4 specular;      // with shininess
 uniform vec3 emissive;
 uniform float lit;          // 1, or 0 for what shows its diffuse colour whatever the light
-uniform vec3 light_position[LIGHTS];
-uniform vec3 light_direction[LIGHTS];
-uniform vec3 light_diffuse[LIGHTS];
-uniform vec3 light_specular[LIGHTS];
-uniform vec4 light_attenuation[LIGHTS]; // constant, linear, quadratic; range
-uniform vec3 light_spot[LIGHTS];        // cosine of inner and outer half cone; falloff
+LIGHT_BLOCK
 uniform sampler2DShadow still_shadows;
 uniform sampler2DShadow moving_shadows;
 uniform sampler2D image;
@@ -93,7 +106,7 @@ float spot_share(float along, vec3 spot) {
 void shine_on(int i, vec3 towards_light, float strength) {
     float facing = dot(normal, towards_light);
     float share = facing > 0.0 ? strength : 0.0;
-    reflected += share * facing * light_diffuse[i] * diffuse.rgb;
+    reflected += share * facing * lights[i].diffuse.rgb * diffuse.rgb;
     GLOSS
 }
 
@@ -112,15 +125,15 @@ void main() {
 # shaders are generated for the lights of the scene.
 _SHINE = {
     DIRECTIONAL: """
-    shine_on({i}, -light_direction[{i}], {sunshine});""",
+    shine_on({i}, -lights[{i}].direction.xyz, {sunshine});""",
     POINT: """{{
-    vec3 way = light_position[{i}] - world;
-    shine_on({i}, normalize(way), strength_at(length(way), light_attenuation[{i}]));
+    vec3 way = lights[{i}].position.xyz - world;
+    shine_on({i}, normalize(way), strength_at(length(way), lights[{i}].attenuation));
     }}""",
     SPOT: """{{
-    vec3 way = light_position[{i}] - world;
-    shine_on({i}, normalize(way), strength_at(length(way), light_attenuation[{i}])
-        * spot_share(-dot(normalize(way), light_direction[{i}]), light_spot[{i}]));
+    vec3 way = lights[{i}].position.xyz - world;
+    shine_on({i}, normalize(way), strength_at(length(way), lights[{i}].attenuation)
+        * spot_share(-dot(normalize(way), lights[{i}].direction.xyz), lights[{i}].spot.xyz));
     }}""",
 }
 
@@ -128,7 +141,7 @@ _SHINE = {
 _GLOSS = """
     float glance = max(dot(normal, normalize(towards_light + towards_eye)), 0.0);
     shine += share * (specular.a > 0.0 ? pow(glance, specular.a) : 1.0)
-        * light_specular[i] * specular.rgb;"""
+        * lights[i].specular.rgb * specular.rgb;"""
 
 
 class ShaderVariant(NamedTuple):
@@ -137,6 +150,16 @@ class ShaderVariant(NamedTuple):
     textured: bool
     glossy: bool
     maps: tuple[str, ...]  # shadow maps that are read: 'still', 'moving'
+
+
+def light_block(lights: Sequence[Light]) -> bytes:
+    """Return the contents of the block `Lights`, for at least one light."""
+    rows = [
+        [*light.position, 0.0, *light.direction, 0.0, *light.diffuse, 0.0, *light.specular, 0.0,
+         *light.attenuation, light.range, *light.spot, 0.0]
+        for light in lights
+    ]
+    return np.array(rows or np.zeros((1, 24)), 'f4').tobytes()
 
 
 def surface_shaders(
@@ -152,6 +175,7 @@ def surface_shaders(
     sunshine = ' * '.join(
         f'share_of_light({name}_shadows, {name}_point)' for name in variant.maps) or '1.0'
     words = {
+        'LIGHT_BLOCK': _LIGHT_BLOCK,
         'SHINE': ''.join(
             _SHINE[kind].format(i=i, sunshine=sunshine if i == sun else '1.0')
             for i, kind in enumerate(types)),
