@@ -10,7 +10,7 @@ import re
 import numpy as np
 from lxml import etree
 
-from ..core import ModelError
+from ..core import ModelError, plain_text
 from ..resources import check_xml_bounds
 
 MAX_COLLADA_ELEMENTS = 1_000_000
@@ -48,7 +48,7 @@ def safe_collada(content: bytes) -> bytes:
 
 
 def _in_utf8(content: bytes) -> bytes:
-    """Return the text without its declaration; another encoding could hide a document type."""
+    """Return well-formed UTF-8; another encoding could hide a document type."""
     declared = _XML.match(content)
     encoding = (declared[1] or b'utf-8').decode() if declared else 'utf-8'
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
@@ -57,9 +57,7 @@ def _in_utf8(content: bytes) -> bytes:
         text = content.decode(encoding).removeprefix('\ufeff')
     except (LookupError, UnicodeDecodeError) as error:
         raise ColladaError(f'is broken or no .dae file: {error}') from None
-    document = text.encode(errors='replace')
-    declared = _XML.match(document)
-    return document[declared.end() if declared else 0:].lstrip()
+    return plain_text(text, 'a Collada file').encode(errors='replace').lstrip()
 
 
 def _refuse_unknown_positions(root: etree._Element, document: bytes) -> None:

@@ -37,9 +37,24 @@ def test_comments_keep_their_line_breaks_and_cdata_has_no_comments():
     assert plain_text('<a><![CDATA[<!-- open -->', 's') == '<a><![CDATA[<!-- open -->'
 
 
+@pytest.mark.parametrize(('text', 'plain'), [
+    ('<a id="<STL_BINARY>">t</a>', '<a id="&lt;STL_BINARY>">t</a>'),
+    ("<a\n b='1' c='<\"<'/>", "<a\n b='1' c='&lt;\"&lt;'/>"),
+    ('<a><![CDATA[<b c="<">]]><d e="<"/></a>', '<a><![CDATA[<b c="<">]]><d e="&lt;"/></a>'),
+    # text, an unclosed value and an unclosed tag are left to the parser, which names the line
+    ('<a>"<b>"</a>', '<a>"<b>"</a>'),
+    ('<a b="1>\n<c d="2">', '<a b="1>\n<c d="2">'),
+    ('<a <b c="<', '<a <b c="<'),
+])
+def test_markup_in_an_attribute_is_escaped(text, plain):
+    assert plain_text(text, 's') == plain
+
+
 def test_many_unclosed_comments_take_linear_time():
     text = '<!--' * 1_000_000 + '<![CDATA[' * 100_000
     assert plain_text(text, 's') == text
+    for text in ('<a b="' * 1_000_000, '<a b=\'"' * 1_000_000):
+        assert len(plain_text(text, 's')) >= len(text)
 
 
 def test_output_of_xacro_remains_recognisable():

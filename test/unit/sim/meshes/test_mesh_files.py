@@ -100,6 +100,11 @@ def test_unit_and_node_transform_of_a_collada_file_are_applied(write):
     np.testing.assert_allclose(corners(path), [[0.1, 0.2, 0.3], [0.12, 0.2, 0.3], [0.1, 0.21, 0.3]])
 
 
+def test_identifiers_with_markup_are_accepted_as_in_gazebo(write):
+    strange = collada().replace('"g"', '"<STL_BINARY>"').replace('#g"', '#<STL_BINARY>"')
+    assert corners(write('strange.dae', strange)) == corners(write('plain.dae', collada()))
+
+
 def test_mirroring_node_keeps_faces_outward(write):
     path = write('m.dae', collada(matrix='-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1'))
     a, b, c = np.array(corners(path))
