@@ -134,26 +134,34 @@ def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
     if ray.is_initialized():
         yield
         return
+    with _silent():
+        try:
+            _connect(ray, **arguments)
+            yield
+        finally:
+            ray.shutdown()
+
+
+def _connect(ray: Any, **arguments: Any) -> None:  # noqa: ANN401
+    """Connect without Ray's logging and signal handler."""
     before = signal.getsignal(signal.SIGTERM) or signal.SIG_DFL
     try:
         ray.init(log_to_driver=False, configure_logging=False, logging_level='error', **arguments)
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, before)  # Ray's prints a trace
     except Exception as error:  # Ray raises many kinds
-        ray.shutdown()
         where = arguments['address']
         what = 'Ray cannot be started' if where == 'local' else f"no Ray cluster at '{where}'"
         raise ClusterError(f'{what}: {_lines(error)[0]}') from None
-    try:
-        with _silent():
-            yield
-    finally:
-        ray.shutdown()
 
 
 @contextlib.contextmanager
 def _silent() -> Iterator[None]:
-    """Keep what Ray says of lost workers, even without `log_to_driver`, from the console."""
+    """Keep Ray's messages about lost workers off the console.
+
+    Ray prints them even without `log_to_driver`, in a thread that runs from `init` until the end of
+    `shutdown`, so both have to be inside.
+    """
     from ray._private import worker
 
     say = worker.print_to_stdstream

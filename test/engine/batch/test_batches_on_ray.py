@@ -72,6 +72,23 @@ def test_lost_workers_lose_no_run_but_those_that_always_end_them(tmp_path, capfd
     assert capfd.readouterr() == ('', '')
 
 
+def test_messages_of_ray_stay_off_the_console_from_connecting_to_the_end(monkeypatch, capfd):
+    import ray
+    from ray._private import worker
+
+    def report(*_arguments, **_options):
+        worker.print_to_stdstream(
+            {'lines': ['a worker died'], 'pid': 'raylet', 'is_err': False}, ignore_prefix=False)
+
+    monkeypatch.setattr(ray, 'init', report)
+    monkeypatch.setattr(ray, 'shutdown', report)
+    with cluster._session(ray, address='local'):
+        report()
+    assert capfd.readouterr() == ('', '')
+    report()
+    assert 'a worker died' in capfd.readouterr().out
+
+
 def listening(processes):
     """Return the addresses at which processes listen, in hexadecimal."""
     addresses, sockets = {}, set()
