@@ -1,7 +1,5 @@
 """Names, types and MD5 sums of services and topics, as in gazebo_ros 2.9.2."""
 
-import time
-
 import rosgraph
 import rospy
 import rosservice
@@ -87,13 +85,3 @@ def type_and_sum(service):
     uri = rosgraph.Master(rospy.get_name()).lookupService(name)
     header = rosservice.get_service_headers(name, uri)
     return header['type'], header['md5sum']
-
-
-def longest(calls):
-    """Return the longest wall time that one of the calls takes [s]."""
-    times = []
-    for call in calls:
-        start = time.monotonic()
-        call()
-        times.append(time.monotonic() - start)
-    return max(times)

@@ -14,7 +14,6 @@ from network import (
     PUBLISHED,
     SERVICES,
     SUBSCRIBED,
-    longest,
     services_of,
     type_and_sum,
 )
@@ -23,8 +22,8 @@ from sensor_msgs.msg import LaserScan
 from simulator import SimulatorTest, proxy, topics_of, wait_until
 
 METRICS = '/gazebo/performance_metrics'
-MANY_STEPS = 20000  # with the robot, far longer than a moment
-WAIT = 0.25  # [s, wall] permitted delay of other calls, on a busy machine
+MANY_STEPS = 10 * 1000 * 1000  # with the robot, hours
+CALLS = 10  # of another service meanwhile
 
 
 RAY = ('<sensor name="{name}" type="ray"><update_rate>40</update_rate><ray><range><max>9</max>'
@@ -81,7 +80,7 @@ class NetworkTest(SimulatorTest):
         metrics.clear()
         wait_until(lambda: len(metrics) > 3 and metrics[-1].real_time_factor == 0.0, 'a stop')
 
-    def test_step_advances_paused_time_and_serves_other_calls(self):
+    def test_step_advances_paused_time_and_serves_other_calls_until_unpaused(self):
         step = proxy('step', Step)
         response = step(10)
         self.assertFalse(response.success)
@@ -94,28 +93,19 @@ class NetworkTest(SimulatorTest):
             self.assertTrue(response.success)
         self.assertAlmostEqual(response.sim_time, before + 1.0, places=9)
         self.assertEqual(self.world().sim_time, response.sim_time)
-        stepping = Thread(target=step, args=(MANY_STEPS,))
+        responses = []
+        stepping = Thread(target=lambda: responses.append(step(MANY_STEPS)))
         stepping.start()
         wait_until(lambda: self.world().sim_time > before + 1.0, 'the first of them')
         other = step(1)
         self.assertFalse(other.success)
         self.assertIn('another caller', other.status_message)
-        waits = []
-        while stepping.is_alive():
-            waits.append(longest([self.world]))
-        self.assertGreater(len(waits), 10)
-        self.assertLess(max(waits), WAIT)
-        self.assertAlmostEqual(self.world().sim_time, before + 1.0 + MANY_STEPS / 1000, places=9)
-
-    def test_unpausing_during_steps(self):
-        step, responses = proxy('step', Step), []
-        self.pause()
-        begin = self.world().sim_time
-        stepping = Thread(target=lambda: responses.append(step(10 * 1000 * 1000)))
-        stepping.start()
-        wait_until(lambda: self.world().sim_time > begin, 'the first steps')
+        for _ in range(CALLS):  # that they are answered is the test: the steps take hours
+            reached = self.world().sim_time
+            self.assertLess(reached, before + 1.0 + MANY_STEPS / 1000)
+        wait_until(lambda: self.world().sim_time > reached, 'further steps')
         self.unpause()
-        stepping.join(5.0)
+        stepping.join()
         self.assertFalse(responses[0].success)
         self.assertIn('was unpaused', responses[0].status_message)
 
