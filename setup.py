@@ -1,6 +1,7 @@
 """Install the Python packages: by catkin, here and in the companion that links here, or by pip."""
 
 from glob import glob
+from pathlib import Path
 from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
@@ -11,6 +12,14 @@ MANIFEST = ElementTree.parse('package.xml')  # what catkin knows is said there o
 def told(tag: str) -> str:
     """Return what the manifest says, in one line."""
     return ' '.join(MANIFEST.findtext(tag, '').split())
+
+
+def required(name: str) -> list[str]:
+    """Return the requirements of a set, without those of the sets that it includes."""
+    folder = Path(__file__).resolve().parent / 'requirements'
+    lines = (folder / f'{name}.pip').read_text(encoding='utf-8').splitlines()
+    entries = (line.partition('#')[0].strip() for line in lines)
+    return [entry for entry in entries if entry and not entry.startswith('-r ')]
 
 
 setup(
@@ -27,12 +36,7 @@ setup(
         (f'share/{told("name")}/{folder}', files) for folder in ('', 'meshes', 'urdf')
         if (files := glob(f'{folder}/*') if folder else ['package.xml'])
     ],
-    # Of `sim` alone; what the ROS side needs comes from Debian, as package.xml has it.
-    install_requires=['embreex==4.4.0.post1', 'lxml', 'moderngl==5.12.0', 'numpy',
-                      'pillow', 'pybullet==3.2.7', 'pycollada==0.9.3'],
-    extras_require={'gym': ['PyYAML', 'gymnasium==1.4.0', 'xacro==1.13.3'],
-                    'ray': ['PyYAML', 'msgspec==0.22.0', 'pyarrow==23.0.1', 'ray==2.60.0',
-                            'rich==14.3.4', 'simpleeval==1.0.8'],
-                    'web': ['av==18.1.0', 'rich==14.3.4', 'viser==1.1.1', 'websockets==16.1.1'],
-                    'xacro': ['PyYAML', 'xacro==1.13.3']},
+    # Of `sim` and the command line; what the ROS side needs comes from Debian, as package.xml says.
+    install_requires=required('base'),
+    extras_require={name: required(name) for name in ('batch', 'gym', 'web')},
 )

@@ -12,9 +12,9 @@ from catkin_pkg.changelog import get_changelog_from_path
 ROOT = Path(__file__).resolve().parents[2]
 SIMULATOR = ROOT / 'companions' / 'rosbots_simulator'
 # Where pip installs a module by another name.
-FROM_PYPI = {re.split('[=<>]', line)[0] for line in
-             (ROOT / 'requirements.txt').read_text(encoding='utf-8').splitlines()
-             if not line.startswith('#')} | {'collada'}
+FROM_PYPI = {re.split('[=<>]', line)[0] for path in ROOT.glob('requirements/*.pip')
+             for line in path.read_text(encoding='utf-8').splitlines()
+             if '==' in line} | {'collada'}
 
 
 def manifest(folder: Path) -> ElementTree.Element:

@@ -111,7 +111,7 @@ def test_workspace_over_one_with_the_users_robot_gets_no_second_one(theirs, tmp_
 def test_command_in_the_list_installs_the_optional_packages(tmp_path):
     (tmp_path / 'sudo').write_text('#!/bin/sh\necho "$@"\n')
     (tmp_path / 'sudo').chmod(0o755)
-    text = (ROOT / 'apt-optional.txt').read_text()
+    text = (ROOT / 'requirements' / 'optional.apt').read_text()
     (command,) = re.findall('^# All of them: (.*)', text, re.M)
     shown = subprocess.run(['sh', '-c', command], cwd=ROOT, capture_output=True, text=True,
                            env={'PATH': f'{tmp_path}:/usr/bin:/bin'}, check=True).stdout.split()

@@ -1,5 +1,6 @@
 """pip installs the same packages as ./rosbots."""
 
+import re
 import runpy
 
 import setuptools
@@ -15,12 +16,15 @@ def arguments(monkeypatch, folder):
     return called
 
 
-def test_versions_are_those_of_the_workspace(monkeypatch):
+def test_requirements_are_those_of_the_sets(monkeypatch):
     called = arguments(monkeypatch, ROOT)
-    extras = [one for of_extra in called['extras_require'].values() for one in of_extra]
-    pinned = {one for one in (*called['install_requires'], *extras) if '==' in one}
-    assert pinned
-    assert pinned <= set((ROOT / 'requirements.txt').read_text(encoding='utf-8').splitlines())
+    for name, requirements in {'base': called['install_requires'],
+                               **called['extras_require']}.items():
+        text = (ROOT / 'requirements' / f'{name}.pip').read_text(encoding='utf-8')
+        assert requirements
+        assert len(requirements) == len(re.findall('^[A-Za-z]', text, re.M))
+        assert all(re.search(f'^{re.escape(one)}(  #|$)', text, re.M) for one in requirements)
+    assert {'batch', 'gym', 'web'} == set(called['extras_require'])
 
 
 def test_the_companion_installs_the_same_packages_under_its_own_name(monkeypatch):

@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(own)
     if importlib.util.find_spec('viser') is None:
         return _fail('no window: the Python package viser is not installed; '
-                     './rosbots setup or pip install viser==1.1.1 does that')
+                     './rosbots setup web or pip install viser==1.1.1 does that')
     from ..ros_api.transport import (
         AddressError,
         Registrar,

@@ -17,7 +17,7 @@ def test_without_viser_it_says_how_to_get_it(monkeypatch, capsys):
     said = capsys.readouterr().err
     assert said.startswith('gzweb: no window: the Python package viser is not installed')
     (needed,) = re.findall(r'viser==\S+', said)
-    assert needed in (ROOT / 'requirements.txt').read_text(encoding='utf-8').split()
+    assert needed in (ROOT / 'requirements' / 'web.pip').read_text(encoding='utf-8').split()
 
 
 @pytest.mark.parametrize('arguments', [

@@ -1,0 +1,62 @@
+# The catkin workspace; sourced by tools/setup.bash.
+
+# Paths that neither catkin nor a '#!' line can hold (spaces, umlauts) get a workspace elsewhere.
+find_workspace() {
+  if [[ $ROOT =~ ^[A-Za-z0-9/._+@-]+$ ]]; then
+    WORKSPACE=$ROOT/.ws
+    return
+  fi
+  local cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache}
+  if ! mkdir -p "$cache" 2> /dev/null || [[ ! -w $cache || ! $cache =~ ^[A-Za-z0-9/._+@-]+$ ]]; then
+    cache=/var/tmp/rosbots-$UID
+    mkdir -m 700 "$cache" 2> /dev/null || [[ -O $cache ]] || fail "$cache is somebody else's"
+  fi
+  WORKSPACE=$cache/rosbots-$(sha256sum <<< "$ROOT" | cut -c1-12)
+  mkdir -p "$WORKSPACE"
+  [[ $(readlink "$ROOT/.ws" || true) == "$WORKSPACE" ]] || ln -sfn "$WORKSPACE" "$ROOT/.ws"
+}
+
+# What catkin_make turns into files: build rules, manifests, message definitions, and scripts,
+# by content for the former and by name for the latter (a script's devel copy calls the source).
+workspace_fingerprint() (
+  cd "$ROOT" || exit
+  {
+    echo "$ROOT $WORKSPACE"
+    find . -maxdepth 1 -name CATKIN_IGNORE
+    find . companions -maxdepth 2 \( -path './.*' -prune \) -o \
+      \( -name CMakeLists.txt -o -name package.xml -o -name setup.py \) -print0 |
+      sort -z | xargs -0 sha256sum
+    find companions \( -name '*.msg' -o -name '*.srv' \) -print0 | sort -z | xargs -0 -r sha256sum
+    find scripts companions/*/scripts test/rostest -type f 2> /dev/null | sort
+  } | sha256sum
+)
+
+link_packages() {
+  local package
+  rm -rf "$WORKSPACE/src/rosbots_description"
+  mkdir -p "$WORKSPACE/src"
+  find "$WORKSPACE/src" -maxdepth 1 -type l -delete
+  if [[ -e $ROOT/CATKIN_IGNORE ]]; then  # tools/link.py hides the clone as a whole, not its parts
+    mkdir "$WORKSPACE/src/rosbots_description"
+    find "$ROOT" -mindepth 1 -maxdepth 1 ! -name '.*' ! -name CATKIN_IGNORE \
+      -exec ln -s -t "$WORKSPACE/src/rosbots_description" {} +
+  else
+    ln -s "$ROOT" "$WORKSPACE/src/rosbots_description"
+  fi
+  for package in "$ROOT"/companions/*/; do
+    ln -s "${package%/}" "$WORKSPACE/src/$(basename "$package")"
+  done
+}
+
+# A clean environment, so that a workspace the caller has sourced is not built into ours, and
+# Debian's tools before those of pyenv and the like.
+build_workspace() {
+  local cache=$WORKSPACE/build/CMakeCache.txt
+  if [[ -f $cache ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$WORKSPACE/src" "$cache"; then
+    rm -rf "$WORKSPACE/build" "$WORKSPACE/devel"
+  fi
+  link_packages
+  env -u CMAKE_PREFIX_PATH -u ROS_PACKAGE_PATH -u PYTHONPATH PATH="/usr/bin:/bin:$PATH" \
+    /usr/bin/catkin_make -C "$WORKSPACE" "-DPYTHON_EXECUTABLE=$WORKSPACE/venv/bin/python" \
+    -DCATKIN_ENABLE_TESTING=OFF
+}
