@@ -21,9 +21,13 @@ from rosbots_msgs.srv import GetModelOmissions, Step
 from sensor_msgs.msg import LaserScan
 from simulator import SimulatorTest, proxy, topics_of, wait_until
 
+from rosbots_description.ros_api.server.loop import MAX_LAG
+from rosbots_description.ros_api.topics.performance import PERIOD
+
 METRICS = '/gazebo/performance_metrics'
 MANY_STEPS = 10 * 1000 * 1000  # with the robot, hours
 CALLS = 10  # of another service meanwhile
+MOST = 1.0 + MAX_LAG / PERIOD + 0.2  # real-time factor
 
 
 RAY = ('<sensor name="{name}" type="ray"><update_rate>40</update_rate><ray><range><max>9</max>'
@@ -63,8 +67,8 @@ class NetworkTest(SimulatorTest):
     def test_performance_metrics(self):
         metrics = self.collect(METRICS, PerformanceMetrics)
         wait_until(lambda: len(metrics) > 10, 'two seconds of metrics')
-        # A busy machine may be slower; the benchmark measures the speed.
-        self.assertTrue(0.2 < metrics[-1].real_time_factor < 1.2, metrics[-1].real_time_factor)
+        # A busy machine may be slower, and catches up; the benchmark measures the speed.
+        self.assertTrue(0.0 < metrics[-1].real_time_factor < MOST, metrics[-1].real_time_factor)
         self.assertEqual(metrics[-1].sensors, [])
         self.spawn('bot', SENSORS)
         self.collect('/scan', LaserScan)
