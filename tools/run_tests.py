@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
 
-Phases: lint (ruff, mypy, catkin_lint, launch files), unit (pytest, no ROS master), engine (pytest,
-PyBullet without a window), rostest (each test/rostest/*.test with its own master). A phase without
-any test counts as failed.
+Phases: lint (ruff, mypy, catkin_lint, launch files) beside unit (pytest, no ROS master), engine
+(pytest, PyBullet without a window), rostest (each test/rostest/*.test with its own master, several
+side by side). A phase without any test counts as failed. What failed is listed at the end with the
+command that repeats it.
 """
 
 from __future__ import annotations
@@ -11,78 +12,47 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parent.parent
-REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest needs a path without spaces
+from results import (
+    REPORTS,
+    ROOT,
+    Count,
+    Failure,
+    end_of,
+    read_report,
+    say,
+    say_failures,
+    say_result,
+    with_exit_code,
+)
+from rostests import choose, run_rostests
+
 COVERAGE = REPORTS / 'coverage'
+SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
 LEAST = 5  # files to list
-OUTPUT_LINES = 60  # of a failed test's output, shown at the end
-
-
-@dataclass(frozen=True)
-class Count:
-    """Numbers of tests."""
-
-    passed: int = 0
-    failed: int = 0
-    skipped: int = 0
-
-    def __add__(self, other: Count) -> Count:
-        """Return the sum, kind by kind."""
-        return Count(self.passed + other.passed, self.failed + other.failed,
-                     self.skipped + other.skipped)
-
-
-def count_report(path: Path) -> Count:
-    """Count the test cases of a junit file; one that cannot be read is one failure.
-
-    rosunit knows no skipped tests and counts them as passed; such a test prints a line that begins
-    with SKIPPED, which is shown.
-    """
-    try:
-        report = ElementTree.parse(path)
-    except (OSError, ElementTree.ParseError):
-        return Count(failed=1)
-    cases = list(report.iter('testcase'))
-    bad = sum(any(case.find(tag) is not None for tag in ('failure', 'error')) for case in cases)
-    told = [line for output in report.iter('system-out')
-            for line in (output.text or '').splitlines() if line.startswith('SKIPPED ')]
-    print(*told, sep='\n', end='\n' if told else '')
-    skipped = len(told) + sum(case.find('skipped') is not None for case in cases)
-    return Count(len(cases) - bad - skipped, bad, skipped)
-
-
-def with_exit_code(count: Count, code: int) -> Count:
-    """Return the count, plus a failure if only the exit code reports one."""
-    if count.failed == 0 and (code != 0 or count.passed == 0):
-        return count + Count(failed=1)
-    return count
-
-
-def print_result(phase: str, name: str, count: Count, seconds: float) -> None:
-    """Print one line with the result of a check."""
-    verdict = 'FAILED' if count.failed else 'ok'
-    skipped = f', {count.skipped} skipped' if count.skipped else ''
-    print(f'{phase:8} {name:42} {verdict:6} {count.passed} passed, {count.failed} failed{skipped}'
-          f'  {seconds:.1f} s', flush=True)
+AT_ONCE = ('lint', 'unit')  # phases of one process each
 
 
 def run_command(phase: str, name: str, command: list[str]) -> Count:
     """Run a check that passes or fails as a whole; show its output if it fails."""
     start = time.monotonic()
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, check=False)
-    count = Count(failed=1) if done.returncode else Count(passed=1)
-    print_result(phase, name, count, time.monotonic() - start)
-    if done.returncode:
-        print(done.stdout)
+    log = REPORTS / f'{phase} {name}.log'.replace(' ', '_').replace('/', '_')
+    with log.open('wb') as output:
+        code = subprocess.run(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT,
+                              check=False).returncode
+    count = Count(passed=1)
+    if code:
+        again = f'./rosbots exec {shlex.join(command)}'
+        count = Count(failed=1, failures=(Failure(name, again, log),))
+    say_result(phase, name, count, time.monotonic() - start, *(end_of(log) if code else ()))
     return count
 
 
@@ -104,17 +74,36 @@ def run_lint(_word: str) -> Count:
     return sum((run_command('lint', name, command) for name, command in checks.items()), Count())
 
 
-def run_pytest(
-    phase: str, word: str, measure: tuple[str, ...] = (), options: tuple[str, ...] = ()
-) -> Count:
-    """Run the tests of test/<phase>; `measure` is what runs pytest as a module and watches it."""
-    report = REPORTS / f'{phase}.xml'
+def run_pytest(phase: str, options: list[str], measure: tuple[str, ...] = ()) -> Count:
+    """Run tests of test/<phase>; `measure` is what runs pytest as a module and watches it."""
+    report, log = REPORTS / f'{phase}.xml', REPORTS / f'{phase}.log'
     start = time.monotonic()
-    code = subprocess.run([sys.executable, *measure, '-m', 'pytest', '-q', f'--junitxml={report}',
-                           *options, '-k', word, f'test/{phase}'], cwd=ROOT, check=False).returncode
-    count = with_exit_code(count_report(report), code)
-    print_result(phase, f'test/{phase}', count, time.monotonic() - start)
+    with log.open('w') as written, subprocess.Popen(
+            [sys.executable, *measure, '-m', 'pytest', '-q', f'--junitxml={report}', *options],
+            cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            errors='replace') as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            written.write(line)
+            say(line.rstrip('\n'))
+    read = read_report(report)
+    count = with_exit_code(read.count, process.returncode)
+    again = [node for case in read.failed if (node := node_of(*case))] or [f'test/{phase}']
+    if count.failed:
+        count += Count(failures=tuple(
+            Failure(node, f'./rosbots test {shlex.quote(node)}', log) for node in again))
+    say_result(phase, f'test/{phase}', count, time.monotonic() - start)
     return count
+
+
+def node_of(classname: str, name: str) -> str:
+    """Return the name by which pytest knows a case of its report; '' if it belongs to no file."""
+    parts = classname.split('.')
+    for end in range(len(parts), 0, -1):
+        path = Path(*parts[:end]).with_suffix('.py')
+        if (ROOT / path).is_file():
+            return '::'.join([str(path), *parts[end:], name])
+    return ''
 
 
 def run_unit(word: str) -> Count:
@@ -124,7 +113,12 @@ def run_unit(word: str) -> Count:
     minutes. So what needs an engine or a renderer is listed as not covered.
     """
     watched = ('-m', 'coverage', 'run', f'--data-file={COVERAGE}')
-    return run_pytest('unit', word, () if word else watched)
+    return run_pytest('unit', ['-k', word, 'test/unit'], () if word else watched)
+
+
+def run_engine(word: str) -> Count:
+    """Run test/engine, a process per processor: 176 s instead of 308 s on two."""
+    return run_pytest('engine', ['-n', 'auto', '--dist', 'loadfile', '-k', word, 'test/engine'])
 
 
 def least_covered() -> str:
@@ -143,68 +137,75 @@ def least_covered() -> str:
             f'fewest of {", ".join(least)}')
 
 
-def run_rostest(path: Path) -> Count:
-    """Run a .test file; return the count of its reports, with its exit code."""
-    results = REPORTS / 'rostest' / path.stem
-    results.mkdir(parents=True)
-    log = results / 'output.log'
-    environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(results)}
-    # independent of the caller's master and addresses, and of unbuffered output
-    for name in ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED'):
-        environment.pop(name, None)
-    start = time.monotonic()
-    with log.open('wb') as output:
-        code = subprocess.run(['/usr/bin/rostest', str(path)], cwd=ROOT, env=environment,
-                              stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
-                              check=False).returncode
-    reports = results.rglob('rosunit-*.xml')
-    count = with_exit_code(sum((count_report(report) for report in reports), Count()), code)
-    print_result('rostest', path.name, count, time.monotonic() - start)
-    if count.failed:
-        lines = log.read_text(errors='replace').splitlines()
-        print('\n'.join(f'    {line}' for line in lines[-OUTPUT_LINES:]))
-        print(f'    (complete output: {log})')
-    return count
-
-
-def run_rostests(word: str) -> Count:
-    """Run the .test files one after the other, since they measure time."""
-    paths = [path for path in sorted((ROOT / 'test' / 'rostest').glob('*.test'))
-             if word in path.stem]
-    if not paths:
-        print('rostest  there is no such test in test/rostest')
-        return Count(failed=1)
-    return sum(map(run_rostest, paths), Count())
-
-
-PHASES = {
+PHASES: dict[str, Callable[[str], Count]] = {
     'lint': run_lint,
     'unit': run_unit,
-    # a process per processor: 176 s instead of 308 s on two
-    'engine': lambda word: run_pytest('engine', word, options=('-n', 'auto', '--dist', 'loadfile')),
-    'rostest': run_rostests,
+    'engine': run_engine,
+    'rostest': lambda word: run_rostests(choose(word)),
 }
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Run the phases that the command line names, by default all; return the exit code."""
+def run_tests(names: list[str]) -> Count:
+    """Run single tests: .test files, and files or cases of pytest."""
+    files = [(ROOT / name).resolve() for name in names if name.endswith('.test')]
+    cases = [name for name in names if not name.endswith('.test')]
+    count = run_rostests(files) if files else Count()
+    return count + run_pytest('chosen', cases) if cases else count
+
+
+def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
+    """Run phases in their order, lint beside unit; note the wall time of each [s]."""
+    def run(phase: str) -> Count:
+        start = time.monotonic()
+        count = PHASES[phase](word)
+        took[phase] = time.monotonic() - start
+        return count
+
+    together = [phase for phase in AT_ONCE if phase in phases]
+    with ThreadPoolExecutor(len(AT_ONCE)) as pool:
+        total = sum(pool.map(run, together), Count())
+    return sum((run(phase) for phase in phases if phase not in together), total)
+
+
+def parse(argv: list[str] | None) -> argparse.Namespace:
+    """Read the command line."""
     parser = argparse.ArgumentParser(prog='./rosbots test', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('phases', nargs='*', metavar='PHASE', help=', '.join(PHASES))
+    parser.add_argument('tests', nargs='*', metavar='PHASE|TEST',
+                        help=f'{", ".join(PHASES)}; or files, as test/rostest/frames.test and '
+                             'test/unit/test_x.py::test_y')
     parser.add_argument('-k', dest='word', default='', help='only tests whose name has this word')
+    parser.add_argument('--seed', type=int, default=0, metavar='N',
+                        help="of Python's hashes, and so of the order of sets (default: 0)")
     arguments = parser.parse_args(argv)
-    for phase in arguments.phases:
-        if phase not in PHASES:
-            parser.error(f'there is no phase {phase!r}; the phases are {", ".join(PHASES)}')
+    for name in arguments.tests:
+        if name not in PHASES and not (ROOT / name.partition('::')[0]).is_file():
+            parser.error(f'there is no phase and no file {name!r}; the phases are '
+                         f'{", ".join(PHASES)}')
+    return arguments
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run what the command line names, by default all phases; return the exit code."""
+    arguments = parse(argv)
+    os.environ['PYTHONHASHSEED'] = str(arguments.seed)
     shutil.rmtree(REPORTS, ignore_errors=True)
     REPORTS.mkdir(parents=True)
-    start = time.monotonic()
-    total = sum((PHASES[phase](arguments.word) for phase in arguments.phases or PHASES), Count())
+    start, took = time.monotonic(), dict[str, float]()
+    single = [name for name in arguments.tests if name not in PHASES]
+    phases = [name for name in PHASES if name in arguments.tests or not arguments.tests]
+    total = run_phases(phases, arguments.word, took)
+    if single:
+        total += run_tests(single)
+    SUMMARY.write_text(json.dumps({
+        'seconds': took | {'all': time.monotonic() - start}, 'passed': total.passed,
+        'failed': total.failed, 'failures': [failure.name for failure in total.failures]}))
     skipped = f' ({total.skipped} skipped)' if total.skipped else ''
     if COVERAGE.exists():
-        print(f'\n{least_covered()}', end='')
-    print(f'\nall phases took {time.monotonic() - start:.0f} s{skipped}')
-    print(f'{total.passed} passed, {total.failed} failed')
+        say('', least_covered())
+    say_failures(total.failures, arguments.seed)
+    say('', f'all phases took {time.monotonic() - start:.0f} s{skipped}',
+        f'{total.passed} passed, {total.failed} failed')
     return 1 if total.failed else 0
 
 

@@ -1,0 +1,104 @@
+"""The runner of all tests: counts, the order of the lanes, and what repeats a failure."""
+
+import json
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+HOPELESS = 900.0  # [s, wall]
+ROOT = Path(__file__).resolve().parents[2]
+JUNIT = """<testsuites><testsuite>
+<testcase classname="test.unit.test_robot" name="test_a"/>
+<testcase classname="test.unit.test_robot" name="test_b[x-1]"><failure/></testcase>
+<testcase classname="test.unit.test_robot" name="test_c"><skipped/></testcase>
+</testsuite></testsuites>"""
+
+
+@pytest.fixture(autouse=True)
+def modules(monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(str(ROOT / 'tools'))
+    for name in ('results', 'rostests', 'run_tests'):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    import results
+    import rostests
+    import run_tests
+
+    for module in (results, rostests, run_tests):
+        monkeypatch.setattr(module, 'REPORTS', tmp_path / 'reports')
+    monkeypatch.setattr(run_tests, 'SUMMARY', tmp_path / 'reports' / 'summary.json')
+    monkeypatch.setattr(run_tests, 'COVERAGE', tmp_path / 'no coverage')
+    return results, rostests, run_tests
+
+
+def test_the_longest_rostests_begin_first_and_none_is_lost(modules):
+    _, rostests, _ = modules
+    every = rostests.choose('')
+    ordered = rostests.in_order(every)
+    assert sorted(ordered) == every
+    assert [path.stem for path in ordered[:len(rostests.LONGEST)]] == list(rostests.LONGEST)
+
+
+def test_failures_are_named_as_pytest_names_them(modules, tmp_path):
+    results, _, run_tests = modules
+    path = tmp_path / 'unit.xml'
+    path.write_text(JUNIT)
+    report = results.read_report(path)
+    assert (report.count.passed, report.count.failed, report.count.skipped) == (1, 1, 1)
+    assert [run_tests.node_of(*case) for case in report.failed] == [
+        'test/unit/test_robot.py::test_b[x-1]']
+
+
+def test_a_report_that_cannot_be_read_is_a_failure(modules, tmp_path):
+    results, _, _ = modules
+    assert results.read_report(tmp_path / 'none.xml').count.failed == 1
+
+
+def run_with(run_tests, monkeypatch, code, arguments=('lint',)):
+    command = [sys.executable, '-c', f'print("the cause"); raise SystemExit({code})']
+    monkeypatch.setitem(
+        run_tests.PHASES, 'lint', lambda _word: run_tests.run_command('lint', 'mypy', command))
+    return run_tests.main([*arguments])
+
+
+def test_a_failure_ends_with_its_command_and_log(modules, monkeypatch, capsys, tmp_path):
+    _, _, run_tests = modules
+    assert run_with(run_tests, monkeypatch, 3) == 1
+    printed = capsys.readouterr().out
+    log = tmp_path / 'reports' / 'lint_mypy.log'
+    assert log.read_text() == 'the cause\n'
+    assert '    the cause\n' in printed
+    assert 'FAILED mypy\n    repeat: ./rosbots exec ' in printed
+    assert f'    log:    {log}\n' in printed
+    assert printed.endswith('0 passed, 1 failed\n')
+    summary = json.loads((tmp_path / 'reports' / 'summary.json').read_text())
+    assert (summary['failed'], summary['failures']) == (1, ['mypy'])
+    assert summary['seconds'].keys() == {'lint', 'all'}
+
+
+def test_success_is_exit_code_0(modules, monkeypatch, capsys):
+    _, _, run_tests = modules
+    assert run_with(run_tests, monkeypatch, 0) == 0
+    assert 'repeat' not in capsys.readouterr().out
+
+
+def test_a_failed_test_is_repeated_with_its_seed(modules, capsys):
+    results, _, _ = modules
+    results.say_failures(
+        (results.Failure('x', './rosbots test test/rostest/frames.test', Path('log')),), 7)
+    assert 'repeat: ./rosbots test test/rostest/frames.test --seed 7\n' in capsys.readouterr().out
+
+
+def test_unknown_phases_and_files_are_named(modules, capsys):
+    _, _, run_tests = modules
+    with pytest.raises(SystemExit):
+        run_tests.main(['test/unit/test_none.py'])
+    assert "no phase and no file 'test/unit/test_none.py'" in capsys.readouterr().err
+
+
+def test_the_limit_of_a_rostest_only_ends_a_hopeless_wait(modules):
+    _, rostests, _ = modules
+    for path in rostests.choose(''):
+        for test in ElementTree.parse(path).iter('test'):
+            assert float(test.get('time-limit')) >= HOPELESS, path.name

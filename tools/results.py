@@ -1,0 +1,103 @@
+"""Results of checks: counts, one line for each, and what repeats those that failed."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+ROOT = Path(__file__).resolve().parent.parent
+REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest needs a path without spaces
+OUTPUT_LINES = 60  # of a failed check's output, shown when it ends
+_printing = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A check that failed, with the command that repeats exactly this one."""
+
+    name: str
+    command: str
+    log: Path
+
+
+@dataclass(frozen=True)
+class Count:
+    """Numbers of tests, and the failures."""
+
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    failures: tuple[Failure, ...] = ()
+
+    def __add__(self, other: Count) -> Count:
+        """Return the sum, kind by kind."""
+        return Count(self.passed + other.passed, self.failed + other.failed,
+                     self.skipped + other.skipped, self.failures + other.failures)
+
+
+@dataclass(frozen=True)
+class Report:
+    """A junit file: the numbers, and the cases that failed as (class name, name)."""
+
+    count: Count
+    failed: tuple[tuple[str, str], ...] = ()
+
+
+def say(*lines: str) -> None:
+    """Print whole lines; checks run side by side."""
+    with _printing:
+        print(*lines, sep='\n', flush=True)
+
+
+def read_report(path: Path) -> Report:
+    """Count the test cases of a junit file; one that cannot be read is one failure.
+
+    rosunit knows no skipped tests and counts them as passed; such a test prints a line that begins
+    with SKIPPED, which is shown.
+    """
+    try:
+        report = ElementTree.parse(path)
+    except (OSError, ElementTree.ParseError):
+        return Report(Count(failed=1))
+    cases = list(report.iter('testcase'))
+    bad = [case for case in cases
+           if any(case.find(tag) is not None for tag in ('failure', 'error'))]
+    told = [line for output in report.iter('system-out')
+            for line in (output.text or '').splitlines() if line.startswith('SKIPPED ')]
+    if told:
+        say(*told)
+    skipped = len(told) + sum(case.find('skipped') is not None for case in cases)
+    return Report(Count(len(cases) - len(bad) - skipped, len(bad), skipped),
+                  tuple((case.get('classname', ''), case.get('name', '')) for case in bad))
+
+
+def with_exit_code(count: Count, code: int) -> Count:
+    """Return the count, plus a failure if only the exit code reports one."""
+    if count.failed == 0 and (code != 0 or count.passed == 0):
+        return count + Count(failed=1)
+    return count
+
+
+def say_result(phase: str, name: str, count: Count, seconds: float, *more: str) -> None:
+    """Print one line with the result of a check, and further ones."""
+    verdict = 'FAILED' if count.failed else 'ok'
+    skipped = f', {count.skipped} skipped' if count.skipped else ''
+    say(f'{phase:8} {name:42} {verdict:6} {count.passed} passed, {count.failed} failed{skipped}'
+        f'  {seconds:.1f} s', *more)
+
+
+def end_of(log: Path) -> list[str]:
+    """Return the last lines of a log, indented, and where all of it is."""
+    lines = log.read_text(errors='replace').splitlines()
+    return [*(f'    {line}' for line in lines[-OUTPUT_LINES:]), f'    (complete output: {log})']
+
+
+def say_failures(failures: tuple[Failure, ...], seed: int) -> None:
+    """Print how each failure is repeated."""
+    for failure in failures:
+        has_seed = failure.command.startswith('./rosbots test ')
+        say('', f'FAILED {failure.name}',
+            f'    repeat: {failure.command}{f" --seed {seed}" if has_seed else ""}',
+            f'    log:    {failure.log}')

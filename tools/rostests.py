@@ -1,0 +1,75 @@
+"""The .test files of test/rostest, each with its own master, in lanes side by side."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from results import (
+    REPORTS,
+    ROOT,
+    Count,
+    Failure,
+    end_of,
+    read_report,
+    say,
+    say_result,
+    with_exit_code,
+)
+
+FOLDER = ROOT / 'test' / 'rostest'
+LANES = max(2, os.cpu_count() or 1)
+# Begun first, the longest first, so that the lanes end together.
+LONGEST = ('simulator', 'own_package', 'never_down', 'chromium', 'hostile', 'frames')
+# Independent of the caller's master and addresses, and of unbuffered output.
+NOT_OURS = ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED')
+
+
+def choose(word: str) -> list[Path]:
+    """Return the .test files whose name has this word."""
+    return [path for path in sorted(FOLDER.glob('*.test')) if word in path.stem]
+
+
+def in_order(paths: Iterable[Path]) -> list[Path]:
+    """Return them with the longest first, the others by name."""
+    rank = {name: number for number, name in enumerate(LONGEST)}
+    return sorted(paths, key=lambda path: (rank.get(path.stem, len(rank)), path.stem))
+
+
+def run_rostests(paths: Iterable[Path]) -> Count:
+    """Run .test files, as many at once as there are lanes."""
+    chosen = in_order(paths)
+    if not chosen:
+        say('rostest  there is no such test in test/rostest')
+        return Count(failed=1)
+    with ThreadPoolExecutor(LANES) as lanes:
+        return sum(lanes.map(run_rostest, chosen), Count())
+
+
+def run_rostest(path: Path) -> Count:
+    """Run a .test file; return the count of its reports, with its exit code."""
+    results = REPORTS / 'rostest' / path.stem
+    results.mkdir(parents=True)
+    log = results / 'output.log'
+    environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(results)}
+    for name in NOT_OURS:
+        environment.pop(name, None)
+    start = time.monotonic()
+    with log.open('wb') as output:
+        code = subprocess.run(['/usr/bin/rostest', str(path)], cwd=ROOT, env=environment,
+                              stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
+                              check=False).returncode
+    reports = [read_report(report) for report in results.rglob('rosunit-*.xml')]
+    count = with_exit_code(sum((report.count for report in reports), Count()), code)
+    cases = [name for report in reports for _, name in report.failed]
+    if count.failed:
+        name = ', '.join([f'{path.name}: {cases[0]}', *cases[1:]]) if cases else path.name
+        command = f'./rosbots test {path.relative_to(ROOT)}'
+        count += Count(failures=(Failure(name, command, log),))
+    say_result('rostest', path.name, count, time.monotonic() - start,
+               *(end_of(log) if count.failed else ()))
+    return count
