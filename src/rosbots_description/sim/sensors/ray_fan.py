@@ -11,6 +11,7 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _SLACK = 1e-6  # [rad] for rounding
+_LEVEL = 1e-4  # [m] for rounding
 _ON_AXIS = 1e-200  # [m^2], instead of zero, by which nothing can be divided
 
 
@@ -85,6 +86,40 @@ class RayFan:
         # Azimuths are modulo 2 pi; these are the full turns within the fan.
         turns = range(math.floor(ends[0] / math.tau - 0.5), math.ceil(ends[1] / math.tau + 0.5) + 1)
         self._turns = np.array(turns) * math.tau
+        least, greatest = self._elevations = sorted((rows.angles[0], rows.angles[-1]))
+        # Rays between two cones; beyond the poles they would be on both sides of the axis.
+        self._is_band = -math.pi / 2.0 < least and greatest < math.pi / 2.0
+        self._band = tuple((math.sin(angle), math.cos(angle))
+                           for angle in (least - _SLACK, greatest + _SLACK))
+        self._is_half = self._is_band and ends[1] - ends[0] <= math.pi + _SLACK
+        middle = (ends[0] + ends[1]) / 2.0
+        self._middle = math.cos(middle), math.sin(middle)
+
+    def may_meet(self, centres: Floats, radii: Floats, reaches: Floats, most: float) -> Indices:
+        """Return the shapes that rays of length up to `most` [m] may hit, by plain arithmetic.
+
+        Args:
+            centres: (m, 3) in the frame of the fan [m].
+            radii: (m,) of their bounding spheres [m].
+            reaches: (m,) half extents of their bounding boxes along the axis of the fan [m].
+        """
+        x, y, z = centres.T
+        flat_square = x * x + y * y
+        met = flat_square + z * z < (radii + most) ** 2
+        least, greatest = self._elevations
+        # Above rays that are level or go down is what is above the origin, and likewise below.
+        if greatest <= 0.0:
+            met &= z - reaches <= _LEVEL
+        if least >= 0.0:
+            met &= z + reaches >= -_LEVEL
+        if self._is_band and least != greatest:
+            flat = np.sqrt(flat_square)
+            (low_sin, low_cos), (high_sin, high_cos) = self._band
+            met &= z * high_cos - flat * high_sin <= radii
+            met &= z * low_cos - flat * low_sin >= -radii
+        if self._is_half:
+            met &= x * self._middle[0] + y * self._middle[1] >= -radii
+        return np.flatnonzero(met)
 
     def near(self, centres: Floats, radii: Floats, corners: Floats, most: float) -> Patches:
         """Return which rays of length up to `most` [m] may hit bounding spheres and boxes.
@@ -96,9 +131,6 @@ class RayFan:
         """
         x, y, z = centres.T
         flat = np.hypot(x, y)
-        far = np.hypot(flat, z)
-        rows, rows_end = self.rows.within(*_span(np.arctan2(z, flat), radii, far))
-        rows_end = np.where(far - radii < most, rows_end, 0)
         middle = np.arctan2(y, x)
         low, high = _span(middle, radii, flat)
         # A box whose corners are all ahead of the axis subtends the azimuths of its corners.
@@ -112,7 +144,13 @@ class RayFan:
             high, middle + np.arctan(slopes.max(axis=0)) + _SLACK, out=high, where=is_ahead)
         columns, columns_end = self.columns.within(
             low[:, None] + self._turns, high[:, None] + self._turns)
-        there = (columns_end > columns) & (rows_end > rows)[:, None]
+        there = columns_end > columns
+        if self.shape[0] > 1:
+            far = np.hypot(flat, z)
+            rows, rows_end = self.rows.within(*_span(np.arctan2(z, flat), radii, far))
+            there &= ((rows_end > rows) & (far - radii < most))[:, None]
+        else:
+            rows, rows_end = np.zeros(len(x), np.int64), np.ones(len(x), np.int64)
         shapes, turns = np.nonzero(there)
         return Patches(shapes, rows[shapes], rows_end[shapes],
                        columns[shapes, turns], columns_end[shapes, turns])

@@ -7,7 +7,7 @@ the number of ray-shape pairs to compute.
 
 import logging
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -19,7 +19,7 @@ from ..core import ZERO, ModelError, Pose, Vector, compose, rotate
 from ..core.arrays import rotation_matrix
 from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import ray_shapes
-from .link_solids import LinkSolids
+from .link_solids import LinkSolids, corners_of
 from .ray_fan import Indices, Patches, RayFan
 from .ray_mesh import RayMesh, build_later
 
@@ -41,6 +41,7 @@ class RayScene:
 
     def __init__(self, world: 'World') -> None:
         self._models: list[Model] = []
+        self._seen: list[Pose] = []  # of the links that the last scan compared
         self._known_meshes: dict[Mesh, Future[RayMesh]] = {}
         self._unreadable: set[Mesh] = set()  # of these an error was logged
         self._placements = -1  # as the engine counts them, when static models were read
@@ -91,7 +92,9 @@ class RayScene:
     ) -> None:
         heights = ((self._points - origin) * self._normals).sum(axis=1)
         for height, slopes, shine in zip(
-                heights, self._normals @ ways, self._plane_retro, strict=True):
+                heights.tolist(), self._normals @ ways, self._plane_retro, strict=True):
+            if abs(height) > max(slopes.max(), -slopes.min()) * distances.max():
+                continue  # out of reach
             met = height / slopes
             closer = (met >= least) & (met < distances)
             distances[closer], retro[closer] = met[closer], shine
@@ -100,12 +103,17 @@ class RayScene:
         self, origin: Floats, turn: Floats, fan: RayFan, least: float, distances: Floats,
         retro: Floats,
     ) -> None:
-        offsets = self._centres - origin
-        corners = (turn.T @ self._corners.reshape(3, -1)).reshape(self._corners.shape)
-        patches = fan.near(offsets @ turn, self._radii, corners, distances.max())
-        laid_out = np.concatenate((  # (15, m): origin of the fan, half extents, fan to shape
-            np.einsum('ij,ijk->ki', -offsets, self._axes), self._halves,
-            (turn.T @ self._axes).reshape(-1, 9).T))
+        solids, most = self._solids, distances.max()
+        offsets = solids.centres - origin
+        centres = offsets @ turn
+        reaches = (np.abs(turn[:, 2] @ solids.axes) * self._halves.T).sum(axis=1)
+        some = fan.may_meet(centres, self._radii, reaches, most)
+        axes, halves = solids.axes[some], self._halves[:, some]
+        inwards = turn.T @ axes
+        starts = np.einsum('ij,ijk->ki', -offsets[some], axes)  # of the rays, in the shapes' frames
+        patches = fan.near(
+            centres[some], self._radii[some], corners_of(inwards, halves), most)
+        laid_out = np.concatenate((starts, halves, inwards.reshape(-1, 9).T))  # (15, m)
         at_once = max(1, _MOST // len(distances))
         for begin in range(0, len(patches.shapes), at_once):
             batch = Patches(*(part[begin:begin + at_once] for part in patches))
@@ -113,50 +121,60 @@ class RayScene:
             # take keeps the pairs of a row contiguous in memory, unlike indexing.
             pairs = laid_out.take(batch.shapes[which], axis=1)
             along = fan.ways.take(ray, axis=1)
-            way = np.einsum('ip,ijp->jp', along, pairs[6:].reshape(3, 3, -1))
-            met = self._meet(batch.shapes, counts, least, pairs[:3], way, pairs[3:6])
-            self._keep_nearest(distances, retro, ray, met, self._retro[batch.shapes[which]])
+            ways = np.einsum('ip,ijp->jp', along, pairs[6:].reshape(3, 3, -1))
+            rows = some[batch.shapes]
+            met = self._meet(
+                rows, [0, *counts.cumsum().tolist()], least, pairs[:3], ways, pairs[3:6])
+            self._keep_nearest(distances, retro, fan, batch, met, self._retro[rows])
 
     def _meet(
-        self, shapes: Indices, counts: Indices, least: float, start: Floats, way: Floats,
+        self, shapes: Indices, ends: Sequence[int], least: float, start: Floats, way: Floats,
         half: Floats,
     ) -> Floats:
-        """Return the hit distances of ray-shape pairs; each shape has `counts` rays."""
-        met, begin = [], 0
+        """Return the hit distances of p ray-shape pairs.
+
+        Args:
+            shapes: (m,) ascending.
+            ends: (m + 1,) where the pairs of each shape end; the first is 0.
+            start: (3, p), as in `ray_shapes`; so are `way` and `half`.
+        """
+        met = np.empty(way.shape[1])
+        first = 0
         for kind, formula in _FORMULAS.items():
-            end = counts[:np.searchsorted(shapes, self._ends[kind])].sum()
-            if end > begin:
-                some = slice(begin, end)
-                met.append(ray_shapes.first_from(
-                    least, *formula(start[:, some], way[:, some], half[:, some])))
-            begin = end
-        for mesh, count in zip(shapes.tolist(), counts.tolist(), strict=True):
-            if mesh >= self._ends[Sphere]:
-                some = slice(begin, begin + count)
-                begin += count
-                met.append(self._meshes[mesh].meet(start[:, some], way[:, some], least))
-        return np.concatenate(met)
+            last = int(np.searchsorted(shapes, self._ends[kind]))
+            if last > first:
+                some = slice(ends[first], ends[last])
+                met[some] = ray_shapes.first_from(
+                    least, *formula(start[:, some], way[:, some], half[:, some]))
+            first = last
+        for number in range(first, len(shapes)):
+            some = slice(ends[number], ends[number + 1])
+            met[some] = self._meshes[int(shapes[number])].meet(
+                start[:, some], way[:, some], least)
+        return met
 
     def _keep_nearest(
-        self, distances: Floats, retro: Floats, ray: Indices, met: Floats, shine: Floats
+        self, distances: Floats, retro: Floats, fan: RayFan, patches: Patches, met: Floats,
+        shine: Floats,
     ) -> None:
         """Update distances and laser_retro of rays (n,) to the nearest hits, in place.
 
         Args:
-            ray: (p,) indices of the rays that meet something.
-            met: (p,) hit distances.
-            shine: (p,) laser_retro.
+            patches: m, each of rays that may meet a shape.
+            met: (p,) hit distances of their rays, patch by patch; of equals the first counts.
+            shine: (m,) laser_retro of their shapes.
         """
-        closer = np.flatnonzero(met < distances[ray])
-        closer = closer[np.argsort(ray[closer], kind='stable')]
-        ray, met = ray[closer], met[closer]
-        counts = np.bincount(ray)
-        rays = np.flatnonzero(counts)
-        if len(rays):
-            distances[rays] = np.minimum.reduceat(met, (counts.cumsum() - counts)[rays])
+        grid, glow = distances.reshape(fan.shape), retro.reshape(fan.shape)
+        begin = 0
+        for _, top, bottom, left, right, own in zip(
+                *(part.tolist() for part in (*patches, shine)), strict=True):
+            patch = slice(top, bottom), slice(left, right)
+            end = begin + (bottom - top) * (right - left)
+            mine = met[begin:end].reshape(bottom - top, right - left)
             if self._shines:
-                hits = np.flatnonzero(met == distances[ray])[::-1]  # the first of equals wins
-                retro[ray[hits]] = shine[closer[hits]]
+                glow[patch][mine < grid[patch]] = own
+            np.minimum(grid[patch], mine, out=grid[patch])
+            begin = end
 
     def _update(self) -> None:
         """Update to models spawned and deleted, and to links moved."""
@@ -165,20 +183,27 @@ class RayScene:
             self._models = models
             self._lay_out()
         placements = self._models[0].engine.placements if self._models else 0
-        links = self._moving if placements == self._placements else self._links
-        self._placements = placements
-        for link in links:
-            pose = link.pose
-            if pose != self._poses[link]:
-                self._poses[link] = pose
-                self._place(link, pose)
+        if placements != self._placements:
+            self._placements = placements
+            links, rows = self._links, self._rows
+        else:
+            links, rows = self._moving, self._moving_rows
+        poses = [link.pose for link in links]
+        if poses == self._seen:
+            return
+        self._seen = poses
+        self._solids.place(*rows, np.array([(*place, *turned) for place, turned in poses]))
+        for row, (link, collision, normal) in enumerate(self._planes):
+            if link in links:
+                position, orientation = compose(link.pose, collision.pose)
+                self._points[row], self._normals[row] = position, rotate(orientation, normal)
 
     def _lay_out(self) -> None:
         """Allocate the arrays for the shapes of all models, sorted by kind."""
         found = list(_collisions(self._models))
         self._links = list(dict.fromkeys(link for link, _ in found))
         self._moving = [link for link in self._links if not link.model.static]
-        self._poses: dict[Link, Pose | None] = dict.fromkeys(self._links)
+        self._seen = []
         self._placements = -1
         solids: list[tuple[Link, Collision]] = []
         self._ends: dict[type, int] = {}
@@ -195,37 +220,19 @@ class RayScene:
                 solids.append((link, collision))
                 halves.append(mesh.half)
                 radii.append(mesh.radius)
-        planes = [one for one in found if isinstance(one[1].geometry, Plane)]
+        self._planes = [(link, collision, collision.geometry.normal) for link, collision in found
+                        if isinstance(collision.geometry, Plane)]
         self._halves, self._radii = np.array(halves).reshape(-1, 3).T, np.array(radii)
-        self._centres, self._axes = np.zeros((len(solids), 3)), np.zeros((len(solids), 3, 3))
-        self._corners = np.zeros((3, 8, len(solids)))  # from the centres, in the world's axes
-        self._points, self._normals = np.zeros((len(planes), 3)), np.zeros((len(planes), 3))
+        self._points, self._normals = np.zeros((2, len(self._planes), 3))
         self._retro = np.array([collision.surface.laser_retro for _, collision in solids])
-        self._plane_retro = np.array([collision.surface.laser_retro for _, collision in planes])
+        self._plane_retro = np.array([one.surface.laser_retro for _, one, _ in self._planes])
         self._shines = bool(self._retro.any() or self._plane_retro.any())
-        own: dict[Link, list[int]] = {link: [] for link in self._links}
-        for row, (link, _) in enumerate(solids):
-            own[link].append(row)
-        offsets = {row: mesh.centre for row, mesh in self._meshes.items()}
-        self._solids = {
-            link: LinkSolids.of(
-                rows, [solids[row][1].pose for row in rows], self._halves, offsets)
-            for link, rows in own.items()}
-        self._planes: dict[Link, list[tuple[int, Pose, Vector]]] = {
-            link: [] for link in self._links}
-        for row, (link, collision) in enumerate(planes):
-            if isinstance(collision.geometry, Plane):
-                self._planes[link].append((row, collision.pose, collision.geometry.normal))
-
-    def _place(self, link: 'Link', pose: Pose) -> None:
-        """Update the shapes of a link."""
-        solids = self._solids[link]
-        if len(solids.rows):
-            rows = solids.rows
-            self._centres[rows], self._axes[rows], self._corners[:, :, rows] = solids.at(pose)
-        for row, in_link, normal in self._planes[link]:
-            position, orientation = compose(pose, in_link)
-            self._points[row], self._normals[row] = position, rotate(orientation, normal)
+        numbers = {link: number for number, link in enumerate(self._links)}
+        self._solids = LinkSolids(
+            [numbers[link] for link, _ in solids], [collision.pose for _, collision in solids],
+            {row: mesh.centre for row, mesh in self._meshes.items()})
+        self._rows = self._solids.of([numbers[link] for link in self._links])
+        self._moving_rows = self._solids.of([numbers[link] for link in self._moving])
 
     def _build(self, shapes: Iterable[Geometry]) -> None:
         """Begin to build the meshes among some shapes, unless that was done before."""

@@ -1,8 +1,9 @@
 """Intersections of rays and shapes in closed form, for many ray-shape pairs at once.
 
-Rays start at `start` (3, p) [m] along the unit vectors `way` (3, p), both in the frame of the
-shape, whose half extents are `half` (3, p) [m]. The functions return the distances [m] at which a
-ray enters and leaves its shape: enter > leave is a miss; negative distances are behind the start.
+Rays start at `start` (3, ...) [m] along the unit vectors `way` (3, ...), both in the frame of the
+shape, whose half extents are `half` (3, ...) [m]; the shapes broadcast. The functions return the
+distances [m] at which a ray enters and leaves its shape: enter > leave is a miss; negative
+distances are behind the start.
 """
 
 import numpy as np

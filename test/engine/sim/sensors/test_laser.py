@@ -10,7 +10,7 @@ from support.sensing import CUBE, RECORDED, ROBOTS, numbers, recorded_scene, rec
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy, normalise
 from rosbots_description.sim.public.world import World
-from rosbots_description.sim.sensors.ray_fan import Patches, RayFan
+from rosbots_description.sim.sensors.ray_fan import Patches, RayFan, Sweep
 
 SCANS = recordings('laser')
 EXACT = 1e-5  # [m] of all recorded ranges; they have six digits behind the point
@@ -134,6 +134,25 @@ def test_a_static_model_is_seen_where_it_was_put(scene):
     assert found == pytest.approx([0.49, 0.59, 0.49, 0.69, 0.49], abs=1e-4)
 
 
+def test_a_level_fan_tries_no_shape_above_below_or_behind_it():
+    fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(181, 181, -math.pi / 2, math.pi / 2))
+    centres = np.array(((2.0, 0.0, 0.0), (2.0, 0.0, 0.2), (2.0, 0.0, -0.2), (-2.0, 0.0, 0.0),
+                        (9.0, 0.0, 0.0), (2.0, 0.0, 0.09)))
+    flat_boxes = np.full(6, 0.5), np.full(6, 0.1)  # radii and half heights [m]
+    assert fan.may_meet(centres, *flat_boxes, most=8.0).tolist() == [0, 5]
+
+
+@pytest.mark.parametrize('elevations', [(-0.3, 0.2), (0.1, 0.4), (-0.4, -0.1)])
+def test_a_fan_tries_the_spheres_that_reach_between_its_cones(elevations):
+    fan = RayFan(Sweep(5, 5, *elevations), Sweep(91, 91, -0.5, 0.5))
+    rise = np.linspace(-1.0, 1.0, 41)
+    centres = np.stack((3.0 * np.cos(rise), 0.0 * rise, 3.0 * np.sin(rise)), axis=1)
+    radius = 0.3
+    met = fan.may_meet(centres, np.full(41, radius), np.full(41, radius), most=8.0)
+    apart = np.maximum(elevations[0] - rise, rise - elevations[1])  # [rad] outside the band
+    assert met.tolist() == np.flatnonzero(3.0 * np.sin(np.maximum(apart, 0.0)) <= radius).tolist()
+
+
 @pytest.mark.parametrize('tilt', [(0.0, 0.0), (0.7, -0.4), (math.pi / 2, 0.0)])
 def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
     """Compare with a cast of all rays at all shapes, near, around and far from the sensor."""
@@ -156,6 +175,7 @@ def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
         sensor = robot.sensor('head_hokuyo_sensor')
         culled = sensor.cast()
         monkeypatch.setattr(RayFan, 'near', all_of)
+        monkeypatch.setattr(RayFan, 'may_meet', lambda _fan, centres, *_: np.arange(len(centres)))
         whole = sensor.cast()
     assert np.isfinite(culled[0][culled[0] < 30.0]).sum() > 300
     assert np.array_equal(culled, whole)
