@@ -9,6 +9,9 @@
              contact sensor, which would take two thirds of the time
     pause    the same between unpause_physics and pause_physics
     r2d2     the loop that PyBullet's own environments are made of, with its R2D2 on a plane
+    mujoco   the same task in MuJoCo; see mujoco_room.py
+    wander, maze, line      the other tasks, driven at random
+    goal_physics, goal_scan, mujoco_physics, mujoco_scan      only this part of a control step
 
 A control step is 0.1 s of simulated time, or 100 steps of the engine. The argument is the kind.
 Each line on standard input is a window [s, wall]; the answer is the number of steps per second.
@@ -20,7 +23,9 @@ import contextlib
 import logging
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from functools import partial
 from itertools import count
 from typing import Any
 
@@ -29,9 +34,11 @@ import numpy as np
 from article import ROOT
 from windows import Steps, WindowedLoop, answer
 
-TASK = 'rosbots_description.gym:rosbots/GoToGoal-v0'
+TASKS = 'rosbots_description.gym:rosbots/'
+TASK = f'{TASKS}GoToGoal-v0'
 PER_CORE = 4  # environments in parallel, as a step of all waits for the slowest
 ENGINE_STEPS = 100  # of 1 ms in a control step
+_TURN = np.array((0.0, 0.3), np.float32)  # action in which only a part is measured
 WHEEL_SPEED, WHEEL_TORQUE = -10.0, 10.0  # of the R2D2 [rad/s], [N m]
 
 
@@ -53,15 +60,20 @@ def steer(goal: np.ndarray) -> np.ndarray:
     return np.stack([np.maximum(goal[..., 1], 0.0), np.clip(2.0 * goal[..., 2], -1.0, 1.0)], -1)
 
 
-def _episodes(environment: gymnasium.Env[Any, Any]) -> Steps:
-    """Return a function that drives one episode after the other."""
+def _episodes(environment: Any, drive: Callable[[Any], Any]) -> Steps:  # noqa: ANN401
+    """Return a function that drives one episode after the other.
+
+    Args:
+        environment: as Gymnasium's.
+        drive: returns the action for an observation.
+    """
     seeds = count()
     seen, _ = environment.reset(seed=next(seeds))
 
     def step(steps: int) -> None:
         nonlocal seen
         for _ in range(steps):
-            seen, _, terminated, truncated, _ = environment.step(steer(seen['goal']))
+            seen, _, terminated, truncated, _ = environment.step(drive(seen))
             if terminated or truncated:
                 seen, _ = environment.reset(seed=next(seeds))
 
@@ -72,7 +84,47 @@ def _episodes(environment: gymnasium.Env[Any, Any]) -> Steps:
 def goal() -> Iterator[Steps]:
     """Yield the step function of one environment without ROS."""
     with contextlib.closing(gymnasium.make(TASK)) as environment:
-        yield _episodes(environment)
+        yield _episodes(environment, _towards_goal)
+
+
+def _towards_goal(seen: Any) -> Any:  # noqa: ANN401  an observation, an action
+    return steer(seen['goal'])
+
+
+@contextlib.contextmanager
+def task(name: str) -> Iterator[Steps]:
+    """Yield the step function of another task, driven at random."""
+    draw = np.random.default_rng(0)
+    with contextlib.closing(gymnasium.make(f'{TASKS}{name}-v0')) as environment:
+        yield _episodes(environment, lambda _: draw.uniform((0.0, -1.0), 1.0).astype(np.float32))
+
+
+@contextlib.contextmanager
+def mujoco() -> Iterator[Steps]:
+    """Yield the step function of the same task in MuJoCo."""
+    from mujoco_room import MujocoGoToGoal
+
+    yield _episodes(MujocoGoToGoal(), _towards_goal)
+
+
+@contextlib.contextmanager
+def part(kind: str) -> Iterator[Steps]:
+    """Yield a function that makes only one part of so many control steps, while the robot turns."""
+    if kind.startswith('mujoco'):
+        from mujoco_room import MujocoGoToGoal
+
+        room = MujocoGoToGoal()
+        room.reset(0)
+        room.step(_TURN)
+        physics, scan = room.advance, room.scan
+    else:
+        environment: Any = gymnasium.make(TASK).unwrapped
+        environment.reset(seed=0)
+        environment.step(_TURN)
+        physics = partial(environment.world.run, ENGINE_STEPS)
+        scan = environment.robot.sensor('laser').read
+    work = physics if kind.endswith('physics') else scan
+    yield lambda steps: [work() for _ in range(steps)]
 
 
 @contextlib.contextmanager
@@ -108,7 +160,8 @@ def ros(exact: bool) -> Iterator[Steps]:
     from ros_environment import RosGoToGoal
 
     rospy.init_node('environment', anonymous=True, disable_signals=True)
-    yield _episodes(gymnasium.wrappers.TimeLimit(RosGoToGoal(exact, bumper=False), 400))
+    yield _episodes(gymnasium.wrappers.TimeLimit(RosGoToGoal(exact, bumper=False), 400),
+                    _towards_goal)
     rospy.signal_shutdown('measured')
 
 
@@ -145,10 +198,13 @@ def main() -> int:
     """Measure windows until the input ends; return the exit code."""
     logging.disable(logging.WARNING)
     kind = sys.argv[1]
-    loops = {'goal': goal, 'reset': reset, 'r2d2': r2d2,
-             'vector': lambda: vector(one_core=False), 'core': lambda: vector(one_core=True),
-             'step': lambda: ros(exact=True), 'pause': lambda: ros(exact=False)}
-    with loops[kind]() as step:
+    loops: dict[str, Callable[[], AbstractContextManager[Steps]]] = {
+        'goal': goal, 'reset': reset, 'r2d2': r2d2, 'mujoco': mujoco,
+        'vector': lambda: vector(one_core=False), 'core': lambda: vector(one_core=True),
+        'step': lambda: ros(exact=True), 'pause': lambda: ros(exact=False),
+        'wander': lambda: task('Wander'), 'maze': lambda: task('Maze'),
+        'line': lambda: task('FollowLine')}
+    with loops.get(kind, lambda: part(kind))() as step:
         answer(step)
     return 0
 
