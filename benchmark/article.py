@@ -5,14 +5,13 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-import xacro
-
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.model_spec import ModelSpec
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
+from rosbots_description.sim.xacro_module import import_xacro
 
 ROOT = Path(__file__).resolve().parents[1]
 OUTPUT = ROOT / '.ws' / 'benchmark'  # pictures and logs
@@ -27,7 +26,7 @@ def robot_urdf(**arguments: str) -> str:
     """
     # xacro asks rospack for packages
     os.environ.setdefault('ROS_PACKAGE_PATH', str(ROOT))
-    document = xacro.process_file(str(ROOT / 'urdf' / 'rosbots.xacro'), mappings=arguments)
+    document = import_xacro().process_file(str(ROOT / 'urdf' / 'rosbots.xacro'), mappings=arguments)
     text = document.toprettyxml(indent=' ')
     return text.replace('package://rosbots_description', str(ROOT))
 

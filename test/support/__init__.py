@@ -7,7 +7,6 @@ from functools import cache, partial
 from pathlib import Path
 
 import pytest
-import xacro
 
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.core.transforms import Pose
@@ -17,6 +16,7 @@ from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
+from rosbots_description.sim.xacro_module import import_xacro
 
 ROOT = Path(__file__).resolve().parents[2]
 LIBRARY = ROOT / 'src' / 'rosbots_description'
@@ -32,7 +32,7 @@ def robot_urdf(**arguments: str) -> str:
         path = os.pathsep.join([str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')])
         patch.setenv('ROS_PACKAGE_PATH', path)
         patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
-        return xacro.process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
+        return import_xacro().process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
 
 
 def package_directory(name: str) -> str | None:

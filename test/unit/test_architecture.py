@@ -19,14 +19,15 @@ ARROWS = {
     'sim/core': '',
     'sim/description': 'sim/core',
     'sim/plugin_registry': 'sim/core',
+    'sim/xacro_module': '',
     'sim/resources': 'sim/core sim/description',
     'sim/meshes': 'sim/core sim/description sim/resources',
     'sim/formats': '',
     'sim/formats/xml': 'sim/core sim/description sim/plugin_registry',
     'sim/formats/kinematics': 'sim/core sim/description sim/formats/xml',
     'sim/formats/urdf':
-        'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
-        'sim/formats/kinematics',
+        'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/xacro_module '
+        'sim/formats/xml sim/formats/kinematics',
     'sim/formats/sdf':
         'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
         'sim/formats/kinematics',
@@ -81,7 +82,8 @@ ARROWS = {
         'sim sim/description sim/plugins sim/rendering sim/runtime sim/sensors web',
     'gym/tasks': 'gym sim sim/description',
     'cli':
-        'sim/core ros_api/transport ros_api/clients ros_api/window ros_api/node web batch',
+        'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/window ros_api/node '
+        'web batch',
     '': '',
 }
 

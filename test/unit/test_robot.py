@@ -9,10 +9,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-import xacro
 
 from rosbots_description.sim.description.model_spec import Mesh
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
+from rosbots_description.sim.xacro_module import import_xacro
 
 ROOT = Path(__file__).resolve().parents[2]
 XACRO = ROOT / 'urdf' / 'rosbots.xacro'
@@ -27,7 +27,7 @@ def expanded(**arguments: str) -> str:
         patch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(
             [str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')]))
         patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
-        return xacro.process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
+        return import_xacro().process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
 
 
 def robot(**arguments: str) -> ElementTree.Element:

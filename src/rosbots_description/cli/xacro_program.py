@@ -17,6 +17,8 @@ from xml.dom.minidom import Element
 
 import yaml
 
+from ..sim.xacro_module import import_xacro
+
 _PYTHON = {'bool': bool, 'len': len, 'range': range, 'sorted': sorted}
 _UNITS = {'!radians': 1.0, '!degrees': math.pi / 180.0, '!meters': 1.0, '!millimeters': 1e-3,
           '!foot': 0.3048, '!inches': 0.0254}  # in rad and m
@@ -27,7 +29,7 @@ def main() -> int:
     # Remove folders with a script xacro.py from the path: it would hide the module.
     sys.path[:] = [p for p in sys.path if not os.path.isfile(os.path.join(p or '.', 'xacro.py'))]
     try:
-        import xacro  # after the path is cleaned
+        xacro = import_xacro()  # after the path is cleaned
     except ImportError:
         sys.stderr.write(f'xacro: the Python module xacro is missing for {sys.executable}; install '
                          'it with "python3 -m pip install xacro==1.13.3".\n')

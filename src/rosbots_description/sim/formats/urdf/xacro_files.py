@@ -8,6 +8,7 @@ from types import ModuleType
 
 from ...core import ModelError
 from ...resources import FindPackage
+from ...xacro_module import import_xacro
 
 _SUBSTITUTION = re.compile(r'\$\((find|arg|env|optenv|dirname|cwd)\b([^()]*)\)')
 
@@ -24,20 +25,20 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         ModelError: xacro is not installed, or rejects the file.
     """
     try:
-        import xacro  # an optional dependency
+        xacro = import_xacro()  # an optional dependency
     except ImportError:
         raise ModelError(
             f'{path}: the Python module xacro is missing; install it with "python3 -m pip install '
             'xacro==1.13.3", or expand the file elsewhere'
         ) from None
     resolve = xacro.eval_extension
-    xacro.eval_extension = partial(_resolved, xacro, resolve, find_package, path)
+    vars(xacro)['eval_extension'] = partial(_resolved, xacro, resolve, find_package, path)
     try:
         return str(xacro.process_file(path, mappings=dict(arguments)).toxml())
     except Exception as error:  # whatever an expression in the file raises
         raise ModelError(f'{path}: xacro rejects it: {error}') from error
     finally:
-        xacro.eval_extension = resolve
+        vars(xacro)['eval_extension'] = resolve
 
 
 def _resolved(

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xacro
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.description.inertia import tensor
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
+from rosbots_description.sim.xacro_module import import_xacro
 
 ROOT = Path(__file__).resolve().parents[5]
 BALL = '<geometry><sphere radius="1"/></geometry>'
@@ -44,7 +44,7 @@ def article():
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('ROS_PACKAGE_PATH', str(ROOT))
         patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
-        text = xacro.process_file(str(ROOT / 'urdf/rosbots.xacro'), mappings={}).toxml()
+        text = import_xacro().process_file(str(ROOT / 'urdf/rosbots.xacro'), mappings={}).toxml()
     find = {'rosbots_description': str(ROOT)}.get
     return load_urdf(text, 'rosbots', robot_namespace='/', find_package=find)[0]
 
