@@ -1,7 +1,7 @@
 """Debian's joint_state_publisher_gui, with sliders that round their values.
 
-The version of Debian 12 passes floats to its sliders, which QSlider rejects under Python 3.10 and
-later, so that the program ends at once.
+Debian's version passes floats to its sliders, which QSlider rejects under Python 3.10 and later, so
+that the program ends at once.
 
 Publishes:
     joint_states (sensor_msgs/JointState) and parameters: as joint_state_publisher has them.
@@ -14,7 +14,7 @@ import threading
 import joint_state_publisher_gui as window
 import rospy
 from joint_state_publisher import JointStatePublisher, get_param
-from python_qt_binding.QtWidgets import QApplication, QSlider
+from PyQt5.QtWidgets import QApplication, QSlider
 
 NAME = 'joint_state_publisher_gui'
 
