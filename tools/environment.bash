@@ -20,11 +20,20 @@ enter_environment() {
     export "$name=$(put_before "${callers[$name]}" "${!name:-}")"
   done
   export PYTHONUTF8=1  # so that names and files are read as UTF-8 whatever the locale says
-  # roslaunch imports distutils; replaced by setuptools, it would start 0.1 s later.
-  export SETUPTOOLS_USE_DISTUTILS=${SETUPTOOLS_USE_DISTUTILS:-stdlib}
+  prefer_own_distutils
   export ROSBOTS_ROOT=$ROOT
   find_address
   find_runtime_folder
+}
+
+# roslaunch imports distutils; replaced by setuptools, it would start 0.1 s later. From Python 3.12 on
+# there is no other: asked for one, setuptools could not be imported at all.
+prefer_own_distutils() {
+  local interpreter
+  interpreter=$(readlink -f /usr/bin/python3)
+  if [[ -e /usr/lib/${interpreter##*/}/distutils/__init__.py ]]; then
+    export SETUPTOOLS_USE_DISTUTILS=${SETUPTOOLS_USE_DISTUTILS:-stdlib}
+  fi
 }
 
 # Qt complains on every start of RViz where there is none, as in containers.

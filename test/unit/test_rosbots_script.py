@@ -3,6 +3,7 @@
 import os
 import re
 import subprocess
+import sys
 
 import pytest
 from support import ROOT
@@ -47,6 +48,14 @@ def test_environment_has_the_packages_and_the_system_python():
     )
     assert result.returncode == 0, result.stderr
     assert 'gazebo_msgs' in result.stdout
+
+
+def test_distutils_is_pythons_own_where_there_is_one():
+    program = 'import distutils, setuptools; print(distutils.__file__)'
+    result = rosbots('exec', '/usr/bin/python3', '-W', 'ignore', '-c', program,
+                     prefix=('env', '-u', 'SETUPTOOLS_USE_DISTUTILS'))
+    assert result.returncode == 0, result.stderr
+    assert ('setuptools' in result.stdout) == (sys.version_info >= (3, 12))
 
 
 def test_shell_reads_commands_and_has_roscd():
