@@ -49,14 +49,16 @@ link_packages() {
 }
 
 # A clean environment, so that a workspace the caller has sourced is not built into ours, and
-# Debian's tools before those of pyenv and the like.
+# Debian's tools before those of pyenv and the like. The catkin of Debian 13 finds Python by another
+# module of CMake, and so by another variable.
 build_workspace() {
   local cache=$WORKSPACE/build/CMakeCache.txt
   if [[ -f $cache ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$WORKSPACE/src" "$cache"; then
     rm -rf "$WORKSPACE/build" "$WORKSPACE/devel"
   fi
   link_packages
+  local python=$WORKSPACE/venv/bin/python
   env -u CMAKE_PREFIX_PATH -u ROS_PACKAGE_PATH -u PYTHONPATH PATH="/usr/bin:/bin:$PATH" \
-    /usr/bin/catkin_make -C "$WORKSPACE" "-DPYTHON_EXECUTABLE=$WORKSPACE/venv/bin/python" \
+    /usr/bin/catkin_make -C "$WORKSPACE" "-DPYTHON_EXECUTABLE=$python" "-DPython_EXECUTABLE=$python" \
     -DCATKIN_ENABLE_TESTING=OFF
 }
