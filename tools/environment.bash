@@ -100,6 +100,25 @@ find_ros_home() {
 
 takes_logs() { mkdir -p "$1/log" 2> /dev/null && [[ -w $1/log ]]; }
 
+# require_master_port ARGS…: of roslaunch, which would end with a traceback if a program that is no
+# ROS master listens on the port of the master.
+require_master_port() {
+  local uri=${ROS_MASTER_URI:-http://localhost:11311} host port
+  while [[ $# -gt 1 ]]; do
+    if [[ $1 == -p || $1 == --port ]]; then uri=http://localhost:$2; fi
+    shift
+  done
+  [[ $uri =~ ^http://(localhost|127\.[0-9.]+|$(uname -n)):([0-9]+) ]] || return 0
+  host=${BASH_REMATCH[1]} port=${BASH_REMATCH[2]}
+  { : <> "/dev/tcp/$host/$port"; } 2> /dev/null || return 0  # roslaunch starts a master there
+  timeout 5 /usr/bin/python3 -c 'import sys, xmlrpc.client
+xmlrpc.client.ServerProxy(sys.argv[1]).getPid("/rosbots")' "$uri" 2> /dev/null || {
+    echo "rosbots: a program that is no ROS master has port $port; end it, or choose another port:" \
+      "export ROS_MASTER_URI=http://localhost:$((port + 1))" >&2
+    exit 1
+  }
+}
+
 # Nodes announce the hostname to each other; if it cannot be resolved, they could not connect.
 find_address() {
   if [[ -z ${ROS_HOSTNAME:-}${ROS_IP:-} ]] && ! timeout 2 getent hosts "$(uname -n)" > /dev/null; then

@@ -16,9 +16,24 @@ as_root() {
   if [[ $UID -eq 0 ]]; then "$@"; else sudo "$@"; fi
 }
 
-APT_OPTIONS=(-y --no-install-recommends -o DPkg::Lock::Timeout=300)
+APT_OPTIONS=(-y --no-install-recommends -o DPkg::Lock::Timeout=120)
+
+# A source that cannot be reached does no harm if the packages are known without it.
+update_lists() {
+  as_root apt-get update -o APT::Update::Error-Mode=any ||
+    apt-get install --print-uris -qq "${APT_OPTIONS[@]}" "$@" > /dev/null
+}
+
+# What an interrupted installation has left, of ours or of anybody.
+finish_interrupted() {
+  if [[ -n $(dpkg --audit; ls /var/lib/dpkg/updates) ]]; then
+    as_root dpkg --configure -a || true  # as far as their dependencies are there
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install --fix-broken "${APT_OPTIONS[@]}"
+  fi
+}
 
 install_packages() {
+  finish_interrupted
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install "${APT_OPTIONS[@]}" "$@"
 }
 
@@ -30,21 +45,19 @@ amount() {
 
 set_up_packages() {
   local missing
-  if [[ $DEBIAN != 12 ]]; then
-    echo "rosbots: this is made for Debian 12, and this machine is" \
-      "$(. /etc/os-release && echo "${PRETTY_NAME:-unknown}"); trying all the same" >&2
-  fi
   type -P dpkg-query apt-get > /dev/null ||
-    fail 'apt-get is missing; this needs Debian 12 (or a container of it)'
+    fail 'apt-get is missing; this needs Debian 12 or 13, or a container of it (Containerfile)'
   mapfile -t missing < <(debian_packages "${CHOSEN[@]}" | missing_packages)
   if [[ ${#missing[@]} -gt 0 ]]; then
+    [[ $DEBIAN == 1[23] ]] || fail 'this installs packages on Debian 12 and 13 only (or in a' \
+      "container of it, see Containerfile); this machine, $(system_name), lacks ${missing[*]}"
     if [[ $UID -ne 0 ]]; then
       command -v sudo > /dev/null || fail "installing Debian packages needs root or sudo;" \
         "as root run: apt-get update && apt-get install --no-install-recommends ${missing[*]}"
       echo "==> ${#missing[@]} Debian packages are missing; sudo apt-get will install them"
       sudo -v || fail 'sudo was refused, so the missing Debian packages cannot be installed'
     fi
-    phase 'List of Debian packages' apt_update as_root apt-get update
+    phase 'List of Debian packages' apt_update update_lists "${missing[@]}"
     phase "Debian packages ($(amount "${missing[@]}"))" apt install_packages "${missing[@]}"
   fi
 }

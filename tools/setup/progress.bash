@@ -5,9 +5,33 @@ fail() {
   exit 1
 }
 
+# Causes that the user can cure: how a log names one, and the sentence about it.
+CAUSES=(
+  'Could not get lock|Unable to acquire the dpkg frontend lock|is another process using it'
+  'another program is installing packages; run this again when it has ended'
+  'No space left on device|enough free space|Disk quota exceeded'
+  'the disk is full; make room, and run this again'
+  'Temporary failure (in name )?resol|Could not (resolve|connect)|[Nn]etwork is unreachable|new connection'
+  'a server of packages cannot be reached; connect this machine to the network, and run this again'
+  'Permission denied|Read-only file system'
+  'a folder cannot be written'
+)
+
+# explain LOG: the sentence about its cause; fails if that is none of these.
+explain() {
+  local i
+  for ((i = 0; i < ${#CAUSES[@]}; i += 2)); do
+    if grep -qE "${CAUSES[i]}" "$1"; then
+      echo "${CAUSES[i + 1]}"
+      return
+    fi
+  done
+  return 1
+}
+
 # phase TITLE LOG COMMAND…: run a command with its progress in one line; its output goes to a log.
 phase() {
-  local title=$1 log=$WORKSPACE/log/$2.log status
+  local title=$1 log=$WORKSPACE/log/$2.log status cause
   shift 2
   mkdir -p "$WORKSPACE/log"
   : > "$log"
@@ -23,6 +47,7 @@ phase() {
   stop_progress
   if [[ -t 1 ]]; then printf '\r\e[K'; fi
   if [[ $status -ne 0 ]]; then
+    if cause=$(explain "$log"); then fail "$title: $cause (details: $log)"; fi
     echo "==> $title: failed after $SECONDS s; the end of $log:" >&2
     tail -n 25 "$log" | sed 's/^/    /' >&2
     exit 1

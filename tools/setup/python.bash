@@ -17,8 +17,9 @@ pybullet_wheel() {
   "$WORKSPACE/venv/bin/python" "$ROOT/tools/pybullet_build/wheel.py" "$@" "$(wheel_cache)"
 }
 
+# Anew where the interpreter or the folder is another one: the first lines of its programs name it.
 make_environment() {
-  /usr/bin/python3 -m venv --system-site-packages --upgrade "$WORKSPACE/venv"
+  /usr/bin/python3 -m venv --system-site-packages --clear "$WORKSPACE/venv"
 }
 
 # A numpy of pip's in front of Debian's would not fit the modules that are built against that.

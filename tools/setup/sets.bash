@@ -21,6 +21,8 @@ find_platform() {
   esac
 }
 
+system_name() { (. /etc/os-release 2> /dev/null && echo "${PRETTY_NAME:-}") || uname -o; }
+
 # with_included SET…: fill CHOSEN with these sets and those they include, each once, first what
 # is included.
 with_included() {
