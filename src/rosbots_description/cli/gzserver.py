@@ -18,7 +18,6 @@ _VERSION = "gzserver of rosbots_description: Gazebo 11's ROS interface, by PyBul
 _INSTALLED_BY = {
     'pybullet': 'pybullet==3.2.7',
     'collada': 'pycollada==0.9.3',
-    'embreex': 'embreex==4.4.0.post1',
 }
 
 

@@ -84,7 +84,7 @@ def test_missing_world_is_one_error_line(capsys):
 
 
 REQUIRED = [line.split(' ')[0] for line in REQUIREMENTS.read_text().splitlines()
-            if line.startswith(('embreex', 'pybullet', 'pycollada'))]
+            if line.startswith(('pybullet', 'pycollada'))]
 
 
 @pytest.mark.parametrize('requirement', REQUIRED)

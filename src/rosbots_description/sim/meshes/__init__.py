@@ -7,11 +7,13 @@ from .loader import MeshPart, check_mesh, load_readers, read_mesh, visual_parts
 from .stl import read_stl
 from .submesh import submesh_file
 from .support_points import support_points
+from .triangle_tree import TriangleTree
 
 __all__ = [
     'EngineFiles',
     'MeshPart',
     'SharedFile',
+    'TriangleTree',
     'check_mesh',
     'extent',
     'load_readers',

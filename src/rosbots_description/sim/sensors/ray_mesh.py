@@ -1,21 +1,65 @@
 """Ray casts on meshes with Embree: 0.1 ms for 720 rays and 20 000 triangles.
 
 Embree computes in single precision. So each ray starts at the bounding sphere of the mesh, whose
-centre is the origin.
+centre is the origin. Where there is no Embree for Python (arm64), a `TriangleTree` gives the same
+readings within that precision, in 10 to 25 ms.
 """
 
 from collections.abc import Iterable
 from concurrent.futures import Future
+from importlib.util import find_spec
 from threading import Thread
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Vector
 from ..description import Mesh
-from ..meshes import read_mesh
+from ..meshes import TriangleTree, read_mesh
 
 Floats = NDArray[np.float64]
+
+
+class Caster(Protocol):
+    """Triangles that rays hit from both sides."""
+
+    def distances(self, start: Floats, way: Floats) -> Floats:
+        """Return the distances of the first hits [m], beyond the mesh where nothing is hit.
+
+        Args:
+            start: (p, 3) [m].
+            way: (p, 3) unit vectors.
+        """
+
+
+class EmbreeTree:
+    """Triangles in a scene of Embree."""
+
+    def __init__(self, vertices: Floats, faces: NDArray[np.int64]) -> None:
+        """Build the scene of vertices (v, 3) [m] and their numbers in faces (f, 3)."""
+        # Loading Embree takes 20 ms, and few worlds need it.
+        from embreex.mesh_construction import TriangleMesh
+        from embreex.rtcore_scene import EmbreeScene
+
+        self._scene = EmbreeScene()
+        TriangleMesh(self._scene, vertices.astype(np.float32), faces.astype(np.int32))
+        some = np.zeros((1, 3), np.float32)
+        self._scene.run(some, some + 1.0, query='DISTANCE')  # the first query builds the tree
+
+    def distances(self, start: Floats, way: Floats) -> Floats:
+        """Return the distances of the first hits [m], 1e37 where nothing is hit."""
+        met: Floats = self._scene.run(
+            np.ascontiguousarray(start, dtype=np.float32),
+            np.ascontiguousarray(way, dtype=np.float32), query='DISTANCE')
+        return met
+
+
+def caster(vertices: Floats, faces: NDArray[np.int64]) -> Caster:
+    """Return triangles for ray casts: with Embree, where it is installed."""
+    if find_spec('embreex') is None:
+        return TriangleTree(vertices[faces])
+    return EmbreeTree(vertices, faces)
 
 
 class RayMesh:
@@ -33,10 +77,6 @@ class RayMesh:
         Raises:
             ModelError: the file is missing or broken by now.
         """
-        # Loading Embree takes 20 ms, and few worlds need it.
-        from embreex.mesh_construction import TriangleMesh
-        from embreex.rtcore_scene import EmbreeScene
-
         vertices, faces = read_mesh(mesh.path).triangles()
         vertices = vertices * np.array(mesh.scale)
         corners = vertices[faces].reshape(-1, 3)
@@ -47,11 +87,7 @@ class RayMesh:
         x, y, z = (high - middle).tolist()
         self.half: Vector = (x, y, z)
         self.radius = float(np.linalg.norm(corners - middle, axis=1).max())
-        self._scene = EmbreeScene()
-        TriangleMesh(
-            self._scene, (vertices - middle).astype(np.float32), faces.astype(np.int32))
-        some = np.zeros((1, 3), np.float32)
-        self._scene.run(some, some + 1.0, query='DISTANCE')  # the first query builds the tree
+        self._caster = caster(vertices - middle, faces)
 
     def meet(self, start: Floats, way: Floats, least: float) -> Floats:
         """Return the distances of the first hits [m], as `ray_shapes.first_from`.
@@ -61,9 +97,7 @@ class RayMesh:
             way: (3, p) unit vectors.
         """
         skipped = np.maximum(least, -(start * way).sum(axis=0) - self.radius)
-        begin = np.ascontiguousarray((start + way * skipped).T, dtype=np.float32)
-        met = self._scene.run(
-            begin, np.ascontiguousarray(way.T, dtype=np.float32), query='DISTANCE')
+        met = self._caster.distances((start + way * skipped).T, way.T)
         reach = 2.0 * self.radius + 1.0
         return np.where(met < reach, skipped + met, np.inf)
 

@@ -10,7 +10,8 @@ from support.sensing import ROBOTS
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy, rotate
 from rosbots_description.sim.public.world import World
-from rosbots_description.sim.sensors.ray_mesh import RayMesh
+from rosbots_description.sim.sensors import ray_mesh
+from rosbots_description.sim.sensors.ray_mesh import EmbreeTree, RayMesh
 
 EXACT = 1e-4  # [m]
 ROBOT = (ROBOTS / 'laser_nonoise.urdf').read_text(encoding='utf-8')
@@ -49,6 +50,16 @@ ASIDE = np.array((0.7, -0.2, 0.1))  # [m]
 MESHES = {'box': box(2.0, 3.0, 1.0) + ASIDE, 'ring': ring(2.0, 2.5, 1.5, 200) + ASIDE}
 
 
+@pytest.fixture(params=['with Embree', 'without Embree'])
+def caster(request, monkeypatch):
+    """Return which caster rays use; without Embree, as where it cannot be installed."""
+    if request.param == 'with Embree':
+        pytest.importorskip('embreex')
+    else:
+        monkeypatch.setattr(ray_mesh, 'find_spec', lambda name: None)
+    return request.param
+
+
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory):
     """Return a folder with the meshes."""
@@ -78,7 +89,7 @@ def reference(triangles, origins, ways):
 @pytest.mark.parametrize('pose', ['4 0.5 0.3 0 0 0.4', '0 0 0.2 0 0 1', '9 -3 0 0.1 0.5 -2'])
 @pytest.mark.parametrize('scale', ['1', '-2'])
 @pytest.mark.parametrize('name', ['box', 'ring'])
-def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, name, scale, pose):
+def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, caster, name, scale, pose):
     with closing(World()) as world:
         robot = world.spawn(ROBOT)
         model = world.spawn(ROOM.format(static=1, pose=pose, uri=folder / f'{name}.obj',
@@ -100,7 +111,7 @@ def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, name, scale, pose):
     assert set(scan.intensities[met]) == {7.0}
 
 
-def test_moving_mesh_is_hit_at_its_pose(folder):
+def test_moving_mesh_is_hit_at_its_pose(folder, caster):
     with closing(World()) as world:
         sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')
         model = world.spawn(ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.obj',
@@ -114,6 +125,26 @@ def test_moving_mesh_is_hit_at_its_pose(folder):
                 front = x + 0.1 * math.cos(0.2) - 0.3 - 0.12
                 ahead = scan.ranges[336:340].mean() * math.cos(0.1 - 0.095)
                 assert ahead == pytest.approx(front, abs=0.01)
+
+
+def test_readings_are_the_same_with_and_without_embree(monkeypatch):
+    """Of 20 000 small triangles in all directions, and of 720 rays from all around."""
+    pytest.importorskip('embreex')
+    random = np.random.default_rng(5)
+    knots = random.normal(size=(400, 3)) * (0.3, 0.3, 0.1)  # a crowd of small triangles
+    vertices = (knots[:, None] + random.normal(size=(400, 150, 3)) * 0.02).reshape(-1, 3)
+    faces = np.arange(len(vertices)).reshape(-1, 3)
+    ways = random.normal(size=(720, 3))
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    starts = random.normal(size=(720, 3)) * 2.0
+    ways[::2] = -starts[::2] / np.linalg.norm(starts[::2], axis=1)[:, None]
+    with_it = EmbreeTree(vertices, faces).distances(starts, ways)
+    monkeypatch.setattr(ray_mesh, 'find_spec', lambda name: None)
+    without = ray_mesh.caster(vertices, faces).distances(starts, ways)
+    hit = np.isfinite(without)
+    assert 200 < hit.sum() < 720
+    apart = np.abs(without[hit] - with_it[hit]) > EXACT
+    assert apart.sum() + ((with_it < 1e6) != hit).sum() <= 2  # where a ray grazes
 
 
 @pytest.mark.parametrize('sensor_first', [True, False])
