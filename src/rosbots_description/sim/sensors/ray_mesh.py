@@ -21,7 +21,7 @@ from ..meshes import TriangleTree, read_mesh
 Floats = NDArray[np.float64]
 
 
-class Caster(Protocol):
+class MeshCaster(Protocol):
     """Triangles that rays hit from both sides."""
 
     def distances(self, start: Floats, way: Floats) -> Floats:
@@ -55,7 +55,7 @@ class EmbreeTree:
         return met
 
 
-def caster(vertices: Floats, faces: NDArray[np.int64]) -> Caster:
+def caster(vertices: Floats, faces: NDArray[np.int64]) -> MeshCaster:
     """Return triangles for ray casts: with Embree, where it is installed."""
     if find_spec('embreex') is None:
         return TriangleTree(vertices[faces])
