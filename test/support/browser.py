@@ -8,6 +8,8 @@ import viser
 import zstandard
 from websockets.sync.client import connect
 
+from .patience import PATIENCE
+
 CAMERA = {
     'type': 'ViewerCameraMessage', 'wxyz': [1.0, 0.0, 0.0, 0.0], 'position': [3.0, 3.0, 3.0],
     'fov': 1.0, 'near': 0.01, 'far': 1000.0, 'image_height': 100, 'image_width': 100,
@@ -55,7 +57,7 @@ class Browser:
                 self.messages.append(message)
                 self._take(message)
 
-    def wait_until(self, condition, timeout=20.0):
+    def wait_until(self, condition, timeout=PATIENCE):
         """Read until the condition holds."""
         end = time.monotonic() + timeout
         while not condition():

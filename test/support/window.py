@@ -1,6 +1,5 @@
 """What the window's page is tested with: a simulator that remembers, and what it would show."""
 
-import time
 from functools import partial
 
 from rosbots_description.sim.core import Pose, SimError, Twist
@@ -163,14 +162,6 @@ class FakeSignals:
     def read(self):
         samples, self.samples = self.samples, {}
         return {curve: samples.get(curve, []) for curve in self.open_curves}
-
-
-def wait_until(condition):
-    """Wait for what no browser is told of."""
-    end = time.monotonic() + 20.0
-    while not condition():
-        assert time.monotonic() < end, 'it did not come true'
-        time.sleep(0.01)
 
 
 def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):

@@ -240,7 +240,7 @@ def test_one_tf_tree_gives_every_frame_one_parent_below_odom():
 def test_check_urdf_accepts_the_robot(tmp_path):
     path = tmp_path / 'rosbots.urdf'
     path.write_text(expanded(), encoding='utf-8')
-    result = subprocess.run(['check_urdf', str(path)], capture_output=True, text=True, timeout=20,
+    result = subprocess.run(['check_urdf', str(path)], capture_output=True, text=True, timeout=60,
                             check=False)
     assert result.returncode == 0, result.stderr
     assert 'root Link: base_footprint' in result.stdout

@@ -3,9 +3,9 @@
 import os
 import signal
 import sys
-import time
 
 import pytest
+from support.patience import wait_until
 
 from rosbots_description.cli import gazebo
 
@@ -40,10 +40,8 @@ def test_closing_the_window_interrupts_the_server(folder):
 
 def test_the_end_of_the_server_closes_the_window(folder):
     (folder / 'gzserver').write_text('raise SystemExit(3)')
-    (folder / 'gzclient').write_text(RUN_UNTIL_CTRL_C.format(code=0))
-    start = time.monotonic()
+    (folder / 'gzclient').write_text(RUN_UNTIL_CTRL_C.format(code=0))  # it would run for minutes
     assert gazebo.main([]) == 3
-    assert time.monotonic() - start < 10.0
 
 
 def test_server_keeps_running_without_a_display(folder, monkeypatch):
@@ -56,10 +54,7 @@ def test_server_keeps_running_without_a_display(folder, monkeypatch):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_right_after_the_start_ends_all_processes(folder, monkeypatch, number):
     def signalled_before_the_first_poll():
-        deadline = time.monotonic() + 20.0
-        while not (folder / 'gzserver.arguments').exists():
-            assert time.monotonic() < deadline
-            time.sleep(0.01)
+        wait_until((folder / 'gzserver.arguments').exists)
         os.kill(os.getpid(), number)
         return True
 

@@ -4,12 +4,12 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 import yaml
 from support import ROOT
+from support.patience import PATIENCE, wait_until
 
 from rosbots_description.cli.gzclient import STARTS, config_file, rviz_environment
 
@@ -45,15 +45,21 @@ def count_starts(folder):
     return len(starts.read_text().splitlines()) if starts.exists() else 0
 
 
+def is_running(process):
+    """Tell whether a process runs; a zombie, which nobody has reaped yet, does not."""
+    try:
+        return ' Z ' not in Path('/proc', process, 'stat').read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
 @pytest.fixture
 def window(tmp_path):
     """Return a gzclient with a program instead of RViz, and that program's PID and arguments."""
     process = open_window(tmp_path, WINDOW.format(folder=tmp_path))
     try:
-        deadline, arguments = time.monotonic() + 20.0, tmp_path / 'arguments'
-        while not arguments.exists() or not arguments.read_text():
-            assert time.monotonic() < deadline
-            time.sleep(0.01)
+        arguments = tmp_path / 'arguments'
+        wait_until(lambda: arguments.exists() and arguments.read_text())
         yield process, arguments.read_text().split()
     finally:
         process.kill()
@@ -65,31 +71,23 @@ def test_window_has_its_own_tf_topics_and_ends_on_request(window):
     assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} \
         <= set(words)
     process.send_signal(signal.SIGTERM)
-    assert process.wait(10.0) == 0
+    assert process.wait(PATIENCE) == 0
 
 
 def test_window_ends_when_its_parent_is_killed(window):
     process, words = window
     process.kill()
     process.wait()
-    deadline = time.monotonic() + 10.0
-    while Path('/proc', words[0]).exists():  # a zombie until it is reaped
-        if ' Z ' in Path('/proc', words[0], 'stat').read_text():
-            break
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    wait_until(lambda: not is_running(words[0]))
 
 
 @pytest.mark.parametrize(('number', 'times'), [('SEGV', 1), ('ABRT', STARTS - 1)])
 def test_rviz_that_crashes_at_its_start_is_restarted(tmp_path, number, times):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal=number, times=times))
-    deadline = time.monotonic() + 20.0
-    while count_starts(tmp_path) <= times:
-        assert process.poll() is None
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    wait_until(lambda: count_starts(tmp_path) > times or process.poll() is not None)
+    assert process.poll() is None
     process.send_signal(signal.SIGTERM)
-    _, output = process.communicate(timeout=10.0)
+    _, output = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
     assert output.splitlines() == [
         f'gzclient: RViz crashed as it opened (SIG{number}); restarting it'] * times
@@ -97,7 +95,7 @@ def test_rviz_that_crashes_at_its_start_is_restarted(tmp_path, number, times):
 
 def test_restarts_of_a_crashing_rviz_are_limited(tmp_path):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='SEGV', times=99))
-    _, output = process.communicate(timeout=20.0)
+    _, output = process.communicate(timeout=PATIENCE)
     assert (process.returncode, count_starts(tmp_path)) == (128 + signal.SIGSEGV, STARTS)
     assert output.splitlines()[-1] == (
         f'gzclient: RViz crashed as it opened (SIGSEGV); no window after {STARTS} starts')
@@ -105,7 +103,7 @@ def test_restarts_of_a_crashing_rviz_are_limited(tmp_path):
 
 def test_rviz_that_the_user_closes_is_not_restarted(tmp_path):
     process = open_window(tmp_path, CRASHES.format(folder=tmp_path, signal='KILL', times=9))
-    _, output = process.communicate(timeout=10.0)
+    _, output = process.communicate(timeout=PATIENCE)
     assert (process.returncode, count_starts(tmp_path), output) == (128 + signal.SIGKILL, 1, '')
 
 

@@ -97,7 +97,7 @@ def test_missing_module_is_one_error_line(requirement):
     ended = subprocess.run(
         [sys.executable, '-c', program],
         env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        capture_output=True, text=True, timeout=30, check=False)
+        capture_output=True, text=True, timeout=60, check=False)
     assert ended.returncode == 1
     (line,) = ended.stderr.splitlines()
     assert line.endswith(f'pip install {requirement}')

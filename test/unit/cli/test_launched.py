@@ -18,7 +18,7 @@ from rosbots_description.cli.launched import Launched, descendants
 def test_reported_error_is_the_last_one_without_colours(tmp_path, output, sentence):
     log = tmp_path / 'launch.log'
     with Launched(['--version'], log, {'PATH': '/usr/bin'}) as launched:
-        launched.wait(10.0)
+        launched.wait(60.0)
     log.write_text(output)
     assert launched.error() == sentence.format(log=log)
 

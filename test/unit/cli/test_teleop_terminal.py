@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+from support.patience import PATIENCE
 
 from rosbots_description.cli.key_terminal import read_key, single_keys
 from rosbots_description.cli.teleop_twist_keyboard import Settings
@@ -35,7 +36,7 @@ def test_each_key_is_read_at_once_ctrl_c_too(terminal):
     keyboard, program = terminal
     with single_keys(program):
         os.write(keyboard, b'iq\x03')
-        assert [read_key(program, 5.0, _always) for _ in range(3)] == ['i', 'q', '\x03']
+        assert [read_key(program, PATIENCE, _always) for _ in range(3)] == ['i', 'q', '\x03']
 
 
 def test_terminal_is_restored_even_after_an_error(terminal):
@@ -52,7 +53,7 @@ def test_timeout_without_a_key_returns_none(terminal):
     start = time.monotonic()
     with single_keys(program):
         assert read_key(program, 0.03, _always) is None
-    assert 0.03 <= time.monotonic() - start < 1.0
+    assert time.monotonic() - start >= 0.03
 
 
 def test_wait_for_a_key_can_be_interrupted(terminal):
@@ -65,14 +66,14 @@ def test_hangup_of_the_terminal_is_end_of_file(terminal):
     keyboard, program = terminal
     os.close(keyboard)
     with pytest.raises(EOFError):
-        read_key(program, 1.0, _always)
+        read_key(program, PATIENCE, _always)
 
 
 def test_missing_terminal_is_an_error():
     program = subprocess.run(
         [sys.executable, '-c', 'import sys; sys.modules["rospy"] = None\n'
          'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())'],
-        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=20, check=False,
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=PATIENCE, check=False,
         env={**os.environ, 'PYTHONPATH': str(SOURCE)})
     assert program.returncode == 1
     assert 'not a terminal' in program.stderr and 'Traceback' not in program.stderr

@@ -127,7 +127,7 @@ def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, monkeypatch
 
     def hold(_name, pose, _duration):
         calls.append(pose.position)
-        answer.wait(20.0)
+        answer.wait(60.0)
 
     monkeypatch.setattr(simulator, 'hold', hold, raising=False)
     chosen.grab(NODE)

@@ -22,7 +22,7 @@ class Shown(list):
         self.by = Interpolation(self.lock, self.append)
 
     def wait(self, number):
-        end = time.monotonic() + 20.0
+        end = time.monotonic() + 60.0
         while len(self) < number:
             assert time.monotonic() < end, f'{len(self)} of {number} motions'
             time.sleep(0.001)
@@ -106,7 +106,7 @@ def test_the_thread_ends_and_shows_nothing_more(shown):
     with shown.lock:
         shown.by.take(clock(1.0))
         shown.by.close()
-    thread.join(20.0)
+    thread.join(60.0)
     assert not thread.is_alive()
     assert shown == []
 

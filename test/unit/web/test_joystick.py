@@ -4,7 +4,7 @@ import math
 
 import pytest
 from support.browser import Browser
-from support.window import wait_until
+from support.patience import wait_until
 
 from rosbots_description.web.joystick import NODE, Joystick, corner
 

@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 from support.browser import Browser
-from support.window import clock, model, wait_until
+from support.patience import wait_until
+from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import LightSpec, Mesh, Plane, SceneChange, SceneSpec

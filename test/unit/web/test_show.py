@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from support.browser import CAMERA, Browser
-from support.window import clock, model, wait_until
+from support.patience import wait_until
+from support.window import clock, model
 
 from rosbots_description.sim.core import Pose, from_rpy
 from rosbots_description.sim.description import (

@@ -8,7 +8,7 @@ from contextlib import closing
 
 import pytest
 from support.browser import Browser
-from support.window import wait_until
+from support.patience import wait_until
 from websockets.exceptions import InvalidStatus
 
 from rosbots_description.web import Site, WindowError
@@ -27,7 +27,7 @@ def get(address, **headers):
     """Return status, headers and text of an answer."""
     request = urllib.request.Request(address, headers=headers)
     try:
-        with urllib.request.urlopen(request, timeout=10) as answer:
+        with urllib.request.urlopen(request, timeout=60) as answer:
             return answer.status, answer.headers, answer.read().decode()
     except urllib.error.HTTPError as error:
         return error.code, error.headers, error.read().decode()

@@ -15,7 +15,8 @@ import numpy as np
 import zstandard
 from PIL import Image
 from support.browser import Browser
-from support.window import clock, model, wait_until
+from support.patience import wait_until
+from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import SceneChange
@@ -128,7 +129,7 @@ def test_two_clicks_at_once_begin_one_take_and_end_it(site):
 
     def make(_client):
         begun.append(SimpleNamespace(finish=lambda: b''))
-        go_on.wait(20.0)
+        go_on.wait(60.0)
         return begun[-1]
 
     button = TakeButton(site.gui, 'video', 'video.mp4', '', make, complaints.append)

@@ -9,6 +9,7 @@ import threading
 import time
 
 import pytest
+from support.patience import PATIENCE, wait_until
 
 from rosbots_description.ros_api.transport.handshake import (
     MAX_HEADER_SIZE,
@@ -75,7 +76,7 @@ def test_partial_header_of_a_closed_connection_ends_the_wait(ends):
     ends[1].close()
     begin = time.monotonic()
     assert not speaks_tcpros(ends[0], 1000.0)
-    assert time.monotonic() - begin < 10.0
+    assert time.monotonic() - begin < 500.0
 
 
 def test_header_in_pieces_is_recognised_when_complete(ends):
@@ -88,7 +89,7 @@ def test_header_in_pieces_is_recognised_when_complete(ends):
     timers.append(threading.Timer(TIMEOUT * 5, theirs.sendall, [header[10:]]))
     for timer in timers:
         timer.start()
-    assert speaks_tcpros(ours, 100 * TIMEOUT)
+    assert speaks_tcpros(ours, PATIENCE)
     assert time.monotonic() - begin >= 5 * TIMEOUT
     assert ours.recv(100) == header
 
@@ -98,7 +99,7 @@ def test_header_in_pieces_is_recognised_when_complete(ends):
 def test_length_of_a_header_is_limited(ends, length, taken):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', length) + b'x' * length)
-    assert speaks_tcpros(ours, 100 * TIMEOUT) == taken
+    assert speaks_tcpros(ours, PATIENCE) == taken
 
 
 class Listener:
@@ -124,9 +125,7 @@ class Listener:
 
 
 def received(listener, count):
-    end = time.monotonic() + 10.0
-    while len(listener.received) < count and time.monotonic() < end:
-        time.sleep(0.001)
+    wait_until(lambda: len(listener.received) >= count)
     return listener.received
 
 

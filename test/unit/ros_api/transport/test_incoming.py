@@ -108,7 +108,7 @@ def test_shutdown_waits_for_requests_in_progress(ends, monkeypatch):
 
     def handler(request):
         begun.set()
-        may_end.wait(5.0)
+        may_end.wait(60.0)
         return GetModelStateResponse(status_message=request.model_name)
 
     monkeypatch.setattr(ServiceImpl, '_handle_request', answer)
@@ -118,9 +118,9 @@ def test_shutdown_waits_for_requests_in_progress(ends, monkeypatch):
         ServiceImpl('~get_model_state', GetModelState, handler), ours))
     assert wait_for_answers(0.0)
     thread.start()
-    assert begun.wait(5.0)
+    assert begun.wait(60.0)
     assert not wait_for_answers(0.01)
     may_end.set()
     assert wait_for_answers(5.0)
     assert b'box' in theirs.recv(BUFFER)
-    thread.join(5.0)
+    thread.join(60.0)

@@ -91,7 +91,7 @@ def test_collada_reader_is_imported_on_request_only():
         "before = 'collada' in sys.modules; loader.load_readers(); "
         "sys.exit(before or 'collada' not in sys.modules)"
     )
-    subprocess.run([sys.executable, '-c', program], check=True, timeout=30,
+    subprocess.run([sys.executable, '-c', program], check=True, timeout=60,
                    env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)})
 
 

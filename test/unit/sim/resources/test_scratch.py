@@ -135,7 +135,7 @@ def test_threads_share_a_folder(folder, places, monkeypatch):
     ready = threading.Barrier(8)
 
     def write(number):
-        ready.wait(5.0)
+        ready.wait(60.0)
         return folder.write(f'{number}.obj', b'content', 'a.dae')
 
     with ThreadPoolExecutor(8) as threads:

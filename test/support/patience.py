@@ -1,0 +1,13 @@
+"""Waiting for a condition: the deadline only ends a hopeless wait and decides no result."""
+
+import time
+
+PATIENCE = 60.0  # [s, wall] for what takes a moment, even on the busiest machine
+
+
+def wait_until(condition, what='the condition'):
+    """Wait for a condition."""
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end, f'not within {PATIENCE:g} s: {what}'
+        time.sleep(0.002)
