@@ -41,6 +41,14 @@ def test_red_box_is_visible_at_its_pose_until_deleted(world):
     assert (away, gone) == (0.0, 0.0)
 
 
+def test_a_world_without_models_shows_its_background(world):
+    assert any(light.cast_shadows for light in world.lights.values())
+    for name in list(world.models):
+        world.delete(name)
+    pixels = picture(ImageCapture(world))
+    assert (pixels == pixels[0, 0]).all()
+
+
 def test_image_follows_motion(world):
     capture = ImageCapture(world)
     box = world.spawn(urdf_spec(RED_BOX), 'box', Pose((0.0, 0.0, 0.5)))

@@ -102,7 +102,7 @@ class Renderer:
             self._stood = stands
             shadows.forget()
         casters = [one for one in self._drawables if one.casts_shadow]
-        low = min(one.low for one in self._drawables)
+        low = min((one.low for one in self._drawables), default=0.0)
         still, moving = (
             [one for one in casters if one.part.still == is_still] for is_still in (True, False))
         seen = [Sweeps(some, shadows.direction, low).seen(frame.planes)
