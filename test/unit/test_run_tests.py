@@ -1,6 +1,7 @@
 """The runner of all tests: counts, the order of the lanes, and what repeats a failure."""
 
 import json
+import os
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -102,3 +103,55 @@ def test_the_limit_of_a_rostest_only_ends_a_hopeless_wait(modules):
     for path in rostests.choose(''):
         for test in ElementTree.parse(path).iter('test'):
             assert float(test.get('time-limit')) >= HOPELESS, path.name
+
+
+@pytest.fixture
+def repeat_tests(modules):
+    sys.modules.pop('repeat_tests', None)
+    import repeat_tests
+
+    return repeat_tests
+
+
+def test_repeated_runs_end_with_a_table(repeat_tests, monkeypatch, capsys):
+    summaries = [
+        {'seconds': {'unit': 10.0, 'all': 20.0}, 'failures': ['b']},
+        {'seconds': {'unit': 30.0, 'all': 40.0}, 'failures': ['a', 'b']},
+        {'seconds': {'unit': 20.0}, 'failures': []},
+    ]
+    given = []
+    monkeypatch.setattr(
+        repeat_tests, 'run', lambda words: given.append(words) or summaries[len(given) - 1])
+    assert repeat_tests.main(['3', 'unit']) == 1
+    assert given == [['unit', '--seed', str(number)] for number in range(3)]
+    assert capsys.readouterr().out.endswith("""
+  failed  test
+  2 of 3  b
+  1 of 3  a
+
+phase          min  median     max  [s]
+unit            10      20      30
+all             20      30      40
+""")
+
+
+def test_repeated_runs_are_made_beside_busy_processes_which_end(repeat_tests, monkeypatch, capsys):
+    from rosbots_description.cli.launched import descendants
+
+    seen = []
+    monkeypatch.setattr(repeat_tests, 'run', lambda _: seen.extend(descendants(os.getpid())) or {
+        'seconds': {}, 'failures': []})
+    before = set(descendants(os.getpid()))
+    assert repeat_tests.main(['1', '--load', '2']) == 0
+    busy = set(seen) - before
+    assert len(busy) == 2
+    assert not busy & set(descendants(os.getpid()))
+    assert 'no failure in 1 runs' in capsys.readouterr().out
+
+
+def test_a_run_that_ends_early_is_a_failure(repeat_tests, monkeypatch, tmp_path):
+    (tmp_path / 'rosbots').write_text('#!/bin/sh\nexit 3\n')
+    (tmp_path / 'rosbots').chmod(0o755)
+    monkeypatch.setattr(repeat_tests, 'ROOT', tmp_path)
+    monkeypatch.setattr(repeat_tests, 'SUMMARY', tmp_path / 'summary.json')
+    assert repeat_tests.run([])['failures'] == ['./rosbots test ended with exit code 3']
