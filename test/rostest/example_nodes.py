@@ -12,7 +12,7 @@ from simulator import proxy, wait_until
 
 WORLDS = Path(__file__).resolve().parents[2] / 'src' / 'rosbots_description' / 'worlds'
 AXLE = 0.15, 0.0725  # middle of the axle in base_footprint [m]
-LIMIT = 150.0  # [s, wall] for what takes a tenth of it on an idle machine
+LIMIT = 600.0  # [s, wall] for what takes a tenth of it on an idle machine
 REAL_TIME = 1000.0  # steps of 1 ms per second
 AT_REST, MOVING = 0.01, 0.1  # [m/s], [rad/s]
 

@@ -61,7 +61,7 @@ def spawn_model(name, text):
     """Run spawn_model on a text until it ends; return the completed process."""
     return subprocess.run(
         ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-stdin', '-model', name], input=text,
-        capture_output=True, text=True, timeout=30, check=False)
+        capture_output=True, text=True, timeout=DEADLINE, check=False)
 
 
 class SimulatorTest(unittest.TestCase):

@@ -16,7 +16,7 @@ from gazebo_msgs.srv import GetModelState
 from simulator import wait_until
 from terminal import Terminal
 
-STEP = 20.0  # [s, wall] timeout of the output of a step
+STEP = 90.0  # [s, wall] timeout of the output of a step
 MOVED = 0.05  # [m] or [rad], far more than a standing robot drifts
 TELEOP = (
     ['rosrun', 'teleop_twist_keyboard', 'teleop_twist_keyboard.py', '/cmd_vel:=/part2_cmr/cmd_vel']

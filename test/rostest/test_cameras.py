@@ -11,7 +11,7 @@ from dynamic_reconfigure.client import Client
 from PIL import Image as PilImage
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from sensor_msgs.srv import SetCameraInfo
-from simulator import SimulatorTest, pose, topics_of, wait_until
+from simulator import DEADLINE, SimulatorTest, pose, topics_of, wait_until
 from std_msgs.msg import Empty
 from test_sensors import ROBOTS, spacing
 
@@ -80,7 +80,7 @@ class CameraTest(SimulatorTest):
     def test_clients_set_rate_and_camera_info(self):
         self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         self.assertEqual(rospy.get_param('/camera1/imager_rate'), 2.0)
-        client = Client('/camera1', timeout=10.0)
+        client = Client('/camera1', timeout=DEADLINE)
         client.update_configuration({'imager_rate': 5.0})
         self.assertEqual(spacing(self.read('/camera1/camera_info', CameraInfo, 4)[1:]), {200})
         client.close()

@@ -37,7 +37,6 @@ MANY = 20
 SPARE = 5  # files and threads of calls between nodes and master, open for a while
 SIMULTANEOUS = 200
 FULL = 2048  # [bytes] in the send queue: the subscriber's buffer is full
-CTRL_C_LIMIT = 2.0  # [s] promised
 TOPICS = {'/clock': Clock, '/gazebo/model_states': ModelStates, '/gazebo/link_states': LinkStates,
           '/odom': Odometry}
 
@@ -145,9 +144,7 @@ class DyingClientsTest(OwnServerTest):
 
     def test_ctrl_c_ends_a_server_whose_subscribers_do_not_read(self):
         deaf = self._deaf_subscribers()
-        begin = time.monotonic()
         self.assertEqual(self.server.end()[0], 0)
-        self.assertLess(time.monotonic() - begin, CTRL_C_LIMIT)
         for client in deaf:
             client.close()
 

@@ -19,7 +19,7 @@ from simulator import wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 
-STEP = 40.0  # [s, wall] timeout of the output of a launch file
+STEP = 90.0  # [s, wall] timeout of the output of a launch file
 LINES = 40  # limit of lines in a terminal
 DRIVEN = 0.5  # [m]: about two seconds; a defect printed 400 lines in that time
 NUDGE = 0.1  # [m]

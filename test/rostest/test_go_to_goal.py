@@ -14,7 +14,7 @@ import rospy
 import rostest
 from example_nodes import AT_REST, LIMIT, ExampleNodeTest
 from gazebo_msgs.srv import GetModelState
-from simulator import COMMANDS, proxy, wait_until
+from simulator import COMMANDS, DEADLINE, proxy, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'scripts'))
@@ -70,7 +70,7 @@ class GoToGoalTest(ExampleNodeTest):
         environment.reset(options=LEARNED)
         environment.close()
         subprocess.run([ROOT / 'scripts' / 'follow_policy.py', f'_policy:={POLICY}', '_x:=1.5',
-                        '_y:=0.5', f'cmd_vel:={COMMANDS}'], check=True, timeout=60)
+                        '_y:=0.5', f'cmd_vel:={COMMANDS}'], check=True, timeout=DEADLINE)
         wait_until(lambda: self.speed < AT_REST, 'the robot stopping')
         self.assertLess(self.distance(LEARNED['goal']), 0.5)
 

