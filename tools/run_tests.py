@@ -22,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import version
 from pathlib import Path
 
+import changed
 from results import (
     REPORTS,
     ROOT,
@@ -165,6 +166,19 @@ def run_tests(names: list[str]) -> Count:
     return count + run_pytest('chosen', cases) if cases else count
 
 
+def run_changed(took: dict[str, float]) -> Count:
+    """Run lint and the tests that the change since main can have touched; say what is left out."""
+    choice = changed.choose(changed.changed_files())
+    say(f'left out: {choice.left_out}')
+    whole = ['lint'] + (['unit', 'engine'] if choice.cases is None else [])
+    total = run_phases(whole, '', took)
+    if choice.cases:
+        total += run_pytest('chosen', ['-n', 'auto', '--dist', 'loadfile', *choice.cases])
+    if choice.rostests is None:
+        return total + run_phases(['rostest'], '', took)
+    return total + run_rostests(choice.rostests) if choice.rostests else total
+
+
 def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
     """Run phases in their order, lint beside unit; note the wall time of each [s]."""
     def run(phase: str) -> Count:
@@ -189,7 +203,11 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument('-k', dest='word', default='', help='only tests whose name has this word')
     parser.add_argument('--seed', type=int, default=0, metavar='N',
                         help="of Python's hashes, and so of the order of sets (default: 0)")
+    parser.add_argument('--changed', action='store_true',
+                        help='only what the change since main can have touched, and lint')
     arguments = parser.parse_args(argv)
+    if arguments.changed and (arguments.tests or arguments.word):
+        parser.error('--changed chooses the tests; name none')
     for name in arguments.tests:
         if name not in PHASES and not (ROOT / name.partition('::')[0]).is_file():
             parser.error(f'there is no phase and no file {name!r}; the phases are '
@@ -206,9 +224,12 @@ def main(argv: list[str] | None = None) -> int:
     start, took = time.monotonic(), dict[str, float]()
     single = [name for name in arguments.tests if name not in PHASES]
     phases = [name for name in PHASES if name in arguments.tests or not arguments.tests]
-    total = run_phases(phases, arguments.word, took)
-    if single:
-        total += run_tests(single)
+    if arguments.changed:
+        total = run_changed(took)
+    else:
+        total = run_phases(phases, arguments.word, took)
+        if single:
+            total += run_tests(single)
     SUMMARY.write_text(json.dumps({
         'seconds': took | {'all': time.monotonic() - start}, 'passed': total.passed,
         'failed': total.failed, 'failures': [failure.name for failure in total.failures]}))
