@@ -152,7 +152,8 @@ class OwnServerTest(SimulatorTest):
 
     def drive_neighbour(self):
         """Spawn a robot and command it to drive."""
-        self.assertTrue(self.spawn('neighbour').success)
+        response = self.spawn('neighbour')
+        self.assertTrue(response.success, response.status_message)
         drive, before = self.driver(), self.x_of('neighbour')
         # Repeated: the first may reach the subscriber of a robot just deleted.
         wait_until(lambda: drive(0.3) or self.x_of('neighbour') > before + 0.05, 'a drive')
