@@ -79,7 +79,7 @@ class Bench:
 @cache
 def _sandbox() -> CrashSandbox:
     """Return the crash sandbox, one for all tests of this process."""
-    return CrashSandbox(Engine(PhysicsSettings()))
+    return CrashSandbox(Engine(PhysicsSettings()), Engine)
 
 
 @contextmanager

@@ -23,7 +23,7 @@ import rospy
 
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
-from ...sim.physics import CrashSandbox
+from ...sim.physics import CrashSandbox, make_engine
 from ...sim.runtime import World, populate
 from .. import adapters, services  # noqa: F401  both register what they hold
 from ..adapters import Adapters
@@ -97,7 +97,7 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         spec = read_world(options.world)
     try:
         # The sandbox forks this process before it has threads and connections.
-        with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
+        with closing(World()) as world, CrashSandbox(world.engine, make_engine) as sandbox:
             _wait_for_master()
             _take_name(node_name(NAME, ros_arguments), options.replace)
             guard_handshakes()

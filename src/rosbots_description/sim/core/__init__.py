@@ -24,6 +24,7 @@ from .messages import (
     suggestion,
 )
 from .numbers import parse_number, parse_numbers
+from .process_watch import HUNG_TIME, POLL_PERIOD, ProcessWatch
 from .transforms import (
     ALONG,
     IDENTITY,
@@ -56,6 +57,7 @@ from .xml_text import is_expanded_xacro, plain_text
 __all__ = [
     'ALONG',
     'END',
+    'HUNG_TIME',
     'IDENTITY',
     'MAX_COORDINATE',
     'MAX_INERTIA',
@@ -66,6 +68,7 @@ __all__ = [
     'MIN_UPDATE_RATE',
     'NANOSECONDS',
     'NO_ROTATION',
+    'POLL_PERIOD',
     'UP',
     'ZERO',
     'AbsentError',
@@ -73,6 +76,7 @@ __all__ = [
     'NotFoundError',
     'PluginError',
     'Pose',
+    'ProcessWatch',
     'Quaternion',
     'ShapeError',
     'SimClock',

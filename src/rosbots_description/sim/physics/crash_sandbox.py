@@ -18,11 +18,11 @@ import time
 from collections.abc import Callable
 from functools import partial
 
-from ..core import IDENTITY, ModelError, Pose, compose
+from ..core import HUNG_TIME, IDENTITY, ModelError, Pose, compose
 from ..description import GROUND_PLANE, ModelSpec, PhysicsSettings
 from .compiled_model import CompiledModel
-from .engine import PhysicsEngine
-from .fork_server import MAX_SLEEPING_POLLS, POLL_PERIOD, Cancelled, ForkServer, Killed, Work
+from .engine import EngineFactory, PhysicsEngine
+from .fork_server import Cancelled, ForkServer, Killed, Work
 
 logger = logging.getLogger(__name__)
 
@@ -47,13 +47,15 @@ _KILLED = 'it killed the process (SIGKILL), as it does where memory runs out'
 class CrashSandbox:
     """Tests models, and remembers those that passed by their content. Thread-safe."""
 
-    def __init__(self, engine: PhysicsEngine) -> None:
+    def __init__(self, engine: PhysicsEngine, make_engine: EngineFactory) -> None:
         """Start the process that tests models; do so before there are threads.
 
         Args:
             engine: one with an empty world. The fork copies it, which is faster than opening one.
+            make_engine: makes an equal one, for a process that replaces one that was killed.
         """
-        self._children = ForkServer(partial(_prepared, engine), 'crash_sandbox')
+        self._children = ForkServer(
+            partial(_prepared, engine), 'crash_sandbox', partial(_prepared_anew, make_engine))
         self._passed: dict[bytes, None] = {}
         self._under_way: set[bytes] = set()
         self._changed = threading.Condition()  # guards the passed and the pending contents
@@ -148,7 +150,7 @@ def _exit_reason(exit_code: int, allowance: float) -> str:
             return ('the physics engine needed more than '
                     f'{allowance:.1f} s of processor time for it')
         case signal.SIGALRM:
-            return f'the physics engine hung for {POLL_PERIOD * MAX_SLEEPING_POLLS:g} s'
+            return f'the physics engine hung for {HUNG_TIME:g} s'
         case signal.SIGKILL:
             return f'{_SYSTEM}{_KILLED}'
         case number if number > 0:
@@ -160,6 +162,10 @@ def _prepared(engine: PhysicsEngine) -> Work:
     """Return the function that tests a model; called in the child process."""
     engine.add(engine.compile(GROUND_PLANE), IDENTITY)
     return partial(_report, engine)
+
+
+def _prepared_anew(make_engine: EngineFactory) -> Work:
+    return _prepared(make_engine(PhysicsSettings()))
 
 
 def _report(engine: PhysicsEngine, payload: bytes) -> str:

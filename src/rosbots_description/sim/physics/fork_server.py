@@ -2,7 +2,8 @@
 
 The children are forked from a small server process, itself forked from this one before there were
 threads, sockets and models: a fork of a threaded process can deadlock, and a fork of a big process
-is slow. The fork server of `multiprocessing` imports everything anew, which takes 0.3 s and 25 MB.
+is slow. A server that has died is replaced by a new interpreter, which imports everything anew in
+0.4 s and 25 MB; the fork server of `multiprocessing` always starts in that way.
 """
 
 import contextlib
@@ -12,30 +13,38 @@ import faulthandler
 import gc
 import logging
 import os
+import pickle
 import resource
 import selectors
 import signal
 import socket
 import struct
+import sys
+import threading
 import time
 from collections.abc import Callable
 from typing import NoReturn
 
+from ..core import POLL_PERIOD, ProcessWatch
+
+logger = logging.getLogger(__name__)
+
 Work = Callable[[bytes], str]
 
-POLL_PERIOD = 0.5  # [s, wall] period of checking a child and its caller
-# Consecutive checks at which a child may be asleep without having used any processor time. A
-# process that waits for a processor or a disk is not asleep, however busy the machine is.
-MAX_SLEEPING_POLLS = 20
 MIN_POLLS = 10  # after which the caller is asked whether it still waits for the report
 
 MAX_REPORT = 4096  # [bytes] for a report, allocated in advance in case memory runs out
 _REQUEST = struct.Struct('d')  # allowance
 _END = struct.Struct('?i')  # whether a child was created; its exit code, else errno
 _PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15  # of <sys/prctl.h>
-_SLEEPING = b'S'
 _prctl = ctypes.CDLL(None).prctl
-_TICK = 1.0 / os.sysconf('SC_CLK_TCK')  # [s]
+# A new server process: the search path of this one, and the channel in place of standard input.
+_PROGRAM = f"""
+import sys
+sys.path[:] = sys.argv[1:]
+from {__name__} import serve_standard_input
+serve_standard_input()
+"""
 
 
 class Killed(Exception):  # noqa: N818  not an error
@@ -50,29 +59,45 @@ class Cancelled(Exception):  # noqa: N818  as above
     """The caller no longer wants the report; the child was killed."""
 
 
-class ForkServer:
-    """Creates child processes as copies of this process as it is now. Thread-safe."""
+class ServerEndedError(ChildProcessError):
+    """The server process ended before it had an answer."""
 
-    def __init__(self, prepare: Callable[[], Work], name: str) -> None:
+    def __init__(self) -> None:
+        super().__init__(errno.ECHILD, 'the fork server does not answer')
+
+
+class ForkServer:
+    """Creates child processes as copies of this process as it is now. Thread-safe.
+
+    A server process that ends, or is stopped, is replaced when it is used next.
+    """
+
+    def __init__(
+        self, prepare: Callable[[], Work], name: str, replacement: Callable[[], Work] | None = None
+    ) -> None:
         """Fork the server process; do so before there are threads.
 
         Args:
             prepare: called once in the server process; returns the function that a child calls with
                 its payload and whose result is the report.
             name: of the process and its children, as `top` shows it; at most 15 characters.
+            replacement: replaces `prepare` in a later server process, where nothing of this one
+                exists; it is sent by pickle. None: a server that has ended is not replaced.
         """
-        self._channel, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
-        self._server = os.fork()
-        if not self._server:
+        self._name, self._replacement = name, replacement
+        ours, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
+        process = os.fork()
+        if not process:
             _run_server(prepare, theirs, name)
         theirs.close()
+        self._lock = threading.Lock()  # of replacing the server
+        self._server = _Server(process, ours)
 
     def close(self) -> None:
         """End the server process and its children."""
-        self._channel.close()
-        if self._server:
-            os.waitpid(self._server, 0)
-            self._server = 0
+        with self._lock:
+            self._replacement = None
+            self._server.end()
 
     def run(
         self, payload: bytes, allowance: float, is_wanted: Callable[[], bool] = lambda: True
@@ -88,16 +113,62 @@ class ForkServer:
             Killed: it ended without a report.
             Cancelled: `is_wanted` returned False.
         """
+        server = self._server
+        try:
+            return server.run(payload, allowance, is_wanted)
+        except ServerEndedError:
+            self._replace(server)
+        return self._server.run(payload, allowance, is_wanted)
+
+    def _replace(self, ended: '_Server') -> None:
+        """Replace a server process, unless another thread has done so.
+
+        Raises:
+            ServerEndedError: there is no replacement for it.
+            OSError: no process could be created.
+        """
+        with self._lock:
+            if self._server is not ended:
+                return
+            code = ended.end()
+            if self._replacement is None:
+                raise ServerEndedError from None
+            logger.warning('the process %s has ended (%s); it is started again', self._name,
+                           f'killed by signal {-code}' if code < 0 else f'exit code {code}')
+            ours, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
+            with theirs:
+                ours.send(pickle.dumps((self._replacement, self._name)))
+                process = os.posix_spawn(
+                    sys.executable, [sys.executable, '-P', '-c', _PROGRAM, *sys.path], os.environ,
+                    file_actions=[(os.POSIX_SPAWN_DUP2, theirs.fileno(), 0)])
+            self._server = _Server(process, ours)
+
+
+class _Server:
+    """A server process, and the channel to it."""
+
+    def __init__(self, process: int, channel: socket.socket) -> None:
+        self.process, self.channel = process, channel
+        self._lock = threading.Lock()  # the process exists, and the channel is open
+        self._exit_code: int | None = None
+
+    def end(self) -> int:
+        """End the process with its children; return its exit code."""
+        with self._lock:
+            if self._exit_code is None:
+                self.channel.close()
+                os.kill(self.process, signal.SIGKILL)  # a stopped process does not end otherwise
+                self._exit_code = os.waitstatus_to_exitcode(os.waitpid(self.process, 0)[1])
+            return self._exit_code
+
+    def run(self, payload: bytes, allowance: float, is_wanted: Callable[[], bool]) -> str:
+        """Return the report of a child; arguments and errors as of `ForkServer.run`."""
         caller, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
         with caller, open(os.memfd_create('report'), 'w+b', buffering=0) as report:
             with theirs:
                 os.posix_fallocate(report.fileno(), 0, MAX_REPORT + len(payload))
                 os.pwrite(report.fileno(), payload, MAX_REPORT)
-                try:
-                    socket.send_fds(self._channel, [_REQUEST.pack(allowance)],
-                                    [report.fileno(), theirs.fileno()])
-                except ConnectionError:
-                    raise _no_answer() from None
+                self._send(_REQUEST.pack(allowance), [report.fileno(), theirs.fileno()])
             caller.settimeout(POLL_PERIOD)
             exit_code = self._wait(caller, is_wanted)
             text = os.pread(report.fileno(), MAX_REPORT, 0).rstrip(b'\0').decode(errors='replace')
@@ -105,9 +176,18 @@ class ForkServer:
             raise Killed(exit_code)
         return text
 
+    def _send(self, request: bytes, files: list[int]) -> None:
+        with self._lock:
+            if self._exit_code is not None:
+                raise ServerEndedError
+            try:
+                socket.send_fds(self.channel, [request], files)
+            except ConnectionError:
+                raise ServerEndedError from None
+
     def _wait(self, caller: socket.socket, is_wanted: Callable[[], bool]) -> int:
         """Return the exit code of a child."""
-        answer, polls = None, 0
+        answer, polls, watch = None, 0, ProcessWatch(self.process)
         while answer is None:
             try:
                 answer = caller.recv(_END.size)
@@ -115,16 +195,18 @@ class ForkServer:
                 polls += 1
                 if polls >= MIN_POLLS and not is_wanted():
                     raise Cancelled from None
+                self._require_running(watch)
         if not answer:
-            raise _no_answer()
+            raise ServerEndedError
         made, number = _END.unpack(answer)
         if not made:
             raise OSError(number, os.strerror(number))
         return int(number)
 
-
-def _no_answer() -> OSError:
-    return ChildProcessError(errno.ECHILD, 'the fork server does not answer')
+    def _require_running(self, watch: ProcessWatch) -> None:
+        with self._lock:
+            if self._exit_code is not None or watch.is_stopped():
+                raise ServerEndedError
 
 
 class _Child:
@@ -138,8 +220,7 @@ class _Child:
             life: a pipe that is closed when the process ends.
         """
         self._process, self.caller, self.life = process, caller, life
-        self._sleeping_polls = 0  # in a row
-        self._used = 0.0  # [s, processor] at the last look
+        self._watch = ProcessWatch(process)
 
     def kill(self, number: int = signal.SIGKILL) -> None:
         """Send it a signal; it remains a zombie until `end`."""
@@ -151,21 +232,23 @@ class _Child:
         code = os.waitstatus_to_exitcode(os.waitpid(self._process, 0)[1])
         _answer(self.caller, True, code)
 
-    def check_asleep(self) -> None:
-        """Kill it if it has been asleep for too long."""
-        with open(f'/proc/{self._process}/stat', 'rb') as file:
-            state, *fields = file.read().rpartition(b') ')[2].split()
-        used = _TICK * (int(fields[10]) + int(fields[11]))  # in user mode and in the kernel
-        asleep = state == _SLEEPING and used == self._used
-        self._sleeping_polls = self._sleeping_polls + 1 if asleep else 0
-        self._used = used
-        if self._sleeping_polls > MAX_SLEEPING_POLLS:
+    def check_hung(self) -> None:
+        """Kill it if it has made no progress for too long."""
+        if self._watch.is_hung():
             self.kill(signal.SIGALRM)
+            self.kill(signal.SIGCONT)  # a stopped process takes no other signal
 
 
 def _answer(caller: socket.socket, made: bool, number: int) -> None:
     with caller, contextlib.suppress(OSError):  # it has gone
         caller.send(_END.pack(made, number))
+
+
+def serve_standard_input() -> NoReturn:
+    """Be the server process, with its channel as standard input."""
+    channel = socket.socket(fileno=os.dup(0))
+    prepare, name = pickle.loads(channel.recv(MAX_REPORT))
+    _run_server(prepare, channel, name)
 
 
 def _run_server(prepare: Callable[[], Work], channel: socket.socket, name: str) -> NoReturn:
@@ -215,7 +298,7 @@ def _serve(work: Work, channel: socket.socket) -> None:
             if time.monotonic() >= next_poll:
                 next_poll = time.monotonic() + POLL_PERIOD
                 for child in children:
-                    child.check_asleep()
+                    child.check_hung()
 
 
 def _fork_child(work: Work, allowance: float, files: list[int]) -> _Child | None:

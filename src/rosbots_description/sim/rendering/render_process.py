@@ -10,6 +10,7 @@ import socket
 import struct
 import subprocess
 import sys
+import time
 from collections import deque
 from collections.abc import Callable
 from itertools import count
@@ -20,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import POLL_PERIOD, ProcessWatch
 from .gl import Lens, Scene, Wants
 
 logger = logging.getLogger(__name__)
@@ -30,13 +32,13 @@ _FOLDER = str(Path(__file__).parent)
 # It imports one package by its bare name, so that nothing of the simulator is loaded.
 _PROGRAM = """
 import sys
-sys.path[1:1] = sys.argv[3:]
-sys.path.insert(0, sys.argv[1])
+sys.path[:] = sys.argv[1], *sys.argv[3:]
 from gl.process import main
 main(int(sys.argv[2]))
 """
-# A picture may take long on shared processors; a hung process is killed after this time.
-TIMEOUT = 60.0  # [s, wall]
+# Longest time in which the process takes nothing of a message; a picture may take long on shared
+# processors, and nothing is read meanwhile.
+SEND_TIMEOUT = 60  # [s, wall]
 
 # Pixels, depths and a JPEG file; None for what was not wanted.
 Content = tuple[NDArray[Any] | None, NDArray[Any] | None, bytes | None]
@@ -69,11 +71,13 @@ class RenderProcess:
         self._numbers = count()  # of cameras, never reused: answers to closed ones may still arrive
         self._crashes = 0
         self.fault = ''  # why drawing was given up
+        self._is_hung = False
 
     def close(self) -> None:
         """End the process."""
         if self._connection is not None and self._process is not None:
             self._connection.close()
+            self._process.kill()  # a stopped process does not end otherwise
             self._process.wait()
         self._connection = self._process = None
         self._ready = False
@@ -117,14 +121,16 @@ class RenderProcess:
         if self._connection is None or self._process is None:
             return False
         try:
-            if not self._connection.poll(TIMEOUT if wait else 0.0):
+            while not self._connection.poll(POLL_PERIOD if wait else 0.0):
+                if self._check_hung():
+                    break
                 if not wait:
                     return False
-                self._process.kill()
             number, fault, *rest = self._connection.recv()
         except (EOFError, OSError):
             self._handle_exit()
             return False
+        self._watch_anew()
         if not self._ready:
             self._begin(number, fault, *rest)
             return True
@@ -134,18 +140,37 @@ class RenderProcess:
             camera.complete(fault)
         return True
 
+    def _check_hung(self) -> bool:
+        """Kill a process that has been stopped, or makes no progress; tell whether it was."""
+        if self._process is None or time.monotonic() < self._next_poll:
+            return False
+        self._next_poll = time.monotonic() + POLL_PERIOD
+        self._is_hung = self._watch.is_hung()
+        if self._is_hung:
+            self._process.kill()
+        return self._is_hung
+
+    def _watch_anew(self) -> None:
+        """Begin to watch a process that has just made progress."""
+        if self._process is not None:
+            self._watch = ProcessWatch(self._process.pid)
+            self._next_poll = time.monotonic() + POLL_PERIOD
+            self._is_hung = False
+
     def _start(self) -> None:
         ours, theirs = socket.socketpair()
         for end in (ours, theirs):
             end.setblocking(True)  # overrides socket.setdefaulttimeout
+        ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack('ll', SEND_TIMEOUT, 0))
         with theirs:
             threads = max(0, min(4, len(os.sched_getaffinity(0)) - 2))
             self._process = subprocess.Popen(
-                [sys.executable, '-c', _PROGRAM, _FOLDER, str(theirs.fileno()), *sys.path[1:]],
+                [sys.executable, '-P', '-c', _PROGRAM, _FOLDER, str(theirs.fileno()), *sys.path],
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                 pass_fds=[theirs.fileno()],
                 env={'LP_NUM_THREADS': str(threads), 'OPENBLAS_NUM_THREADS': '1', **os.environ})
         self._connection = Connection(ours.detach())
+        self._watch_anew()
 
     def _begin(self, state: str, text: str, is_software: bool = False) -> None:
         """Handle the first answer; `text` is the renderer's name, or why there is none."""
@@ -198,6 +223,8 @@ class RenderProcess:
         self._crashes += 1
         code = process.returncode if process is not None else 0
         ended = f'killed by signal {-code}' if code < 0 else f'exit code {code}'
+        if self._is_hung:
+            ended = 'it was stopped, or hung, and was killed'
         if self._crashes < MAX_CRASHES:
             logger.error('the render process has died (%s); restarting it', ended)
             self._start()

@@ -15,6 +15,7 @@ from dataclasses import replace
 import pytest
 from support import box_urdf, robot_spec, urdf_spec
 
+from rosbots_description.sim.core import process_watch
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.model_spec import (
@@ -66,7 +67,7 @@ class Sandbox:
             does()
 
         self.engine = OddEngine(counted, **odds)
-        self._sandbox = CrashSandbox(self.engine)
+        self._sandbox = CrashSandbox(self.engine, Engine)
 
     def __enter__(self):
         return self
@@ -74,6 +75,10 @@ class Sandbox:
     def __exit__(self, *_):
         self._sandbox.close()
         self.engine.close()
+
+    @property
+    def process(self):
+        return self._sandbox._children._server.process
 
     @property
     def trials(self):
@@ -251,7 +256,7 @@ def test_several_models_are_tested_in_parallel(tmp_path):
 
     with contextlib.ExitStack() as stack:
         engine = stack.enter_context(closing(Lingering()))
-        sandbox = stack.enter_context(CrashSandbox(engine))
+        sandbox = stack.enter_context(CrashSandbox(engine, Engine))
 
         def require(spec):
             sandbox.require(engine.compile(spec), PhysicsSettings())
@@ -274,7 +279,7 @@ def test_request_for_content_under_test_waits_for_its_result():
 
 def test_run_without_a_waiting_client_is_cancelled(monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
-    monkeypatch.setattr(fork_server, 'MAX_SLEEPING_POLLS', 10**6)
+    monkeypatch.setattr(process_watch, 'MAX_SLEEPING_POLLS', 10**6)
     with Sandbox(does=signal.pause) as sandbox:
         for _ in range(2):
             with pytest.raises(ModelError, match="'crate' is rejected: its client has"):
@@ -312,12 +317,29 @@ def test_output_and_log_of_a_test_are_discarded(capfd, caplog):
     assert caplog.text == ''
 
 
-def test_model_is_accepted_with_a_warning_if_no_process_can_be_made(caplog):
+def test_model_is_accepted_with_a_warning_if_no_process_can_be_made(caplog, monkeypatch):
+    def none(*_arguments, **_options):
+        raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+
+    monkeypatch.setattr(fork_server.os, 'posix_spawn', none)
     with Sandbox() as sandbox:
-        os.kill(sandbox._sandbox._children._server, signal.SIGKILL)
+        os.kill(sandbox.process, signal.SIGKILL)
         sandbox.require()
     assert "model 'crate' was not tested in the sandbox, since the operating system failed " \
-        '(the fork server does not answer)' in caplog.text
+        '(Resource temporarily unavailable)' in caplog.text
+
+
+def test_killed_sandbox_is_started_again_and_still_rejects(caplog):
+    heavy = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
+    links = (LinkSpec('near', inertial=heavy), LinkSpec('far', Pose((1e150, 0.0, 0.0)), heavy))
+    diverging = ModelSpec('wide', links, (JointSpec('joint', REVOLUTE, 'near', 'far'),))
+    with Sandbox() as sandbox:
+        os.kill(sandbox.process, signal.SIGKILL)
+        sandbox.require()
+        with pytest.raises(ModelError, match='its pose or velocity was not finite'):
+            sandbox.require(diverging)
+    assert caplog.messages == [
+        'the process crash_sandbox has ended (killed by signal 9); it is started again']
 
 
 @pytest.mark.parametrize('fault', [
@@ -388,7 +410,7 @@ def test_model_is_tested_again_after_a_failure_of_the_system(tmp_path):
 def test_sandbox_does_not_change_the_world():
     motions = []
     for tries in (False, True):
-        with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
+        with closing(World()) as world, CrashSandbox(world.engine, Engine) as sandbox:
             add_empty_world(world)
             crate = world.spawn(CRATE, 'crate', Pose((0.1, 0.2, 0.7)))
             world.run(200)
@@ -400,7 +422,7 @@ def test_sandbox_does_not_change_the_world():
 
 
 def test_models_are_tested_while_the_world_runs():
-    with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
+    with closing(World()) as world, CrashSandbox(world.engine, Engine) as sandbox:
         add_empty_world(world)
         world.spawn(CRATE, 'crate', Pose((0.0, 0.0, 0.7)))
         goes_on = threading.Event()

@@ -392,6 +392,40 @@ def test_dead_render_process_is_restarted(scene, caplog):
         'the render process has died (killed by signal 9); restarting it']
 
 
+@pytest.mark.parametrize('paced', [False, True])
+def test_stopped_render_process_is_replaced(scene, caplog, paced):
+    _, camera = spawn_robot(scene, 'camera_320')
+    camera.read()
+    taken, stopped = stamps(camera), process_of(scene)
+    os.kill(stopped, signal.SIGSTOP)
+    scene.is_paced = paced
+    deadline = time.monotonic() + 60.0
+    while not taken and time.monotonic() < deadline:
+        scene.run(steps=10)
+        time.sleep(0.001)
+    assert taken
+    assert process_of(scene) != stopped
+    assert not os.path.exists(f'/proc/{stopped}')
+    assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
+        'the render process has died (it was stopped, or hung, and was killed); restarting it']
+
+
+def test_world_with_a_stopped_render_process_can_be_closed():
+    with closing(recorded_world()) as world:
+        spawn_robot(world, 'camera_320')[1].read()
+        stopped = process_of(world)
+        os.kill(stopped, signal.SIGSTOP)
+    assert not os.path.exists(f'/proc/{stopped}')
+
+
+def test_render_process_reads_no_module_of_the_working_folder(scene, tmp_path, monkeypatch):
+    for name in ('socket', 'numpy', 'mmap', 'PIL', 'moderngl'):
+        (tmp_path / f'{name}.py').write_text(f"open('{tmp_path}/harm', 'w')")
+    monkeypatch.chdir(tmp_path)
+    assert spawn_robot(scene, 'camera_320')[1].read().pixels is not None
+    assert not (tmp_path / 'harm').exists()
+
+
 def test_meshes_are_sent_with_any_default_timeout_of_sockets(scene, caplog):
     socket.setdefaulttimeout(60.0)  # as rospy does
     try:

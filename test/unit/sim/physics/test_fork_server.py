@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import math
+import operator
 import os
 import resource
 import signal
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 
 import pytest
 
@@ -179,7 +181,7 @@ def test_child_without_a_waiting_caller_is_killed(tmp_path, monkeypatch):
         with pytest.raises(Cancelled):
             server.run(b'', ALLOWANCE, lambda: not (note.exists() and note.read_text()))
         wait_until(lambda: not exists(int(note.read_text())))
-        assert server._channel.fileno() > 0  # the server continues
+        assert server._server.channel.fileno() > 0  # the server continues
 
 
 ABANDONED = """
@@ -258,9 +260,71 @@ def test_failing_fork_raises_the_error_of_the_system(monkeypatch):
     server.close()
 
 
-def test_dead_server_is_reported():
+# Prepares work that decodes its payload; a replacing process finds it by its name.
+DECODING = partial(operator.methodcaller, 'decode')
+
+
+@pytest.fixture(name='server')
+def fixture_server():
+    server = ForkServer(DECODING, 'test', DECODING)
+    yield server
+    server.close()
+
+
+@pytest.mark.parametrize('number', [signal.SIGKILL, signal.SIGSEGV])
+def test_dead_server_is_replaced_and_no_zombie_remains(server, number, caplog):
+    for times in (1, 2):
+        dead = server._server.process
+        os.kill(dead, number)
+        assert server.run(b'world', ALLOWANCE) == 'world'
+        assert not os.path.exists(f'/proc/{dead}')
+        assert caplog.messages == times * [
+            f'the process test has ended (killed by signal {number}); it is started again']
+
+
+def test_server_killed_under_many_callers_is_replaced_once(server, caplog):
+    os.kill(server._server.process, signal.SIGSTOP)  # so that all of them wait
+    reports = []
+    callers = [threading.Thread(target=lambda: reports.append(server.run(b'all', ALLOWANCE)))
+               for _ in range(8)]
+    for caller in callers:
+        caller.start()
+    os.kill(server._server.process, signal.SIGKILL)
+    for caller in callers:
+        caller.join()
+    assert reports == ['all'] * len(callers)
+    assert len(caplog.messages) == 1
+
+
+def test_stopped_server_is_replaced(server, monkeypatch):
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
+    stopped = server._server.process
+    os.kill(stopped, signal.SIGSTOP)
+    assert server.run(b'world', ALLOWANCE) == 'world'
+    assert not os.path.exists(f'/proc/{stopped}')
+
+
+def test_stopped_server_ends_with_its_owner(server):
+    os.kill(server._server.process, signal.SIGSTOP)
+
+
+def test_replacing_server_reads_no_module_of_the_working_folder(server, tmp_path, monkeypatch):
+    for name in ('pickle', 'socket', 'numpy', 'os'):
+        (tmp_path / f'{name}.py').write_text(f"open('{tmp_path}/harm', 'w')")
+    monkeypatch.chdir(tmp_path)
+    os.kill(server._server.process, signal.SIGKILL)
+    assert server.run(b'world', ALLOWANCE) == 'world'
+    assert not (tmp_path / 'harm').exists()
+
+
+def test_stopped_child_is_killed(monkeypatch):
+    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
+    assert outcome(lambda _: os.kill(os.getpid(), signal.SIGSTOP)) == -signal.SIGALRM
+
+
+def test_dead_server_without_a_replacement_is_reported():
     with server_of(lambda _: 'done') as server:
-        os.kill(server._server, signal.SIGKILL)
+        os.kill(server._server.process, signal.SIGKILL)
         with pytest.raises(OSError, match='the fork server does not answer'):
             server.run(b'', ALLOWANCE)
 
