@@ -25,7 +25,7 @@ from loops import Loop
 from server import Server, run_in_new_process
 
 from rosbots_description.sim.core.transforms import Pose as SpawnPose
-from rosbots_description.sim.physics.crash_sandbox import CrashSandbox
+from rosbots_description.sim.physics import CrashSandbox, make_engine
 from rosbots_description.sim.runtime.world import World
 
 WINDOW = 3.0  # [s, wall]
@@ -104,7 +104,7 @@ def measure_trials() -> None:
     """Print the durations of the phases of a spawn, for models new to the server."""
     robot = robot_spec()
     compiling, trials, adding = [], [], []
-    with closing(World()) as world, CrashSandbox(world.engine) as sandbox:
+    with closing(World()) as world, CrashSandbox(world.engine, make_engine) as sandbox:
         for i in range(SPAWNS):
             other = replace(robot.joints[0], damping=0.01 * i)
             begin = time.monotonic()

@@ -14,14 +14,14 @@ from ..transport import (
     SubscriberWatch,
     find_tf_prefix,
     frame_name,
-    is_for_all,
+    is_valid_name,
     published_types,
     stop_publishing,
     subscribed_types,
 )
 
 if TYPE_CHECKING:
-    from .declarations import Declaration
+    from .declarations import Declaration, Endpoint
 
 logger = logging.getLogger(__name__)
 
@@ -29,7 +29,7 @@ logger = logging.getLogger(__name__)
 class Adapter:
     """Opens and closes the declared topics and services of a plugin.
 
-    The constructor raises `PluginError` if a name is not a valid ROS name.
+    Those whose names are not valid ROS names are left out, with an error.
 
     `open` and `close` talk to the ROS master, on the registrar's thread; `connect`, `refresh` and
     `disconnect` are called on the thread that owns the world.
@@ -43,7 +43,16 @@ class Adapter:
         self._connected = False
         self._watch = SubscriberWatch(lambda: server.loop.post(self.refresh))
         self._opened: list[Callable[[], None]] = []  # functions to call in `close`
-        self.endpoints = [one.join(self) for one in declared]
+        self.endpoints = self._with_valid_names([one.join(self) for one in declared])
+
+    def _with_valid_names(self, endpoints: 'list[Endpoint]') -> 'list[Endpoint]':
+        invalid = {one.name for one in endpoints if one.name and not is_valid_name(one.name)}
+        if invalid:
+            logger.error(
+                "%s: not opened, since ROS has no such names: %s; use a-z, A-Z, 0-9 and _, "
+                "separated by slashes, in the tags that they are made of, and in the model's name",
+                where(self.plugin), ', '.join(map(repr, sorted(invalid))))
+        return [one for one in endpoints if one.name not in invalid]
 
     def open(self) -> None:
         """Advertise, subscribe, and offer services."""
@@ -115,9 +124,6 @@ class Adapter:
         self, topic: str, message_class: type[Message], types: Mapping[str, str]
     ) -> bool:
         """Return whether `types` has no other type for the topic; rospy would mix the two."""
-        if not is_for_all(topic):
-            logger.warning('%s: C++ nodes cannot use the topic %s: its name contains - or a dot',
-                           where(self.plugin), topic)
         there = types.get(rospy.resolve_name(topic), message_class._type)
         if there != message_class._type:
             logger.error(

@@ -30,15 +30,13 @@ class Declaration(Protocol):
     """One topic or service of all plugins of a class."""
 
     def join(self, adapter: Adapter) -> 'Endpoint':
-        """Return the endpoint of the adapter's plugin.
-
-        Raises:
-            PluginError: its name is invalid.
-        """
+        """Return the endpoint of the adapter's plugin."""
 
 
 class Endpoint:
     """One topic or service of a plugin; `Adapter` says who calls what on which thread."""
+
+    name = ''  # global; '' for one that has another kind of name
 
     def __init__(self, adapter: Adapter, name: str | None = None) -> None:
         self.adapter = adapter

@@ -1,22 +1,14 @@
 """Which topics a plugin has, and the listener that opens and closes them with its model."""
 
-import logging
 import time
-import warnings
 from collections.abc import Callable
 from functools import partial
 
-from ...sim.core import PluginError
 from ...sim.plugins import ModelPlugin
 from ...sim.runtime import Model
 from ..server import Server
-from .adapter import Adapter, where
+from .adapter import Adapter
 from .declarations import Declaration
-
-logger = logging.getLogger(__name__)
-
-# rospy prints this on standard error; it is logged with the model's other messages instead.
-warnings.filterwarnings('ignore', '.* is not a legal ROS graph resource name', UserWarning)
 
 # Minimum time between opening and closing topics, and vice versa [s, wall]. A rospy subscriber that
 # is still connecting when a topic is closed never connects to the next publisher.
@@ -53,21 +45,14 @@ class Adapters:
     def model_spawned(self, model: Model) -> None:
         """Give each plugin its topics; they appear shortly after."""
         for plugin in _with_topics(model):
-            try:
-                made = Adapter(self._server, plugin, topics_of(type(plugin)))
-            except PluginError as error:
-                logger.error('%s: %s; the plugin has no topics', where(plugin), error)
-                continue
-            self._open[plugin] = made
+            made = self._open[plugin] = Adapter(self._server, plugin, topics_of(type(plugin)))
             self._server.registrar.post(partial(self._change, 'come', made.open))
             self._server.registrar.post(partial(self._connect, made))
 
     def model_deleted(self, model: Model) -> None:
         """Take the topics of each plugin away."""
         for plugin in _with_topics(model):
-            gone = self._open.pop(plugin, None)
-            if gone is None:
-                continue
+            gone = self._open.pop(plugin)
             gone.disconnect()
             self._server.registrar.post(partial(self._change, 'go', gone.close))
 

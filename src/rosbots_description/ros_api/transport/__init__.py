@@ -17,7 +17,7 @@ from .master import (
     write_parameters,
 )
 from .name_conflict import node_name, replacing_node, require_free, running_node
-from .names import find_tf_prefix, frame_name, is_for_all, topic_name
+from .names import find_tf_prefix, frame_name, is_valid_name, topic_name
 from .process import init_node, is_node
 from .registrar import Registrar
 from .registrations import published_types, subscribed_types, watch_master
@@ -47,10 +47,10 @@ __all__ = [
     'has_service',
     'has_subscribers',
     'init_node',
-    'is_for_all',
     'is_master_running',
     'is_node',
     'is_running',
+    'is_valid_name',
     'next_number',
     'node_address',
     'node_name',

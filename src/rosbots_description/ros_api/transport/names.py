@@ -6,35 +6,24 @@ import rosgraph
 import rospy
 from rosgraph.names import resolve_name
 
-from ...sim.core import PluginError
 from .master import retry_call
 
-# Global names that rospy and the master accept. roscpp rejects hyphens and dots.
-_GLOBAL_NAME = re.compile('(/[a-zA-Z0-9_.-]+)+')
-_PYTHON_ONLY = re.compile('[.-]')
+# Global names that every node accepts, as ros::names::validate of roscpp has them.
+_GLOBAL_NAME = re.compile('(/[a-zA-Z0-9_]+)+')
 
 
 def topic_name(namespace: str, topic: str) -> str:
     """Return the global name, before remapping, of a `topic` in a plugin's namespace.
 
     Repeated slashes collapse, and a leading one is kept; ~ stands for this node's namespace.
-
-    Raises:
-        PluginError: the result is not a valid ROS name.
     """
     given = topic if topic.startswith('/') else f'{namespace}/{topic}'
-    name = resolve_name(re.sub('/+', '/', given), rospy.get_name())
-    if not _GLOBAL_NAME.fullmatch(name):
-        raise PluginError(
-            f"'{name}' is not a valid topic name: use a-z, A-Z, 0-9 and _, separated by slashes; "
-            "change the tags that it is made of, or the model's name"
-        )
-    return name
+    return resolve_name(re.sub('/+', '/', given), rospy.get_name())
 
 
-def is_for_all(topic: str) -> bool:
-    """Tell whether C++ nodes, such as rviz, accept a topic of that name, too."""
-    return not _PYTHON_ONLY.search(topic)
+def is_valid_name(name: str) -> bool:
+    """Tell whether a global name is one that ROS accepts for a topic or service."""
+    return bool(_GLOBAL_NAME.fullmatch(name))
 
 
 def frame_name(prefix: str, frame: str) -> str:

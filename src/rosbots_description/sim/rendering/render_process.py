@@ -72,6 +72,7 @@ class RenderProcess:
         self._crashes = 0
         self.fault = ''  # why drawing was given up
         self._is_hung = False
+        self._next_poll = 0.0  # of the watch [s, monotonic]
 
     def close(self) -> None:
         """End the process."""

@@ -41,21 +41,27 @@ def adapter(server):
     made.close()
 
 
-@pytest.mark.parametrize('tags', [
-    {'robotNamespace': 'a b'},
-    {'robotNamespace': 'a b', 'commandTopic': '/cmd_vel', 'odometryTopic': '/odom'},
-    {'commandTopic': ''},
-    {'odometryTopic': '~odom'},
+@pytest.mark.parametrize(('tags', 'left'), [
+    ({'robotNamespace': 'a b'}, {'/tf', '/joint_states'}),
+    ({'commandTopic': ''}, {'/odom'}),
+    ({'commandTopic': '/-1'}, {'/odom'}),
+    ({'commandTopic': '/../../../etc/passwd'}, {'/odom'}),
+    ({'odometryTopic': '~odom'}, {'/cmd_vel'}),
+    ({'odometryTopic': 'o d'}, {'/cmd_vel'}),
 ])
-def test_plugin_with_invalid_topic_names_has_no_topics(server, caplog, tags):
+def test_plugin_is_without_topics_whose_names_ros_rejects(server, caplog, tags, left):
     model, adapters = _model(make(**tags)), Adapters(server)
     caplog.clear()
     adapters.model_spawned(model)
     (record,) = caplog.records
-    assert record.message.startswith("model 'robot', plugin 'drive': '/")
-    assert 'is not a valid topic name' in record.message
+    assert record.message.startswith(
+        "model 'robot', plugin 'drive': not opened, since ROS has no such names: '/")
+    (made,) = adapters._open.values()
+    names = {one.name for one in made.endpoints}
+    assert names & left
+    assert all(one in record.message for tag, one in tags.items() if tag != 'robotNamespace')
     adapters.model_deleted(model)
-    assert not server.jobs
+    assert not adapters._open
 
 
 def test_topic_with_a_conflicting_type_is_left_out(adapter, caplog):
