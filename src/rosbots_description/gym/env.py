@@ -80,6 +80,8 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self._require_mode(render_mode)
         end_with_parent()
         self.render_mode = render_mode
+        if not isinstance(randomise, Randomisation | None):
+            raise ValueError(f'randomise is {randomise!r}; it takes a Randomisation, or None')
         self._randomise = randomise or Randomisation()
         self._stage = Stage(Setting(
             world, robot, pose, dict(arguments or {}), actions, sensors, settle, package_path,

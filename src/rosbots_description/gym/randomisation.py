@@ -14,6 +14,7 @@ from .placement import Range, move_freely
 Colour = tuple[float, float, float, float]
 
 _FACTORS = 'mass', 'friction', 'light', 'noise'
+_MAX_FACTOR, _MAX_SHIFT = 1e6, 1e6  # [m or rad]; numbers beyond these are mistakes
 
 
 @dataclass(frozen=True)
@@ -21,11 +22,11 @@ class Randomisation:
     """Ranges (least, greatest) of factors, and greatest shifts; each is drawn uniformly.
 
     Attributes:
-        mass: factor on the robot's masses and moments of inertia.
+        mass: factor, at most 1e6 like the others, on the robot's masses and moments of inertia.
         friction: factor on the friction of all contacts of the robot.
         light: factor on the brightness of all lights.
         noise: factor on the deviation of the <noise> of the robot's sensors.
-        pose: greatest shift of the robot along x and y [m] and of its yaw [rad].
+        pose: greatest shift of the robot along x and y [m] and of its yaw [rad]; at most 1e6.
         obstacles: greatest shift of models along x and y [m], by name; their yaw is any.
     """
 
@@ -40,15 +41,16 @@ class Randomisation:
         for name in _FACTORS:
             limits = getattr(self, name)
             if limits is not None and not (
-                    len(found := _numbers(limits)) == 2 and 0.0 < found[0] <= found[1]):
+                    len(found := _numbers(limits)) == 2
+                    and 0.0 < found[0] <= found[1] <= _MAX_FACTOR):
                 self._refuse(name, 'it is a range of factors, the least and the greatest, both '
-                                   'above 0')
-        if not (len(shifts := _numbers(self.pose)) == 3 and min(shifts) >= 0.0):
-            self._refuse('pose', 'it is three shifts, finite numbers of at least 0')
+                                   f'above 0 and at most {_MAX_FACTOR:g}')
+        if not (len(shifts := _numbers(self.pose)) == 3 and _are_shifts(shifts)):
+            self._refuse('pose', f'it is three shifts, numbers from 0 to {_MAX_SHIFT:g}')
         if not isinstance(self.obstacles, Mapping) or not all(
-                _numbers([shift]) and shift >= 0.0 for shift in self.obstacles.values()):
-            self._refuse('obstacles', 'it is a dict of shifts by names of models, finite numbers '
-                                      'of at least 0')
+                _are_shifts(_numbers([shift])) for shift in self.obstacles.values()):
+            self._refuse('obstacles', 'it is a dict of shifts by names of models, numbers from 0 '
+                                      f'to {_MAX_SHIFT:g}')
 
     def _refuse(self, name: str, right: str) -> NoReturn:
         raise ValueError(f'randomisation of {name} is {getattr(self, name)!r}; {right}')
@@ -98,9 +100,13 @@ def _numbers(values: Any) -> list[float]:  # noqa: ANN401  what a user gave
     """Return values as finite numbers; none of them if they are not."""
     try:
         numbers = [float(value) for value in values]
-    except (TypeError, ValueError):
+    except (OverflowError, TypeError, ValueError):
         return []
     return numbers if all(map(math.isfinite, numbers)) else []
+
+
+def _are_shifts(numbers: list[float]) -> bool:
+    return bool(numbers) and all(0.0 <= one <= _MAX_SHIFT for one in numbers)
 
 
 def _noisy(robot: Model) -> list[Sensor]:

@@ -84,7 +84,12 @@ def test_noise_of_a_sensor_differs_between_seeds_only():
     ({'friction': (2.0, 1.0)}, ValueError, 'range of factors'),
     ({'light': (1.0, float('nan'))}, ValueError, 'range of factors'),
     ({'mass': 1.5}, ValueError, 'randomisation of mass is 1.5; it is a range of factors'),
-    ({'pose': (-1.0, 0.0, 0.0)}, ValueError, 'at least 0'),
+    ({'pose': (-1.0, 0.0, 0.0)}, ValueError, 'numbers from 0 to 1e+06'),
+    ({'pose': (1e308, 0.0, 0.0)}, ValueError, 'randomisation of pose is (1e+308, 0.0, 0.0)'),
+    ({'pose': (0.0, 0.0, 10**400)}, ValueError, 'numbers from 0 to 1e+06'),
+    ({'obstacles': {'barrel': 1e308}}, ValueError, 'numbers from 0 to 1e+06'),
+    ({'mass': (1.0, 1e308)}, ValueError, 'both above 0 and at most 1e+06'),
+    ({'noise': (1.0, 10**400)}, ValueError, 'both above 0 and at most 1e+06'),
     ({'pose': (1.0, 1.0)}, ValueError, 'randomisation of pose is (1.0, 1.0); it is three shifts'),
     ({'obstacles': ['barrel']}, ValueError, "is ['barrel']; it is a dict of shifts by names"),
     ({'obstacles': {'piano': 1.0}}, NotFoundError, "no model 'piano'"),
@@ -94,6 +99,12 @@ def test_randomisation_that_cannot_be_is_named(given, kind, said):
     with pytest.raises(kind) as error:
         Still(randomise=Randomisation(**given), settle=0.1)
     assert said in str(error.value)
+
+
+@pytest.mark.parametrize('given', [1, True, 'all', {'mass': (1.0, 2.0)}, Randomisation])
+def test_anything_but_a_randomisation_is_refused(given):
+    with pytest.raises(ValueError, match=r'randomise is .*; it takes a Randomisation, or None'):
+        Still(randomise=given, settle=0.1)
 
 
 def test_robot_is_put_where_it_overlaps_nothing():

@@ -6,6 +6,7 @@ from ..description import Element
 # Gazebo's sensors read a copy of their description that was printed with so many digits: a
 # <horizontal_fov> of 1.3962634 rad is 1.39626 rad in every camera_info, and pi / 2 is 1.5708.
 DIGITS = 6
+MAX_FLOAT32 = 3.4028234e38  # the largest number of the messages of ray sensors
 
 
 def child_at(element: Element | None, path: str) -> Element | None:

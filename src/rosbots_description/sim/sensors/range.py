@@ -4,10 +4,12 @@ import logging
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ..core import PluginError
 from ..plugin_registry import register_in_sensor
 from .base import SensorPlugin
 from .noise import gaussian, noisy
-from .ray import RaySensor, Scan
+from .numbers import MAX_FLOAT32
+from .ray import MAX_ANGLE, RaySensor, Scan
 
 
 class Distance(NamedTuple):
@@ -32,12 +34,20 @@ class RangePlugin(SensorPlugin[Scan]):
     missing_level = logging.INFO
 
     def load(self) -> None:
-        """Read the tags."""
+        """Read the tags.
+
+        Raises:
+            PluginError: a number is out of range.
+        """
         read = self.params.read
         read('topicName', '/range')
         read('frameName', '/world')
         is_infrared = read('radiation', 'ultrasound') != 'ultrasound'
-        self._fixed = self.sensor.range_min, self.sensor.range_max, read('fov', 0.05), is_infrared
+        field_of_view = read('fov', 0.05)
+        if abs(field_of_view) > MAX_ANGLE:
+            raise PluginError(f'{self.prefix}<fov> is {field_of_view:g} rad; it must lie between '
+                              f'-{MAX_ANGLE:g} and {MAX_ANGLE:g}')
+        self._fixed = self.sensor.range_min, self.sensor.range_max, field_of_view, is_infrared
         self.noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.rate = self.params.rate('updateRate', 0.0)
         self.range = self.output('range', bool(self.params.values['topicName']))
@@ -47,5 +57,5 @@ class RangePlugin(SensorPlugin[Scan]):
         least, most = float(self.sensor.rays[0].min()), self.sensor.range_max
         if least < most and self.noise:
             (least,) = noisy((least,), (self.noise,), self.random, self.world.clock.steps)
-            least = min(most, least)
+            least = max(-MAX_FLOAT32, min(most, least))
         self.range.send(Distance(least, *self._fixed))

@@ -17,7 +17,7 @@ from ..description import Element
 from ..plugin_registry import register_sensor
 from .base import Sensor
 from .noise import read_noise
-from .numbers import child_at, count, number
+from .numbers import MAX_FLOAT32, child_at, count, number
 from .ray_fan import RayFan, Sweep
 from .ray_scene import RayScene
 
@@ -25,7 +25,7 @@ logger = logging.getLogger(__name__)
 
 MAX_SAMPLES = 1_000_000  # in all rows; such a scan takes half a second
 _MANY_SAMPLES = 200_000
-_MAX_ANGLE = 100.0  # [rad]
+MAX_ANGLE = 100.0  # [rad]
 
 Floats = NDArray[np.float64]
 
@@ -62,9 +62,9 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
     angles = []
     for tag in ('min_angle', 'max_angle'):
         angles.append(number(element, tag, 0.0))
-        if element is not None and abs(angles[-1]) > _MAX_ANGLE:
+        if element is not None and abs(angles[-1]) > MAX_ANGLE:
             raise PluginError(f'line {element.line}: <{tag}> is {angles[-1]:g} rad; it must lie '
-                              f'between -{_MAX_ANGLE:g} and {_MAX_ANGLE:g}')
+                              f'between -{MAX_ANGLE:g} and {MAX_ANGLE:g}')
     return Sweep(samples, int(samples * resolution), *angles)
 
 
@@ -89,9 +89,10 @@ class RaySensor(Sensor):
         self.vertical = read_sweep(child_at(ray, 'scan/vertical'), 1)
         self.range_min = number(ray, 'range/min', 0.0)
         self.range_max = number(ray, 'range/max', 0.0)
-        if not 0.0 <= self.range_min < self.range_max:
+        if not 0.0 <= self.range_min < self.range_max <= MAX_FLOAT32:
             raise PluginError(f'line {ray.line}: <range> is from {self.range_min:g} to '
-                              f'{self.range_max:g} m; it must begin at 0 or more and end beyond')
+                              f'{self.range_max:g} m; it must begin at 0 or more and end beyond, '
+                              f'at most at {MAX_FLOAT32:g}, which is all that a scan can hold')
         total = max(self.horizontal.samples * self.vertical.samples,
                     self.horizontal.count * self.vertical.count)
         if total > MAX_SAMPLES:

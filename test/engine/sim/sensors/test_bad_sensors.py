@@ -10,6 +10,7 @@ from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.public.world import World
 
 LASER, IMU, BUMPER, ARM = 'laser_nonoise', 'imu_sensor', 'bumper', 'arm_ft'
+RANGE = 'range'
 RAYS = 'it takes a number from 1 to 1000000'
 NOISE = '<noise><type>gaussian</type><mean>0</mean><stddev>{}</stddev></noise></ray>'
 
@@ -44,6 +45,10 @@ def spawn(world, robot, old='', new=''):
      '7199280 rays; at most 1000000 are cast'),
     (LASER, '<min>0.1<', '<min>31<', '<range> is from 31 to 30 m; it must begin at 0 or more'),
     (LASER, '<min>0.1<', '<min>-1<', '<range> is from -1 to 30 m; it must begin at 0 or more'),
+    (LASER, '<max>30<', '<max>1e39<', '<range> is from 0.1 to 1e+39 m; it must begin at 0 or more '
+     'and end beyond, at most at 3.40282e+38, which is all that a scan can hold'),
+    (RANGE, '<max>4<', '<max>1e308<', '<range> is from 0.01 to 1e+308 m; it must begin'),
+    (RANGE, '<fov>0.28<', '<fov>-1e39<', '<fov> is -1e+39 rad; it must lie between -100 and 100'),
     (LASER, '<max>30<', '<max>nan<', "<max> is 'nan'; it takes a finite number"),
     (LASER, '<max_angle>1.5708<', '<max_angle>1e9<',
      '<max_angle> is 1e+09 rad; it must lie between -100 and 100'),

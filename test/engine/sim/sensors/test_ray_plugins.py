@@ -1,5 +1,6 @@
 """Outputs of range finders and block lasers agree with Gazebo's recordings."""
 
+import io
 from contextlib import closing
 
 import numpy as np
@@ -8,6 +9,7 @@ from support.sensing import RECORDED, ROBOTS, recorded_scene, recordings
 
 from rosbots_description.ros_api.adapters.ray_sensors import range_message
 from rosbots_description.sim.public.world import World
+from rosbots_description.sim.sensors.noise import gaussian
 
 RECORDINGS = recordings('ray_plugins')
 EXACT = 1e-5  # [m]
@@ -67,3 +69,14 @@ def test_noise_of_a_range_finder_is_limited_to_its_range():
     assert max(ranges) == 2.0
     assert 1.92 < min(ranges) < 1.97
     assert len(set(ranges)) > 50
+
+
+@pytest.mark.parametrize('deviation', [1e30, 1e39, 1e300])
+def test_any_noise_fits_the_message_of_a_range_finder(deviation):
+    world, robot = recorded_scene(RECORDINGS['range'])
+    with closing(world):
+        robot.plugin('range').noise = gaussian(deviation, '<gaussianNoise>')
+        found = [reading for _, reading in readings_of(world, robot, 'range', 'range', 1000)]
+    for reading in found:
+        range_message(reading).serialize(io.BytesIO())
+    assert min(reading.range for reading in found) < -1e27
