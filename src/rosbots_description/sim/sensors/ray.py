@@ -4,7 +4,6 @@ Angles, order, limits and interpolation are those of Gazebo. Rays start at the m
 that nearer objects are not seen. They hit collisions, including those of their own robot.
 """
 
-import logging
 import math
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -21,10 +20,7 @@ from .numbers import MAX_FLOAT32, child_at, count, number
 from .ray_fan import RayFan, Sweep
 from .ray_scene import RayScene
 
-logger = logging.getLogger(__name__)
-
 MAX_SAMPLES = 1_000_000  # in all rows; such a scan takes half a second
-_MANY_SAMPLES = 200_000
 MAX_ANGLE = 100.0  # [rad]
 
 Floats = NDArray[np.float64]
@@ -97,18 +93,22 @@ class RaySensor(Sensor):
                     self.horizontal.count * self.vertical.count)
         if total > MAX_SAMPLES:
             raise PluginError(f'line {ray.line}: {total} rays; at most {MAX_SAMPLES} are cast')
-        if total > _MANY_SAMPLES:
-            logger.warning("model '%s', %s: %d rays take long; the simulation waits for each scan",
-                           self.model.name, self.called, total)
         self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
         self.is_noisy = self.noise.deviation > 0.0
-        self._scene, self.fan = RayScene.of(self.world), RayFan(self.vertical, self.horizontal)
-        self.blend = self.fan.blend()
+        self._scene = RayScene.of(self.world)
+        self._scene.add_rays(self, total)
+        self.fan = RayFan.of(self.vertical, self.horizontal)
+        self.blend = self.fan.blend
         self._is_whole = self.fan.shape == (self.vertical.count, self.horizontal.count)
         spans = max(1, self.horizontal.count - 1)
         self._fixed = (self.horizontal.least, self.horizontal.greatest,
                        (self.horizontal.greatest - self.horizontal.least) / spans,
                        self.range_min, self.range_max)
+
+    def unload(self) -> None:
+        """Free the arrays, which are as large as many models."""
+        self._scene.remove_rays(self)
+        self.fan = self.blend = self.rays = None  # type: ignore[assignment]  never used again
 
     def shared(self) -> Iterable[object]:
         """Return scene and rays, too, which are not part of the state."""

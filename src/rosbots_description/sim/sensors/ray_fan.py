@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,7 +76,15 @@ class Patches(NamedTuple):
 
 
 class RayFan:
-    """Rays from one point, row by row by elevation, each row by azimuth."""
+    """Rays from one point, row by row by elevation, each row by azimuth. It does not change."""
+
+    @classmethod
+    def of(cls, rows: Sweep, columns: Sweep) -> 'RayFan':
+        """Return the fan of two sweeps, shared by all sensors that have these."""
+        fan = _FANS.get((rows, columns))
+        if fan is None:
+            fan = _FANS[rows, columns] = cls(rows, columns)
+        return fan
 
     def __init__(self, rows: Sweep, columns: Sweep) -> None:
         self.rows, self.columns = rows, columns
@@ -170,6 +180,7 @@ class RayFan:
         first = patches.rows * self.shape[1] + patches.columns
         return which, down * self.shape[1] + along + first[which], counts
 
+    @cached_property
     def blend(self) -> 'Blend':
         """Return the interpolation of readings from rays, whose numbers may differ."""
         low, high, up = self.rows.neighbours()
@@ -203,6 +214,9 @@ class Blend(NamedTuple):
         """Return the readings, each the mean of its four rays."""
         found: Floats = np.mean([cast[rays] for rays, _ in self.corners], axis=0)
         return found
+
+
+_FANS: WeakValueDictionary[tuple[Sweep, Sweep], RayFan] = WeakValueDictionary()
 
 
 def _span(middle: Floats, radii: Floats, far: Floats) -> tuple[Floats, Floats]:

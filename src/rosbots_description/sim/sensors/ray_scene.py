@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ZERO, ModelError, Pose, Vector, compose, rotate
+from ..core import ZERO, ModelError, PluginError, Pose, Vector, compose, rotate
 from ..core.arrays import rotation_matrix
 from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import ray_shapes
@@ -25,6 +25,7 @@ from .ray_mesh import RayMesh, build_later
 
 if TYPE_CHECKING:
     from ..runtime import Link, Model, World
+    from .base import Sensor
 
 logger = logging.getLogger(__name__)
 
@@ -34,6 +35,7 @@ Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
 _FORMULAS: dict[type, Formula] = {
     Box: ray_shapes.box, Cylinder: ray_shapes.cylinder, Sphere: ray_shapes.sphere}
 _MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
+MANY_RAYS, MAX_RAYS = 200_000, 5_000_000  # of all sensors of a world, each with one scan
 
 
 class RayScene:
@@ -45,6 +47,8 @@ class RayScene:
         self._known_meshes: dict[Mesh, Future[RayMesh]] = {}
         self._unreadable: set[Mesh] = set()  # of these an error was logged
         self._placements = -1  # as the engine counts them, when static models were read
+        self._rays: WeakKeyDictionary[Sensor, int] = WeakKeyDictionary()  # of a scan
+        self._reported = MANY_RAYS / 2  # rays in the last warning about their sum
         self._world_models = world.models  # a reference to the world would keep it alive
         self._lay_out()
         for model in self._world_models.values():
@@ -58,12 +62,41 @@ class RayScene:
             _SCENES[world] = cls(world)
         return _SCENES[world]
 
+    def add_rays(self, sensor: 'Sensor', rays: int) -> None:
+        """Count the rays of a sensor, with a warning whenever the sum of all has doubled.
+
+        Raises:
+            PluginError: all sensors of the world cast too many.
+        """
+        total = rays + sum(self._rays.values())
+        if total > MAX_RAYS:
+            raise PluginError(f'{sensor.called}: the sensors of this world would cast {total} rays '
+                              f'with it; at most {MAX_RAYS} are cast')
+        self._rays[sensor] = rays
+        if total > MANY_RAYS and total >= 2 * self._reported:
+            self._reported = total
+            logger.warning(
+                "model '%s', %s: %d rays, with those of all other sensors, take long; the "
+                'simulation waits for each scan', sensor.model.name, sensor.called, total)
+
+    def remove_rays(self, sensor: 'Sensor') -> None:
+        """Count the rays of a sensor no more."""
+        self._rays.pop(sensor, None)
+        self._reported = max(MANY_RAYS / 2, min(self._reported, sum(self._rays.values())))
+
     def model_spawned(self, model: 'Model') -> None:
         """Begin to build its meshes, so that the first scan needs not."""
         self._build(collision.geometry for _, collision in _collisions([model]))
 
     def model_deleted(self, model: 'Model') -> None:
-        """Keep its meshes for other models."""
+        """Drop it, and its meshes that no other model has."""
+        if model in self._models:
+            self._models.remove(model)
+            self._lay_out()
+        others = [other for other in self._world_models.values() if other is not model]
+        used = {collision.geometry for _, collision in _collisions(others)}
+        for mesh in self._known_meshes.keys() - used:
+            del self._known_meshes[mesh]
 
     def world_reset(self) -> None:
         """Keep all meshes."""

@@ -1,6 +1,8 @@
 """Whatever stands in a <sensor>, its model comes and the clock goes on; a sentence says why."""
 
+import gc
 import logging
+import weakref
 from contextlib import closing
 
 import pytest
@@ -118,6 +120,62 @@ def test_error_about_an_unknown_collision_lists_the_known_ones(world, caplog):
 def test_scan_of_a_million_rays_gives_a_warning(world, caplog):
     with caplog.at_level(logging.WARNING):
         _, times = spawn(world, LASER, '<samples>720<', '<samples>1000000<')
-    assert '1000000 rays take long; the simulation waits for each scan' in caplog.text
+    assert '1000000 rays, with those of all other sensors, take long; the simulation waits for ' \
+        'each scan' in caplog.text
     world.run(30)
     assert times == [25]
+
+
+def spawn_lasers(world, numbers, samples):
+    text = (ROBOTS / f'{LASER}.urdf').read_text('utf-8')
+    text = text.replace('<samples>720<', f'<samples>{samples}<')
+    return [world.spawn(load_urdf(text, f'bot{one}')[0], f'bot{one}', x=30.0 + 3.0 * one)
+            for one in numbers]
+
+
+def test_sum_of_all_rays_gives_a_warning_whenever_it_has_doubled(world, caplog):
+    spawn_lasers(world, range(16), 90_000)
+    warned = [record.args[2] for record in caplog.records if 'take long' in record.message]
+    assert warned == [270_000, 540_000, 1_080_000]
+    for one in range(16):
+        world.delete(f'bot{one}')
+    caplog.clear()
+    spawn_lasers(world, range(3), 90_000)
+    assert caplog.text.count('270000 rays, with those of all other sensors, take long') == 1
+
+
+def test_sum_of_all_rays_is_limited_until_models_are_deleted(world, caplog):
+    spawn_lasers(world, range(5), 1_000_000)
+    assert 'spawned without it' not in caplog.text
+    refused, = spawn_lasers(world, [5], 1000)
+    assert 'the sensors of this world would cast 5001000 rays with it; at most 5000000 are cast' \
+        in caplog.text
+    assert not refused.sensors
+    world.delete('bot0')
+    accepted, = spawn_lasers(world, [6], 1000)
+    assert accepted.sensors
+
+
+def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(world):
+    models = spawn_lasers(world, range(4), 100_000)
+    fans = [weakref.ref(model.sensors[0].fan) for model in models]
+    assert len(set(fans)) == 1
+    for model in models:
+        model.sensors[0].read()
+    gc.disable()  # no cycle may keep megabytes
+    try:
+        for number in range(4):
+            assert fans[0]() is not None
+            world.delete(f'bot{number}')
+        assert fans[0]() is None
+    finally:
+        gc.enable()
+
+
+def test_deleted_models_are_referenced_by_no_ray_scene(world):
+    models = [weakref.ref(one) for one in spawn_lasers(world, range(2), 720)]
+    models[0]().sensors[0].read()
+    for number in range(2):
+        world.delete(f'bot{number}')
+    gc.collect()
+    assert [one() for one in models] == [None, None]
