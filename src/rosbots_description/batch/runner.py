@@ -59,7 +59,8 @@ def run(
         only: numbers of the runs to make; None: all of them.
         progress: called after each row.
     Raises:
-        ScenarioError: the scenario is not valid, or the folder holds the rows of another one.
+        ScenarioError: the scenario is not valid, or the folder holds the rows of another one, or is
+            in use by another batch.
         ClusterError: Ray is not installed, cannot be started or cannot be reached.
     """
     file = _as_file(scenario, parameters)
@@ -68,17 +69,17 @@ def run(
     except ImportError as error:
         raise ScenarioError(f'no rows without the Python package {error.name}; ./rosbots setup or '
                             "pip install '.[ray]' installs it") from None
-    table = Table(file, output)
     wanted = range(file.parameters.runs) if only is None else sorted(set(only))
     if wanted and not 0 <= wanted[0] <= wanted[-1] < file.parameters.runs:
         raise ScenarioError(f'the runs have the numbers 0 to {file.parameters.runs - 1}')
-    missing = [number for number in wanted if number not in table.rows]
-    total = len(table.rows) + len(missing)
-    repeated = 0
-    if missing:
-        repeated = _collect(table, _rows(file, missing, workers, address), total, progress)
-    table.finish()
-    return Result(table.table(), repeated, table.fault)
+    with closing(Table(file, output)) as table:
+        missing = [number for number in wanted if number not in table.rows]
+        total = len(table.rows) + len(missing)
+        repeated = 0
+        if missing:
+            repeated = _collect(table, _rows(file, missing, workers, address), total, progress)
+        table.finish()
+        return Result(table.table(), repeated, table.fault)
 
 
 def _as_file(scenario: Any, parameters: Mapping[str, Any] | None) -> ScenarioFile:  # noqa: ANN401

@@ -1,8 +1,10 @@
 """The rows of a batch: in memory, and as Parquet files while they come."""
 
 import contextlib
+import fcntl
 import os
-from collections.abc import Mapping
+import weakref
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +22,16 @@ class Table:
     """Rows by the number of their run, in a folder that survives an interruption.
 
     While they come, rows are in files of `rows/`, each complete; `finish` puts all of them into
-    `rows.parquet`, ordered by run. Rows that cannot be written wait for the next `flush`.
+    `rows.parquet`, ordered by run. Rows that cannot be written wait for the next `flush`. The
+    folder is locked until `close`, or until the process ends in whatever way.
     """
 
     def __init__(self, file: ScenarioFile, folder: str | os.PathLike[str] | None) -> None:
         """Open the table in a folder, with the rows that are there; None keeps rows in memory.
 
         Raises:
-            ScenarioError: the folder cannot be used, or holds the rows of another scenario.
+            ScenarioError: the folder cannot be used, holds the rows of another scenario, or is in
+                use by another batch.
         """
         names = file.parameters.names
         self._text = {name for name in names if file.parameters.type_of(name) is str}
@@ -40,14 +44,29 @@ class Table:
         self.rows: dict[int, dict[str, Any]] = {}
         self.fault = ''  # why rows could not be written
         self._waiting: list[dict[str, Any]] = []
+        self._unlock: Callable[[], object] = lambda: None
         self._folder = None if folder is None else Path(folder)
         if self._folder is not None:
-            try:
-                (self._folder / PARTS).mkdir(parents=True, exist_ok=True)
-            except OSError as error:
-                raise ScenarioError(
-                    f'rows cannot be written to {folder}: {_why(error)}') from None
+            self._open(self._folder)
             self._load(self._folder)
+
+    def _open(self, folder: Path) -> None:
+        """Make and lock the folder."""
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+            self._unlock = weakref.finalize(self, os.close, handle)
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            (folder / PARTS).mkdir(exist_ok=True)
+        except BlockingIOError:
+            raise ScenarioError(f'{folder} is in use by another batch; name another folder, or '
+                                'wait until that one ends') from None
+        except OSError as error:
+            raise ScenarioError(f'rows cannot be written to {folder}: {_why(error)}') from None
+
+    def close(self) -> None:
+        """Unlock the folder."""
+        self._unlock()
 
     def _load(self, folder: Path) -> None:
         parts = sorted((folder / PARTS).glob('*.parquet'))

@@ -1,12 +1,17 @@
 """Rows in files: complete at any time, kept, in order, and no worse for a full disk."""
 
+import contextlib
 import errno
+import os
+import subprocess
+import sys
+import threading
 
 import pytest
 from pyarrow import parquet
 from support.batches import full_disk, pushed_ball
 
-from rosbots_description.batch import ScenarioError, ScenarioFile
+from rosbots_description.batch import ScenarioError, ScenarioFile, run
 from rosbots_description.batch.simulation import empty_row
 from rosbots_description.batch.table import Table
 
@@ -48,11 +53,13 @@ def test_rows_of_before_are_kept(file, tmp_path):
     first = Table(file, tmp_path)
     first.add(rows(file, 4)[0])
     first.flush()
+    first.close()
     second = Table(file, tmp_path)
     assert list(second.rows) == [4]
     second.add(rows(file, 2)[0])
     second.flush()
     second.finish()
+    second.close()
     assert list(Table(file, tmp_path).rows) == [2, 4]
 
 
@@ -62,6 +69,7 @@ def test_a_file_without_content_is_no_obstacle(file, tmp_path):
     table = Table(file, tmp_path)
     table.add(rows(file, 0)[0])
     table.flush()
+    table.close()
     assert list(Table(file, tmp_path).rows) == [0]
 
 
@@ -69,6 +77,7 @@ def test_rows_of_another_scenario_are_not_mixed_in(file, tmp_path):
     table = Table(file, tmp_path)
     table.add(rows(file, 0)[0])
     table.finish()
+    table.close()
     with pytest.raises(ScenarioError, match='holds the rows of another scenario'):
         Table(ScenarioFile(pushed_ball()), tmp_path)
 
@@ -99,4 +108,64 @@ def test_rows_wait_for_a_full_disk(file, tmp_path):
     table.add(rows(file, 1)[0])
     table.flush()
     assert table.fault == ''
+    table.close()
     assert list(Table(file, tmp_path).rows) == [0, 1]
+
+
+def test_folder_in_use_is_refused_until_it_is_closed(file, tmp_path):
+    first = Table(file, tmp_path)
+    with pytest.raises(ScenarioError, match=r'is in use by another batch; name another folder'):
+        Table(file, tmp_path)
+    first.add(rows(file, 0)[0])
+    first.finish()
+    first.close()
+    assert list(Table(file, tmp_path).rows) == [0]
+
+
+def test_folder_of_a_killed_batch_is_not_in_use(file, tmp_path):
+    code = """
+import sys, time
+sys.path[:] = sys.argv[2:]
+from support.batches import pushed_ball
+from rosbots_description.batch import ScenarioFile
+from rosbots_description.batch.table import Table
+table = Table(ScenarioFile(pushed_ball()), sys.argv[1])
+print('open', flush=True)
+time.sleep(600.0)
+"""
+    with subprocess.Popen([sys.executable, '-c', code, tmp_path, *sys.path],
+                          stdout=subprocess.PIPE) as other:
+        assert other.stdout.readline() == b'open\n'
+        with pytest.raises(ScenarioError, match='is in use by another batch'):
+            Table(file, tmp_path)
+        other.kill()
+    Table(file, tmp_path)
+
+
+def test_refused_table_leaves_no_file_open(file, tmp_path):
+    first = Table(file, tmp_path)
+    before = os.listdir('/proc/self/fd')
+    for _ in range(10):
+        with contextlib.suppress(ScenarioError):
+            Table(file, tmp_path)
+    assert os.listdir('/proc/self/fd') == before
+    first.close()
+
+
+def test_two_batches_at_once_make_the_runs_once(tmp_path):
+    made, faults = [], []
+
+    def batch():
+        try:
+            made.append(run(pushed_ball(), workers=0, output=tmp_path).table.num_rows)
+        except ScenarioError as error:
+            faults.append(str(error))
+
+    both = [threading.Thread(target=batch) for _ in range(2)]
+    for one in both:
+        one.start()
+    for one in both:
+        one.join()
+    assert made
+    assert len(made) + len(faults) == 2
+    assert all('is in use by another batch' in fault for fault in faults)

@@ -108,7 +108,8 @@ class RaySensor(Sensor):
     def unload(self) -> None:
         """Free the arrays, which are as large as many models."""
         self._scene.remove_rays(self)
-        self.fan = self.blend = self.rays = None  # type: ignore[assignment]  never used again
+        del self.fan, self.blend
+        vars(self).pop('rays', None)
 
     def shared(self) -> Iterable[object]:
         """Return scene and rays, too, which are not part of the state."""
