@@ -7,6 +7,7 @@ import ctypes.util
 import os
 import shutil
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
@@ -86,7 +87,11 @@ def rviz_environment(given: Mapping[str, str], log_levels: Path) -> dict[str, st
         with contextlib.suppress(OSError):  # then Qt prints a warning
             folder = Path(tempfile.gettempdir(), f'rosbots-runtime-{os.getuid()}')
             folder.mkdir(mode=0o700, exist_ok=True)
-            made['XDG_RUNTIME_DIR'] = str(folder)
+            state = folder.lstat()
+            # Its name is known to all: another user may have made it, or a link of that name.
+            if stat.S_ISDIR(state.st_mode) and state.st_uid == os.getuid():
+                folder.chmod(0o700)
+                made['XDG_RUNTIME_DIR'] = str(folder)
     return made
 
 
