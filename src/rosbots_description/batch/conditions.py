@@ -4,11 +4,23 @@ import ast
 import math
 from collections.abc import Collection, Mapping
 
-from simpleeval import SimpleEval
+from simpleeval import DEFAULT_OPERATORS, SimpleEval
 
 _FUNCTIONS = {'abs': abs, 'min': min, 'max': max, 'sqrt': math.sqrt, 'hypot': math.hypot,
               'sin': math.sin, 'cos': math.cos, 'atan2': math.atan2}
 _CONSTANTS = {'pi': math.pi}
+MAX_LENGTH = 1000  # [characters]
+
+
+def _remainder(value: float, divisor: float) -> float:
+    return float(value) % float(divisor)  # never the formatting of a text
+
+
+# What could take hours or gigabytes: powers of integers, shifts, texts with widths, methods.
+_OPERATORS = {kind: function for kind, function in DEFAULT_OPERATORS.items()
+              if kind not in (ast.LShift, ast.RShift)
+              } | {ast.Pow: math.pow, ast.Mod: _remainder}
+_EXCLUDED = ast.Attribute, ast.JoinedStr, ast.FormattedValue, ast.Subscript
 
 
 class Condition:
@@ -21,10 +33,15 @@ class Condition:
             ValueError: it is not such an expression.
         """
         self.text = text
-        self._eval = SimpleEval(functions=_FUNCTIONS, names={})
+        if len(text) > MAX_LENGTH:
+            raise ValueError(f"the condition '{text[:40]}...' has {len(text)} characters; at most "
+                             f'{MAX_LENGTH} are accepted')
+        self._eval = SimpleEval(_OPERATORS, _FUNCTIONS, {})
+        for kind in _EXCLUDED:
+            self._eval.nodes.pop(kind, None)
         try:
             self._parsed = ast.parse(text.strip(), mode='eval').body
-        except (SyntaxError, ValueError) as error:
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             raise ValueError(f"the condition '{text}' is not an expression: "
                              f'{getattr(error, "msg", error)}') from None
         nodes = [node for node in ast.walk(self._parsed) if isinstance(node, ast.Name)]

@@ -77,16 +77,36 @@ def _locked_folder() -> tuple[Path, IO[str]]:
     """Return a new folder, and the file in it that is locked as long as its program lives."""
     place = tempfile.gettempdir()
     place = place if len(place) <= _MAX_PLACE else '/tmp'
-    for path in Path(place).glob(f'{_PREFIX}*/{_LOCK}'):
-        with contextlib.suppress(OSError), path.open() as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if path.parent.stat().st_uid == os.getuid():
-                _remove(path.parent)
+    for path in Path(place).glob(f'{_PREFIX}*'):
+        with contextlib.suppress(OSError):
+            _remove_if_left(path)
     made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=place))
     lock = (made / 'new').open('w')
     fcntl.flock(lock, fcntl.LOCK_EX)
     (made / 'new').rename(made / _LOCK)
     return made, lock
+
+
+def _remove_if_left(folder: Path) -> None:
+    """Remove a folder of this user whose program does not live any more.
+
+    Anyone can make such a name: a link, or a pipe in place of the file, is not followed or opened.
+
+    Raises:
+        OSError: it is not one of these, or its program lives.
+    """
+    if folder.lstat().st_uid != os.getuid():
+        return
+    inside = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    try:
+        lock = os.open(_LOCK, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=inside)
+    finally:
+        os.close(inside)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _remove(folder)
+    finally:
+        os.close(lock)
 
 
 def _remove(folder: Path) -> None:

@@ -134,7 +134,7 @@ def _distribution(
 
     try:
         draw(np.random.default_rng(0))
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError, MemoryError) as error:
         raise ValueError(f"{kind} of the parameter '{name}' takes {_DISTRIBUTIONS[kind]}: "
                          f'{error}') from None
     return draw

@@ -9,14 +9,17 @@ from pathlib import Path
 from typing import Annotated, Any, Self
 
 import msgspec
-import yaml
 from msgspec import Meta, Struct
 
 from ..sim import Pose, SimError, from_rpy
+from ..sim.core import one_line
 from .conditions import Condition
 from .parameters import Parameters, Run, substitute
 from .records import STATISTICS
+from .yaml_file import read_yaml
 
+MIN_PERIOD = 0.001  # [s] a shorter one is a step, which is not much shorter in any world
+MAX_PERIODS = 10_000_000  # of a run, in each of which records are taken
 Positive = Annotated[float, Meta(gt=0.0)]
 
 
@@ -109,6 +112,9 @@ class Scenario(Struct, frozen=True, forbid_unknown_fields=True):
                                     f'{self.duration:g} s')
         if not all(map(math.isfinite, (self.duration, self.period))):
             raise ScenarioError('duration and period take finite numbers of seconds')
+        if self.duration > MAX_PERIODS * max(self.period, MIN_PERIOD):
+            raise ScenarioError(f'the duration of {self.duration:g} s has more than {MAX_PERIODS} '
+                                f'periods of {self.period:g} s; take a longer period')
 
     @property
     def columns(self) -> list[str]:
@@ -151,11 +157,9 @@ class ScenarioFile:
             ScenarioError: the file cannot be read, or is not a scenario.
         """
         try:
-            document = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
-        except (OSError, UnicodeDecodeError) as error:
-            raise ScenarioError(f'{path} cannot be read: {error}') from None
-        except yaml.YAMLError as error:
-            raise ScenarioError(f'{path} is not YAML: {" ".join(str(error).split())}') from None
+            document = read_yaml(path)
+        except (OSError, ValueError) as error:
+            raise ScenarioError(f'{path} cannot be read: {one_line(str(error))}') from None
         if not isinstance(document, dict):
             raise ScenarioError(f'{path} is not a scenario; a scenario is a YAML mapping with at '
                                 'least a duration')

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import os
 import signal
 import sys
 from collections import Counter
@@ -11,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .abrupt_end import reported
 from .program import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -122,7 +124,25 @@ def _say(sentence: str) -> None:
     sys.stderr.write(f'batch: {sentence}\n')
 
 
+def program() -> int:
+    """Run `main` as a program of its own."""
+    with reported('batch: ended by Ray, of which a process has died, or by a signal; the rows so '
+                  'far are kept, and the same command makes the others'), _own_stderr():
+        return main()
+
+
+@contextlib.contextmanager
+def _own_stderr() -> Iterator[None]:
+    """Keep standard error for this program: Ray's core prints what it does about dead processes."""
+    with os.fdopen(os.dup(2), 'w', encoding='utf-8', errors='backslashreplace',
+                   buffering=1) as own, contextlib.redirect_stderr(own):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        os.close(nowhere)
+        yield
+
+
 if __name__ == '__main__':
     from .program import run as run_program
 
-    sys.exit(run_program(main))
+    sys.exit(run_program(program))

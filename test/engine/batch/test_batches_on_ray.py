@@ -157,6 +157,34 @@ def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
         time.sleep(0.05)
 
 
+def test_a_batch_whose_ray_is_killed_ends_with_one_sentence(tmp_path):
+    path = tmp_path / 'endless.yaml'
+    path.write_text(yaml.safe_dump(scenario(tmp_path) | {'repeat': 5000}))
+    command = subprocess.Popen(
+        [sys.executable, '-m', 'rosbots_description.cli.batch', str(path), '--workers', '1',
+         '--output', str(tmp_path / 'rows')], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
+    try:
+        end = time.monotonic() + 2 * PATIENCE
+        while not list(tmp_path.glob('rows/rows/*.parquet')) and time.monotonic() < end:
+            time.sleep(0.05)
+        victims = [one for one in descendants(command.pid)
+                   if 'raylet/raylet' in Path(f'/proc/{one}/cmdline').read_text()]
+        assert victims
+        for victim in victims:
+            os.kill(victim, signal.SIGKILL)
+        printed, said = command.communicate(timeout=2 * PATIENCE)
+    finally:
+        command.kill()
+    assert command.returncode != 0
+    assert (printed, said) == ('', (
+        'batch: ended by Ray, of which a process has died, or by a signal; the rows so far are '
+        'kept, and the same command makes the others\n'))
+    assert parquet.read_table(tmp_path / 'rows' / 'rows').num_rows
+    with local_ray.own_folder():  # the next batch removes the folder
+        pass
+
+
 @pytest.mark.parametrize(('arguments', 'said'), [
     ({'workers': -1}, 'workers takes at least 1, or 0 for none'),
     ({'workers': 2, 'address': 'auto'}, 'only without an address'),
