@@ -63,6 +63,14 @@ def test_other_systems_with_all_packages_are_welcome(tmp_path):
     assert set_up('DEBIAN=; missing_packages() { :; }; set_up_packages', tmp_path) == (0, '')
 
 
+def test_installation_that_apt_get_does_not_complete_is_an_error(tmp_path):
+    code, errors = set_up(
+        'DEBIAN=13; sudo() { :; }; phase() { :; }; amount() { :; }; '
+        'missing_packages() { echo catkin; }; set_up_packages', tmp_path)
+    assert (code, errors) == (1, (
+        'rosbots: the installation of Debian packages was interrupted; run this again\n'))
+
+
 def test_python_is_that_of_the_workspace_under_either_catkin():
     program = f'{(ROOT / ".ws").resolve()}/venv/bin/python'
     cache = (ROOT / '.ws' / 'build' / 'CMakeCache.txt').read_text(encoding='utf-8')

@@ -59,5 +59,9 @@ set_up_packages() {
     fi
     phase 'List of Debian packages' apt_update update_lists "${missing[@]}"
     phase "Debian packages ($(amount "${missing[@]}"))" apt install_packages "${missing[@]}"
+    # Interrupted, apt-get ends as if all was well.
+    mapfile -t missing < <(missing_packages <<< "${missing[*]}")
+    [[ ${#missing[@]} -eq 0 ]] ||
+      fail 'the installation of Debian packages was interrupted; run this again'
   fi
 }
