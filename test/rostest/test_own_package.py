@@ -42,11 +42,13 @@ SET_UP = f"""
 ROOT=$PWD
 source tools/setup.bash
 find_workspace
+choose_sets base
 mkdir -p "$WORKSPACE/devel"
 touch -d @0 "$WORKSPACE/devel/setup.bash"  # CMake replaces no file of the same second
 ln -s "{readme.ROOT}/.ws/venv" "$WORKSPACE/venv"
 link_packages
-for part in packages python workspace; do mark_done $part "$(${{part}}_fingerprint)"; done
+for part in packages python; do mark_all_done $part "$(${{part}}_fingerprint)"; done
+mark_done workspace "$(workspace_fingerprint)"
 """
 
 

@@ -19,6 +19,7 @@ pybullet_wheel() {
 
 # Anew where the interpreter or the folder is another one: the first lines of its programs name it.
 make_environment() {
+  if [[ -L $WORKSPACE/venv ]]; then rm "$WORKSPACE/venv"; fi  # it belongs to another workspace
   /usr/bin/python3 -m venv --system-site-packages --clear "$WORKSPACE/venv"
 }
 
