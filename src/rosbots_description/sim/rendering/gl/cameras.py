@@ -71,6 +71,14 @@ def frustum_sphere(eye: NDArray[Any], lens: Lens) -> tuple[NDArray[Any], float]:
     return eye[:3, 3] + middle * eye[:3, 0], max(middle, reach * slope)
 
 
+def view_corners(eye: NDArray[Any], lens: Lens) -> NDArray[Any]:
+    """Return five points (5, 3) [m] in whose convex hull lies all that a camera sees."""
+    across = np.tan(lens.field_of_view / 2.0)
+    upward = across * lens.height / lens.width
+    ways = np.array([(1.0, y * across, z * upward) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    return np.vstack([eye[:3, 3], eye[:3, 3] + lens.far * ways @ eye[:3, :3].T])
+
+
 def shadow_view(
     axes: NDArray[Any], middle: NDArray[Any], radius: float, texel: float
 ) -> NDArray[Any]:

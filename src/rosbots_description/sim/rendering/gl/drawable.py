@@ -1,5 +1,6 @@
 """The parts of a scene on the GPU, and the frame in which they are drawn."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -28,12 +29,14 @@ class Frame:
         rows = view[3] + np.array([view[0], -view[0], view[1], -view[1], view[2]])
         self.planes = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
         self.shadows: dict[str, Sweeps] = {}  # by map
+        self.shadowed: dict[Drawable, tuple[str, ...]] = {}  # maps whose shadows may fall on it
         self.prepared: set[ShaderVariant] = set()  # whose programs are set for this picture
 
-    def may_see(self, drawable: 'Drawable') -> bool:
-        """Tell whether a drawable's bounding sphere reaches into the view frustum."""
-        return bool((self.planes[:, :3] @ drawable.middle + self.planes[:, 3]
-                     > -drawable.radius).all())
+    def sees(self, middles: NDArray[Any], radii: NDArray[Any]) -> NDArray[np.bool_]:
+        """Tell which bounding spheres, (n, 3) and (n,) [m], reach into the view frustum."""
+        heights = middles @ self.planes[:, :3].T + self.planes[:, 3]
+        seen: NDArray[np.bool_] = (heights > -radii[:, None]).all(axis=1)
+        return seen
 
     def distance(self, drawable: 'Drawable') -> float:
         """Return the distance of a drawable along the optical axis [m], for sorting."""
@@ -65,11 +68,11 @@ class Drawable:
         image: moderngl.Texture | None,
     ) -> None:
         self.part = part
-        self._matrix = np.frombuffer(part.matrix).reshape(4, 4)
-        self._middle = bounds.mean(axis=0)
-        half = self._half = (bounds[1] - bounds[0]) / 2.0
-        self.radius = float(np.linalg.norm(np.abs(self._matrix[:3, :3]) @ half))
-        self.mirrored = bool(np.linalg.det(self._matrix[:3, :3]) < 0.0)
+        self.matrix = np.frombuffer(part.matrix).reshape(4, 4)  # from its mesh to its body
+        self.own_middle = bounds.mean(axis=0)  # of the mesh's bounding box
+        half = self.half = (bounds[1] - bounds[0]) / 2.0
+        self.radius = float(np.linalg.norm(np.abs(self.matrix[:3, :3]) @ half))
+        self.mirrored = bool(np.linalg.det(self.matrix[:3, :3]) < 0.0)
         self.transparent = part.appearance.alpha < 1.0
         self.casts_shadow = part.casts_shadow and not self.transparent
         self._depth, self._shadow = (
@@ -78,23 +81,34 @@ class Drawable:
         self._image = image
         self._context, self._buffer = context, buffer
         self._surfaces: dict[ShaderVariant, tuple[moderngl.VertexArray, Any]] = {}  # with uniforms
-        self._normals = np.linalg.inv(self._matrix[:3, :3]).T  # transform of normals
+        self._normals = np.linalg.inv(self.matrix[:3, :3]).T  # transform of normals
 
-    def place(self, frame: Frame) -> None:
-        """Update the placement for a picture."""
-        body = frame.bodies[self.part.body]
-        placement = body @ self._matrix
-        self._turn = body[:3, :3]
-        self.middle = placement[:3, :3] @ self._middle + placement[:3, 3]
-        self.low = float(self.middle[2] - np.abs(placement[2, :3]) @ self._half)  # [m]
-        self._placement = gl_matrix(placement)
+    def place(
+        self, placement: NDArray[Any], turn: NDArray[Any], middle: NDArray[Any], low: float
+    ) -> None:
+        """Update the placement for a picture; see `Placements`.
+
+        Args:
+            placement: transform (4, 4) to the world.
+            turn: rotation (3, 3) of its body.
+            middle: of its bounding box, in the world [m].
+            low: height of its lowest point [m].
+        """
+        self._turn, self.middle, self.low = turn, middle, low
         self._axes = placement[:3, :3]
+        self._placed: NDArray[Any] | bytes = placement
+
+    @property
+    def _placement(self) -> bytes:
+        if not isinstance(self._placed, bytes):
+            self._placed = gl_matrix(self._placed)
+        return self._placed
 
     @property
     def plane(self) -> tuple[NDArray[Any], NDArray[Any]] | None:
         """Return a point and the normal, if it is ground: flat, opaque and without a shadow."""
-        flat = int(np.argmin(self._half))
-        if self.part.casts_shadow or self.transparent or self._half[flat] > 0.0:
+        flat = int(np.argmin(self.half))
+        if self.part.casts_shadow or self.transparent or self.half[flat] > 0.0:
             return None
         return self.middle, self._axes[:, flat] / np.linalg.norm(self._axes[:, flat])
 
@@ -102,7 +116,7 @@ class Drawable:
     def corners(self) -> NDArray[Any]:
         """Return those of a box around it, with room for blurred shadows (8, 3) [m]."""
         lengths = np.linalg.norm(self._axes, axis=0)
-        half = self._half + _BLUR / lengths
+        half = self.half + _BLUR / lengths
         return np.asarray(self.middle + (_CORNERS * half) @ self._axes.T)
 
     def draw(self, variant: ShaderVariant, program: moderngl.Program) -> None:
@@ -138,6 +152,30 @@ class Drawable:
         """Free its resources on the GPU."""
         for array in (*(array for array, _ in self._surfaces.values()), self._depth, self._shadow):
             array.release()
+
+
+class Placements:
+    """The drawables of a scene, which are placed all at once for each picture."""
+
+    def __init__(self, drawables: Sequence[Drawable]) -> None:
+        self.drawables = drawables
+        self._bodies = [one.part.body for one in drawables]
+        self._matrices = np.array([one.matrix for one in drawables]).reshape(-1, 4, 4)
+        self._middles = np.array([one.own_middle for one in drawables]).reshape(-1, 3, 1)
+        self._halves = np.array([one.half for one in drawables]).reshape(-1, 3)
+        self._radii = np.array([one.radius for one in drawables])
+
+    def place(self, frame: Frame) -> None:
+        """Place the drawables for a picture, and find those that it may see."""
+        bodies = frame.bodies[self._bodies]
+        placed = bodies @ self._matrices
+        middles = (placed[:, :3, :3] @ self._middles)[:, :, 0] + placed[:, :3, 3]
+        lows = middles[:, 2] - (np.abs(placed[:, 2, :3]) * self._halves).sum(axis=1)
+        for one, *where in zip(
+                self.drawables, placed, bodies[:, :3, :3], middles, lows.tolist(), strict=True):
+            one.place(*where)
+        seen = np.flatnonzero(frame.sees(middles, self._radii))
+        frame.visible = [self.drawables[number] for number in seen.tolist()]
 
 
 @lru_cache(maxsize=4096)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cameras import camera_view, matrices, projection
-from .drawable import Drawable, Frame, PlacedPrograms, gl_matrix
+from .drawable import Drawable, Frame, PlacedPrograms, Placements, gl_matrix
 from .render_target import RenderTarget
 from .shaders import ShaderVariant, light_block, surface_shaders
 from .shadows import Shadows, Sweeps, uniform
@@ -74,6 +74,10 @@ class Renderer:
                      self._images.get(part.appearance.texture))
             for part in scene.parts
         ]
+        self._placements = Placements(self._drawables)
+        casters = [one for one in self._drawables if one.casts_shadow]
+        self._still_casters = [one for one in casters if one.part.still]
+        self._moving_casters = [one for one in casters if not one.part.still]
         self._static_bodies = sorted({part.body for part in scene.parts if part.still})
         self._stood: NDArray[Any] | None = None  # poses of still bodies in the last shadow map
         key = tuple(light.type for light in self._lights), self._sun
@@ -101,15 +105,17 @@ class Renderer:
         if self._stood is None or not np.array_equal(stands, self._stood):
             self._stood = stands
             shadows.forget()
-        casters = [one for one in self._drawables if one.casts_shadow]
         low = min((one.low for one in self._drawables), default=0.0)
-        still, moving = (
-            [one for one in casters if one.part.still == is_still] for is_still in (True, False))
         seen = [Sweeps(some, shadows.direction, low).seen(frame.planes)
-                for some in (still, moving)]
-        near = shadows.draw(frame.eye, frame.lens, still, seen[1])
+                for some in (self._still_casters, self._moving_casters)]
+        near = shadows.draw(frame.eye, frame.lens, self._still_casters, seen[1])
         frame.shadows = {name: Sweeps(some, shadows.direction, low)
                          for name, some in (('still', seen[0]), ('moving', near)) if some}
+        middles = np.array([one.middle for one in frame.visible]).reshape(-1, 3)
+        radii = np.array([one.radius for one in frame.visible])
+        reached = {name: sweeps.reach(middles, radii) for name, sweeps in frame.shadows.items()}
+        frame.shadowed = {one: tuple(name for name, those in reached.items() if those[number])
+                          for number, one in enumerate(frame.visible)}
 
     def _drop(self, kept: dict[str, Any], used: set[str]) -> None:
         for key in [key for key in kept if key not in used]:
@@ -153,11 +159,7 @@ class Renderer:
         eye_matrix = matrices(np.asarray(eye, dtype=float)[None])[0]
         frame = Frame(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
                       matrices(poses))
-        frame.visible = []
-        for drawable in self._drawables:
-            drawable.place(frame)
-            if frame.may_see(drawable):
-                frame.visible.append(drawable)
+        self._placements.place(frame)
         return frame
 
     def _target(self, lens: Lens, kind: str, samples: int) -> RenderTarget:
@@ -193,8 +195,7 @@ class Renderer:
     def _draw_surface(self, drawable: Drawable, frame: Frame) -> None:
         """Draw a surface; reading a shadow map costs time, so only where shadows may fall."""
         self._cull(drawable)
-        maps = tuple(name for name, sweeps in frame.shadows.items()
-                     if sweeps.reach(drawable.middle, drawable.radius))
+        maps = frame.shadowed.get(drawable, ())
         plane = drawable.plane
         if plane is not None:
             # Rectangles with shadows first: depths keep what was drawn there.

@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from .cameras import frustum_sphere, light_axes, shadow_view
+from .cameras import frustum_sphere, light_axes, shadow_view, view_corners
 from .values import Lens
 
 STILL_SIZE = 2048  # texels along an edge
@@ -26,6 +26,7 @@ _MAX_SHADOW_DISTANCE = 30.0  # [m] from its caster
 _CLOSE = 0.01  # [m] along the optical axis
 _GRAZING = 1e-3  # sine of an angle between light and plane
 _MOST_RECTANGLES = 16
+_MARGIN = 8  # [texels] beyond what is seen: surfaces read the map up to 6 texels beside them
 
 
 def uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
@@ -59,6 +60,7 @@ class Sweeps:
         if light[2] < 0.0:
             lengths = np.minimum(lengths, (self._middles[:, 2] + self._radii - low) / -light[2])
         self._lengths, self._light = lengths, light
+        self._corners: NDArray[Any] | None = None  # of the casters, once they were needed
 
     def seen(self, planes: NDArray[Any]) -> list[Caster]:
         """Return the casters whose shadows reach into a view frustum of planes (n, 4)."""
@@ -67,12 +69,13 @@ class Sweeps:
         inside = (np.maximum(begin, end) > -self._radii[:, None]).all(axis=1)
         return [one for one, is_seen in zip(self.casters, inside, strict=True) if is_seen]
 
-    def reach(self, middle: NDArray[Any], radius: float) -> bool:
-        """Tell whether a shadow may fall into a sphere."""
-        way = middle - self._middles
+    def reach(self, middles: NDArray[Any], radii: NDArray[Any]) -> NDArray[np.bool_]:
+        """Tell into which spheres, (n, 3) and (n,) [m], a shadow may fall."""
+        way = middles[:, None] - self._middles
         along = np.clip(way @ self._light, 0.0, self._lengths)
-        gaps = np.linalg.norm(way - along[:, None] * self._light, axis=1)
-        return bool((gaps < self._radii + radius).any())
+        gaps = np.linalg.norm(way - along[:, :, None] * self._light, axis=2)
+        met: NDArray[np.bool_] = (gaps < self._radii + radii[:, None]).any(axis=1)
+        return met
 
     def rectangles(
         self, plane: tuple[NDArray[Any], NDArray[Any]], view: NDArray[Any], size: tuple[int, int]
@@ -88,25 +91,30 @@ class Sweeps:
         slant = float(self._light @ normal)
         if abs(slant) < _GRAZING or len(self.casters) > _MOST_RECTANGLES:
             return [(0, 0, *size)]
-        found = []
-        for corners in (one.corners for one in self.casters):
-            way = ((point - corners) @ normal) / slant
-            shadow = (corners + way[:, None] * self._light) @ view[:, :3].T + view[:, 3]
-            # Where an edge from one corner to another goes behind the camera, it ends there.
-            depths = shadow[:, 3]
-            before = depths > _CLOSE
-            begin, end = np.nonzero(before[:, None] & ~before)
-            share = (depths[begin] - _CLOSE) / (depths[begin] - depths[end])
-            seen = np.concatenate([
-                shadow[before],
-                shadow[begin] + share[:, None] * (shadow[end] - shadow[begin])])
-            if len(seen):
-                pixels = (seen[:, :2] / seen[:, 3:] + 1.0) / 2.0 * size
-                low = np.clip(np.floor(pixels.min(axis=0)), 0, size).astype(int)
-                high = np.clip(np.ceil(pixels.max(axis=0)), 0, size).astype(int)
-                if (high > low).all():
-                    found.append((*low.tolist(), *(high - low).tolist()))
-        return found
+        if self._corners is None:
+            self._corners = np.stack([one.corners for one in self.casters])
+        corners = self._corners  # (c, 8, 3)
+        way = ((point - corners) @ normal) / slant
+        shadow = (corners + way[:, :, None] * self._light) @ view[:, :3].T + view[:, 3]
+        # Where an edge from one corner to another goes behind the camera, it ends there.
+        depths = shadow[:, :, 3]
+        before = depths > _CLOSE
+        if not before.all():
+            ends = before[:, :, None] & ~before[:, None, :]
+            share = (depths[:, :, None] - _CLOSE) / np.where(
+                ends, depths[:, :, None] - depths[:, None, :], 1.0)
+            between = shadow[:, :, None] + share[..., None] * (shadow[:, None] - shadow[:, :, None])
+            shadow = np.concatenate([shadow, between.reshape(len(corners), -1, 4)], axis=1)
+            before = np.concatenate([before, ends.reshape(len(corners), -1)], axis=1)
+        depths = np.where(before, shadow[:, :, 3], 1.0)
+        pixels = (shadow[:, :, :2] / depths[:, :, None] + 1.0) / 2.0 * size
+        low, high = (
+            np.clip(np.where(before[:, :, None], pixels, outside), 0, size)
+            for outside in (np.inf, -np.inf))
+        least, most = np.floor(low.min(axis=1)), np.ceil(high.max(axis=1))
+        return [(x, y, right - x, top - y) for (x, y), (right, top) in zip(
+            least.astype(int).tolist(), most.astype(int).tolist(), strict=True)
+            if right > x and top > y]
 
 
 class Shadows:
@@ -157,7 +165,8 @@ class Shadows:
                         MOVING_SIZES[-1])
             if size not in self._moving:
                 self._moving[size] = _Map(self._context, size)
-            self._moving[size].draw(self._program, self._axes, centre, reach, near)
+            self._moving[size].draw(
+                self._program, self._axes, centre, reach, near, view_corners(eye, lens))
             self._used['moving'] = self._moving[size]
         return near
 
@@ -199,15 +208,37 @@ class _Map:
 
     def draw(
         self, program: moderngl.Program, axes: NDArray[Any], middle: NDArray[Any], radius: float,
-        casters: Sequence[Caster],
+        casters: Sequence[Caster], seen: NDArray[Any] | None = None,
     ) -> None:
-        """Draw the casters of shadows into a bounding sphere."""
+        """Draw the casters of shadows into a bounding sphere.
+
+        Args:
+            seen: points (n, 3) [m]; what is outside their bounding box in the map, which no
+                picture can show, is not drawn. None: all is drawn.
+        """
         self.texel = 2.0 * radius / self.size
         view = shadow_view(axes, middle, radius, self.texel)
         self.view = view.T.astype('f4').tobytes()
+        low, high = np.zeros(2), np.full(2, float(self.size))
+        if seen is not None:
+            places = self._texels(view, seen)
+            low = np.maximum(low, np.floor(places.min(axis=0)) - _MARGIN)
+            high = np.minimum(high, np.ceil(places.max(axis=0)) + _MARGIN)
+            if (low >= high).any():
+                return
+            middles = self._texels(view, np.array([one.middle for one in casters]))
+            reach = np.array([one.radius for one in casters])[:, None] / self.texel
+            within = ((middles + reach > low) & (middles - reach < high)).all(axis=1)
+            casters = [one for one, is_within in zip(casters, within, strict=True) if is_within]
+        x, y, right, top = np.concatenate([low, high]).astype(int).tolist()
         self._buffer.use()
+        self._buffer.scissor = x, y, right - x, top - y
         self._buffer.clear(depth=1.0)
         self._context.enable_only(moderngl.DEPTH_TEST)
         uniform(program, 'view').write(self.view)
         for caster in casters:
             caster.draw_shadow()
+
+    def _texels(self, view: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
+        """Return where points (n, 3) [m] are in the map (n, 2) [texels]."""
+        return np.asarray((points @ view[:2, :3].T + view[:2, 3] + 1.0) * (self.size / 2.0))
