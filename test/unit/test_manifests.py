@@ -35,7 +35,8 @@ def imports(folder: Path) -> set[str]:
                 for path in ROOT.glob(f'{folder}/*.py')]
     own = {module.stem for module in [*modules, *programs]}
     own |= {inner.name for inner in folder.rglob('*/')}
-    return names - sys.stdlib_module_names - own - {'_typeshed', 'rosbots_description'}
+    # setuptools brings distutils to a Python that has none
+    return names - sys.stdlib_module_names - own - {'_typeshed', 'distutils', 'rosbots_description'}
 
 
 @pytest.mark.parametrize(('folder', 'package', 'kinds'), [

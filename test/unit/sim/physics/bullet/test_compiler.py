@@ -116,13 +116,13 @@ def test_files_exist_as_long_as_their_model(tmp_path, meshes):
     source = tmp_path / 'm.obj'
     source.write_text(TETRAHEDRON)
     model = compile_model(urdf_spec(MESH_LINK.format(file=source)), meshes)
-    path = Path(model.files[0])
+    path = Path(str(model.files[0]))  # Path keeps the object itself from Python 3.12 on
     assert model.has_files
     path.unlink()
     assert not model.has_files
     del model
     model = compile_model(urdf_spec(MESH_LINK.format(file=source)), meshes)
-    path = Path(model.files[0])
+    path = Path(str(model.files[0]))  # Path keeps the object itself from Python 3.12 on
     assert path.exists()
     del model
     assert not path.exists()
