@@ -96,6 +96,22 @@ def test_same_seed_gives_the_same_bits_after_other_episodes_and_in_another_world
     other.close()
 
 
+def test_a_period_runs_from_one_due_event_to_the_next_with_the_bits_of_single_steps(monkeypatch):
+    """The drive is due each 10 steps; between, no code but the engine's runs."""
+    env = gymnasium.make('rosbots/GoToGoal-v0').unwrapped
+    advance, physics, calls = env.world.run, env.world.engine.step, []
+    monkeypatch.setattr(env.world.engine, 'step', lambda steps: (calls.append(steps),
+                                                                 physics(steps)))
+    whole = rollout(env, 7, steps=3)
+    assert sum(calls) == 300
+    assert len(calls) <= 3 * 10 + 1
+    calls.clear()
+    monkeypatch.setattr(env.world, 'run', lambda steps: [advance(1) for _ in range(steps)])
+    assert rollout(env, 7, steps=3) == whole
+    assert calls == [1] * 300
+    env.close()
+
+
 def test_a_step_is_exactly_one_period(forward):
     forward.reset(seed=0)
     times = [forward.step(np.zeros(2))[4]['time'] for _ in range(3)]
