@@ -127,3 +127,30 @@ def test_the_layouts_have_time_displays_and_views_and_the_window_can_follow_a_mo
     views = shown['Views']
     assert views['Current']['Pitch'] > 0.3  # [rad], from above
     assert views['Saved'][0]['Target Frame'] == 'rosbots'
+
+
+def link_to_a_folder(path, tmp_path):
+    (tmp_path / 'elsewhere').mkdir()
+    path.symlink_to(tmp_path / 'elsewhere')
+
+
+def folder_of_another_user(path, _tmp_path):
+    if os.getuid():
+        pytest.skip('only root gives folders to other users')
+    path.mkdir()
+    os.chown(path, 65534, 65534)
+
+
+@pytest.mark.parametrize('plant', [
+    link_to_a_folder, folder_of_another_user, lambda path, _: path.touch()])
+def test_planted_runtime_folder_is_not_used(tmp_path, monkeypatch, plant):
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
+    plant(tmp_path / f'rosbots-runtime-{os.getuid()}', tmp_path)
+    assert 'XDG_RUNTIME_DIR' not in rviz_environment({}, Path('/levels'))
+
+
+def test_runtime_folder_is_made_private(tmp_path, monkeypatch):
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
+    (tmp_path / f'rosbots-runtime-{os.getuid()}').mkdir(mode=0o777)
+    made = Path(rviz_environment({}, Path('/levels'))['XDG_RUNTIME_DIR'])
+    assert made.stat().st_mode & 0o777 == 0o700
