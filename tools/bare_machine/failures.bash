@@ -74,6 +74,11 @@ works() {
   if [[ $code -eq 0 ]]; then verdict ok works; else verdict FAILED "exit code $code"; fi
 }
 
+# A network that has only this machine.
+ALONE=(unshare --net python3 -c 'import fcntl, os, socket, struct, sys
+fcntl.ioctl(socket.socket(), 0x8914, struct.pack("16sH14s", b"lo", 1, b""))  # SIOCSIFFLAGS: up
+os.execvp(sys.argv[1], sys.argv[1:])')
+
 IMPORT=(exec python3 -c 'import rospy, pybullet')
 
 # ---- before anything is installed -----------------------------------------------------------
@@ -98,7 +103,7 @@ case_sudo_refused() {
 }
 
 case_no_network() {
-  AROUND=(unshare --net)
+  AROUND=("${ALONE[@]}")
   refuses 'cannot be reached' "$CLONE/rosbots" setup
 }
 
@@ -157,7 +162,7 @@ case_no_disk() {
 }
 
 case_network_gone() {
-  AROUND=(unshare --net)
+  AROUND=("${ALONE[@]}")
   works "$CLONE/rosbots" "${IMPORT[@]}"
 }
 
@@ -196,10 +201,10 @@ case_second_clone() {
 
 # By a program that is no ROS master.
 case_port_taken() {
-  AROUND=(unshare --net)
-  refuses 'port 11311' sh -c "ip link set lo up 2> /dev/null
-    /usr/bin/python3 -m http.server 11311 & server=\$!
+  AROUND=("${ALONE[@]}")
+  refuses 'has port 11311' bash -c "/usr/bin/python3 -m http.server 11311 > /dev/null 2>&1 & server=\$!
     trap 'kill \$server' EXIT
+    until (: < /dev/tcp/localhost/11311) 2> /dev/null; do sleep 0.1; done
     $CLONE/rosbots launch gazebo_ros empty_world.launch gui:=false"
 }
 
