@@ -26,7 +26,7 @@ run_container_steps() {
   echo "== as $user: ${entry[*]} ${command[*]}"
   # shellcheck disable=SC2154
   inside "$user" sh -c "cd '$folder' && exec timeout --signal INT 60 \"\$@\"" sh "${entry[@]}" \
-    "${command[@]}" 2>&1 | tee "$bare.output"
+    "${command[@]}" 2>&1 | tee "$bare.output" || true  # timeout ends it
   grep -q 'Successfully spawned' "$bare.output"
 }
 
