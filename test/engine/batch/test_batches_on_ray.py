@@ -46,8 +46,9 @@ def scenario(folder, once=(), always=(), victims='[os.getpid()]'):
 
 
 @pytest.fixture(autouse=True)
-def scratch(monkeypatch):
+def scratch(tmp_path_factory, monkeypatch):
     """Assert that Ray leaves no folder behind; other batches have theirs elsewhere."""
+    tmp_path_factory.getbasetemp()  # which outlasts the place of this test
     with tempfile.TemporaryDirectory(prefix='t', dir='/tmp') as place:  # short: for Ray's sockets
         monkeypatch.setattr(tempfile, 'tempdir', place)
         monkeypatch.setenv('TMPDIR', place)
