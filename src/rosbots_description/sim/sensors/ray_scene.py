@@ -225,7 +225,8 @@ class RayScene:
         if poses == self._seen:
             return
         self._seen = poses
-        self._solids.place(*rows, np.array([(*place, *turned) for place, turned in poses]))
+        numbers = np.array([(*place, *turned) for place, turned in poses])
+        self._solids.place(*rows, numbers.reshape(-1, 7))  # no row where all models are static
         for row, (link, collision, normal) in enumerate(self._planes):
             if link in links:
                 position, orientation = compose(link.pose, collision.pose)

@@ -116,6 +116,14 @@ def test_moving_model_is_seen_at_its_pose_at_the_end_of_the_step(scene):
         assert sensor.read().ranges.min() == pytest.approx(distance, abs=1e-4)  # near its middle
 
 
+def test_a_static_robot_among_static_models_scans_at_its_rate():
+    static = ROBOT.replace('</robot>', '<gazebo><static>true</static></gazebo></robot>')
+    with closing(World.from_file('empty')) as world:
+        found = stamped(world, world.spawn(static).sensor('head_hokuyo_sensor'))
+        world.run(seconds=1.0)
+    assert len(found) == 40
+
+
 def test_a_static_model_is_seen_where_it_was_put(scene):
     robot = scene.spawn(ROBOT)
     wall = scene.spawn(CUBE, x=0.62, y=0.03, z=0.35)
