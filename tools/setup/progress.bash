@@ -17,9 +17,14 @@ CAUSES=(
   'a folder cannot be written'
 )
 
-# explain LOG: the sentence about its cause; fails if that is none of these.
+# explain LOG: the sentence about its cause; fails if that is none of these. venv says nothing of a
+# full disk.
 explain() {
   local i
+  if [[ $(df --output=avail -k "$WORKSPACE" | tail -n 1) -lt 1000 ]]; then
+    echo 'the disk is full; make room, and run this again'
+    return
+  fi
   for ((i = 0; i < ${#CAUSES[@]}; i += 2)); do
     if grep -qE "${CAUSES[i]}" "$1"; then
       echo "${CAUSES[i + 1]}"
