@@ -211,6 +211,6 @@ case_port_taken() {
 case_moved_clone() {
   rm -rf "$bare/home/newcomer/moved"
   mv "$bare/home/newcomer/second" "$bare/home/newcomer/moved"
-  works /home/newcomer/moved/rosbots exec sh -c \
+  works /home/newcomer/moved/rosbots exec bash -c \
     'rospack find gazebo_ros && head -n 1 "$(type -P xacro)" && xacro --help'
 }
