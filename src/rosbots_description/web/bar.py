@@ -8,6 +8,7 @@ import viser
 
 from ..sim.description import SceneChange, ShownMotion
 from .panel import Panel, attempt, fill
+from .text import Words
 
 PERIOD = 0.2  # [s, wall] between two clocks shown
 WINDOW = 1.0  # [s, wall] over which the real-time factor is taken
@@ -45,8 +46,8 @@ class Bar(Panel):
         self._time, self._complain = time, complain
         self._shown = 0.0  # real time of the clock shown [s]
         self._past: deque[tuple[float, float]] = deque()  # real time and simulated time
-        self._warning = gui.add_markdown('', visible=False)
-        self._clock = gui.add_markdown('The simulator has not answered yet.')
+        self._warning = Words(gui, visible=False)
+        self._clock = Words(gui, 'The simulator has not answered yet.')
         self._play = gui.add_button('Pause', icon=viser.Icon.PLAYER_PAUSE, hint='Space')
         self._speed = gui.add_dropdown(
             'Speed', list(SPEEDS), initial_value='1x', hint='target real-time factor')
@@ -81,16 +82,15 @@ class Bar(Panel):
         if abs(motion.real_time - self._shown) < PERIOD:
             return
         self._shown = motion.real_time
-        self._clock.content = (
-            '| | |\n|:--|--:|\n'
-            f'| Simulated time | {_time(motion.time)} |\n'
-            f'| Real time | {_time(motion.real_time)} |\n'
-            f'| Real-time factor | {"paused" if motion.paused else format(factor, ".2f")} |\n'
-            f'| Iterations | {motion.iterations} |')
+        self._clock.show('', [
+            ('Simulated time', _time(motion.time)), ('Real time', _time(motion.real_time)),
+            ('Real-time factor', 'paused' if motion.paused else format(factor, '.2f')),
+            ('Iterations', str(motion.iterations))])
 
     def warn(self, sentence: str) -> None:
         """Show a sentence above the clock until it is withdrawn with ''."""
-        self._warning.content, self._warning.visible = f'**{sentence}**', bool(sentence)
+        self._warning.show('', bold=sentence)
+        self._warning.visible = bool(sentence)
 
     def _factor(self, motion: ShownMotion) -> float:
         """Return the real-time factor of the last second."""

@@ -1,7 +1,6 @@
-"""Models and links in words and numbers, as HTML; names in it are escaped."""
+"""Models and links in words and numbers, as HTML."""
 
 from collections.abc import Iterable, Sequence
-from html import escape
 
 from ..sim.core import Pose, Twist, Vector, to_rpy
 from ..sim.description import (
@@ -16,10 +15,9 @@ from ..sim.description import (
     ShownModel,
     Sphere,
 )
+from .text import STYLE, markup, table
 
 MOST = 100  # parts of one kind that are listed
-_STYLE = 'font-size: 0.85em; padding: 0 0.7em'  # as viser's own rows
-_WIDE = 'width: 100%; white-space: nowrap'
 
 
 def scoped_name(*parts: str | None) -> str:
@@ -53,24 +51,26 @@ def state_html(
     pairs = friction(links)
     if len(pairs) == 1:
         ((mu, mu2),) = pairs
-        rows.append(('Friction mu, mu2', f'{mu:.4g}&emsp;{mu2:.4g}'))
+        rows.append(('Friction mu, mu2', f'{mu:.4g}\u2003{mu2:.4g}'))
     elif pairs:
         rows.append(('Friction', 'each collision has its own'))
-    title = escape(scoped_name(model.name, link))
-    cells = ''.join(f'<tr><td>{name}</td><td style="text-align: right">{text}</td></tr>'
-                    for name, text in rows)
-    return (f'<div style="{_STYLE}"><b>{title}</b>'
-            f'<table style="{_WIDE}">{cells}</table></div>')
+    title = markup(scoped_name(model.name, link))
+    return f'<div style="{STYLE}"><b>{title}</b>{table(rows)}</div>'
 
 
-def parts_html(model: ShownModel, link: str | None) -> str:
-    """Return lists of joints, collisions and sensors, of the model or of one link."""
+def parts_html(model: ShownModel, link: str | None, omissions: Sequence[str] = ()) -> str:
+    """Return lists of joints, collisions and sensors, of the model or of one link.
+
+    Args:
+        omissions: parts that the model was spawned without.
+    """
     links = chosen_links(model, link)
     joints = [_joint(one) for one in model.joints if link in (None, one.parent, one.child)]
     collisions = [_collision(one) for part in links for one in part.collisions]
-    sensors = [f'{escape(one.name)}: {escape(one.type)}' for part in links for one in part.sensors]
-    return ''.join((_list('Joints', joints), _list('Collisions', collisions),
-                    _list('Sensors', sensors)))
+    sensors = [f'{markup(one.name)}: {markup(one.type)}' for part in links for one in part.sensors]
+    missing = [markup(one) for one in omissions]
+    return ''.join((_list('Spawned without', missing), _list('Joints', joints),
+                    _list('Collisions', collisions), _list('Sensors', sensors)))
 
 
 def _list(title: str, entries: Sequence[str]) -> str:
@@ -79,7 +79,7 @@ def _list(title: str, entries: Sequence[str]) -> str:
     shown = ''.join(f'<li>{entry}</li>' for entry in entries[:MOST])
     if len(entries) > MOST:
         shown += f'<li>and {len(entries) - MOST} more</li>'
-    return (f'<details style="{_STYLE}"><summary>{title} ({len(entries)})</summary>'
+    return (f'<details style="{STYLE}"><summary>{title} ({len(entries)})</summary>'
             f'<ul>{shown}</ul></details>')
 
 
@@ -87,13 +87,13 @@ def _joint(joint: JointSpec) -> str:
     limits = ''
     if joint.lower is not None and joint.upper is not None:
         limits = f', {joint.lower:.4g} to {joint.upper:.4g}'
-    return (f'{escape(joint.name)}: {escape(joint.type)}{limits}, '
-            f'{escape(joint.parent)} \u2192 {escape(joint.child)}')
+    return (f'{markup(joint.name)}: {markup(joint.type)}{limits}, '
+            f'{markup(joint.parent)} \u2192 {markup(joint.child)}')
 
 
 def _collision(collision: Collision) -> str:
     surface = collision.surface
-    return (f'{escape(collision.name)}: {_shape(collision.geometry)}, '
+    return (f'{markup(collision.name)}: {_shape(collision.geometry)}, '
             f'mu {surface.mu:.4g}, mu2 {surface.mu2:.4g}')
 
 
@@ -108,8 +108,8 @@ def _shape(geometry: Geometry) -> str:
         case Plane():
             return 'plane'
         case Mesh(path):
-            return f'mesh {escape(path.rpartition("/")[2])}'
+            return f'mesh {markup(path.rpartition("/")[2])}'
 
 
 def _three(vector: Vector) -> str:
-    return '&emsp;'.join(f'{round(one, 3) + 0.0:.3f}' for one in vector)
+    return '\u2003'.join(f'{round(one, 3) + 0.0:.3f}' for one in vector)

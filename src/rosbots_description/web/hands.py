@@ -1,6 +1,6 @@
-"""What hands do to the selected model: push, duplicate, delete."""
+"""Actions on the selected model: push, duplicate, delete."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Protocol
 
@@ -13,6 +13,7 @@ from .history import History
 from .models import Models
 from .panel import Panel, attempt
 from .selection import Selection
+from .text import Words
 
 HINT = 'Click on a model to move, push, duplicate or delete it.'
 AXES = ('world', 'link')
@@ -34,6 +35,9 @@ class Hands(Protocol):
 
     def describe(self, name: str) -> ModelText:
         """Return what is needed to spawn a model again as it is."""
+
+    def omissions(self, name: str) -> Sequence[str]:
+        """Return the parts that a model was spawned without, each in a few words."""
 
     def move(self, name: str, pose: Pose) -> None:
         """Move a model, at rest, so that its frame is at a pose in the world."""
@@ -59,7 +63,7 @@ class HandsPanel(Panel):
                  history: History, complain: Callable[[str], None]) -> None:
         self._models, self._selection, self._hands = models, selection, hands
         self._history, self._complain = history, complain
-        self._title = gui.add_markdown(HINT)
+        self._title = Words(gui, HINT)
         duplicate = gui.add_button('Duplicate', icon=viser.Icon.COPY, hint='Shift-D')
         delete = gui.add_button('Delete', icon=viser.Icon.TRASH, hint='Delete')
         with gui.add_folder('Force and torque', expand_by_default=False):
@@ -104,7 +108,9 @@ class HandsPanel(Panel):
 
     def _show(self) -> None:
         model, link = self._selection.model, self._selection.link
-        self._title.content = HINT if model is None else f'**{model}**' + (
-            f', link {link}' if link else '')
+        if model is None:
+            self._title.show(HINT)
+        else:
+            self._title.show(f', link {link}' if link else '', bold=model)
         for control in self._controls:
             control.disabled = model is None

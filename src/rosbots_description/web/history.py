@@ -8,6 +8,7 @@ import viser
 
 from ..sim.description import ShownMotion
 from .panel import Panel, attempt
+from .text import plain
 
 MOST = 10  # changes that can be undone
 
@@ -54,5 +55,5 @@ class History(Panel):
         self._real_time = motion.real_time
 
     def _show(self) -> None:
-        self._button.label = f'Undo: {self._changes[-1][0]}' if self._changes else 'Undo'
+        self._button.label = f'Undo: {plain(self._changes[-1][0])}' if self._changes else 'Undo'
         self._button.disabled = not self._changes

@@ -12,6 +12,7 @@ from ..sim.core import SimError
 from ..sim.description import PRISMATIC, JointSpec
 from .models import Models
 from .panel import Panel, attempt
+from .text import plain
 
 NOTHING, TOPICS = '', 'topics of std_msgs/Float64'
 POSITION, VELOCITY, EFFORT = 'position', 'velocity', 'effort'
@@ -135,7 +136,7 @@ class JointPanel(Panel):
              command: Callable[[float], None]) -> None:
         low, high = limits
         with self._folder:
-            slider = self._gui.add_slider(label, low, high, (high - low) / STEPS,
+            slider = self._gui.add_slider(plain(label), low, high, (high - low) / STEPS,
                                           min(max(value, low), high))
         sent = [slider.value]
 

@@ -4,7 +4,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import cycle
+from itertools import cycle, islice
 from typing import Protocol
 
 import numpy as np
@@ -16,10 +16,13 @@ from ..sim.description import ShownMotion
 from .chart import WINDOW, Chart
 from .panel import fill
 from .reading import ReadingPanel
+from .text import plain
 
 PERIOD = 0.2  # [s, wall] between two pictures of the plot
 COLOURS = ('#1f77b4', '#d62728', '#2ca02c', '#ff7f0e', '#9467bd', '#8c564b', '#17becf')
 HEIGHT, PADDING = 260, (12, 24, 0, 0)  # [pixels]; from the top clockwise
+MOST = 20  # curves
+MOST_TOPICS = 1000  # that are offered
 MOTIONS = 90  # clocks kept, to tell the simulated time of an arrival
 
 
@@ -80,7 +83,7 @@ class PlotPanel(ReadingPanel):
         topics = self._signals.signal_topics()
         with self._lock:
             if topics.keys() != self._topics.keys():
-                self._topic.options = ('', *topics)
+                self._topic.options = ('', *islice(topics, MOST_TOPICS))
             self._topics = topics
             self._read_chosen()
 
@@ -94,6 +97,9 @@ class PlotPanel(ReadingPanel):
     def _add_curve(self, curve: str) -> None:
         with self._lock:
             if curve in self._chart.curves:
+                return
+            if len(self._chart.curves) >= MOST:
+                self._complain(f'A plot has at most {MOST} curves; remove one first.')
                 return
             try:
                 self._signals.open(curve)
@@ -136,11 +142,12 @@ class PlotPanel(ReadingPanel):
                 self._plot = self._gui.add_uplot(
                     self._chart.table(self._now()),
                     (uplot.Series(label='simulated time [s]'), *(
-                        uplot.Series(label=curve, stroke=colour, width=1.5)
+                        uplot.Series(label=plain(curve), stroke=colour, width=1.5)
                         for curve, colour in zip(curves, cycle(COLOURS), strict=False))),
                     scales={'x': {'time': False}}, height=HEIGHT, padding=PADDING)
             for curve in curves:
-                box = self._gui.add_checkbox(curve, initial_value=True, hint='uncheck to remove')
+                box = self._gui.add_checkbox(plain(curve), initial_value=True,
+                                             hint='uncheck to remove')
                 box.on_update(partial(self._uncheck, curve))
                 self._boxes[curve] = box
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..sim.core import Pose
 from ..sim.description import ShownReading
 from .nodes import node, place
+from .text import Rows, Words, plain
 
 RATE = 2e6  # of points and lines that are sent to a browser [bytes/s]
 COLOUR, LINE_COLOUR = (230, 60, 40), (255, 160, 140)
@@ -23,11 +24,11 @@ class SensorRow:
                  choose: Callable[[bool], None]) -> None:
         """Add the box; `choose` is called when somebody changes it."""
         self._site, self._topic = site, topic
-        self._box = site.gui.add_checkbox(topic, checked, hint=kind)
+        self._box = site.gui.add_checkbox(plain(topic), checked, hint=plain(kind))
         self._box.on_update(lambda _: choose(self._box.value))
-        self._folder = site.gui.add_folder(kind, visible=False)
+        self._folder = site.gui.add_folder(plain(kind), visible=False)
         with self._folder:
-            self._words = site.gui.add_markdown('')
+            self._words = Words(site.gui)
         self._picture: viser.GuiImageHandle | None = None
         self._frame: viser.FrameHandle | None = None
         self._points: viser.PointCloudHandle | None = None
@@ -46,23 +47,22 @@ class SensorRow:
             self._show_picture(reading.picture)
         if reading.points is not None or reading.lines is not None:
             if pose is None:
-                words += ("\n\nIt is not in the scene: TF does not connect its frame "
+                words += ("\nIt is not in the scene: TF does not connect its frame "
                           f"'{reading.frame}' with a link.")
             else:
                 with self._site.atomic():
                     self._show_shape(reading, pose)
-        self.tell(words)
+        self.tell(words, reading.rows)
 
-    def tell(self, words: str) -> None:
+    def tell(self, words: str, rows: Rows = ()) -> None:
         """Show words below the box."""
         self._folder.visible = True
-        if self._words.content != words:
-            self._words.content = words
+        self._words.show(words, rows)
 
     def clear(self) -> None:
         """Show the box only."""
         self._folder.visible = False
-        self._words.content = ''
+        self._words.show('')
         for part in (self._picture, self._frame):
             if part is not None:
                 part.remove()

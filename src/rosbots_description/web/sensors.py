@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from functools import partial
+from itertools import islice
 from typing import Protocol
 
 import viser
@@ -11,10 +12,12 @@ from ..sim.description import SceneChange, ShownLink, ShownReading
 from .models import Models
 from .reading import ReadingPanel
 from .sensor_row import SensorRow
+from .text import Words
 
 PERIOD = 1.0 / 15.0  # [s, wall] between two looks at the sensors
 WORLD = ('', 'world')  # frames that are the world's own
 NONE = 'No sensor publishes.'
+MOST = 100  # sensors that have a box
 
 
 class Sensors(Protocol):
@@ -46,12 +49,13 @@ class SensorPanel(ReadingPanel):
     def __init__(self, site: viser.ViserServer, sensors: Sensors, models: Models) -> None:
         super().__init__(PERIOD)
         self._site, self._sensors, self._models = site, sensors, models
-        self._topics: Mapping[str, str] = {}
+        self._offered: Mapping[str, str] = {}  # all that there are
+        self._topics: Mapping[str, str] = {}  # those that have a box
         self._rows: dict[str, SensorRow] = {}
         self._checked: set[str] = set()  # also of topics that have gone, and may return
         self._unplaced: dict[str, ShownReading] = {}  # until TF tells where they were taken
         self._links: dict[str, dict[str, ShownLink]] = {}  # by names, for each topic
-        self._note = site.gui.add_markdown(NONE)
+        self._note = Words(site.gui, NONE)
         self._folder = site.gui.add_folder('Sensors')
 
     def apply(self, change: SceneChange) -> None:
@@ -63,8 +67,9 @@ class SensorPanel(ReadingPanel):
         """Offer the topics that there are, and read those that are chosen."""
         topics = self._sensors.sensor_topics()
         with self._lock:
-            if topics != self._topics:
-                self._offer(topics)
+            if topics != self._offered:
+                self._offered = topics
+                self._offer(dict(islice(topics.items(), MOST)))
             self._read_chosen()
 
     def _offer(self, topics: Mapping[str, str]) -> None:
@@ -74,7 +79,9 @@ class SensorPanel(ReadingPanel):
         for row in self._rows.values():
             row.remove()
         self._topics = topics
-        self._note.visible = not topics
+        self._note.visible = not topics or len(self._offered) > MOST
+        self._note.show(f'The first {MOST} of {len(self._offered)} sensors are listed.'
+                        if topics else NONE)
         with self._folder:
             self._rows = {
                 topic: SensorRow(self._site, topic, kind, topic in self._checked,

@@ -10,6 +10,7 @@ from ..sim.description import SceneChange
 from .models import Models
 from .panel import Panel
 from .selection import Selection
+from .text import Words, plain
 
 MOST = 60  # rows that are shown; what is looked for is found by a part of its name
 
@@ -23,7 +24,7 @@ class TreeRow(NamedTuple):
     @property
     def text(self) -> str:
         """Return what its button says."""
-        return self.model if self.link is None else f'\u2514 {self.link}'
+        return plain(self.model) if self.link is None else f'\u2514 {plain(self.link)}'
 
 
 class ModelTree(Panel):
@@ -40,7 +41,7 @@ class ModelTree(Panel):
         self._find = gui.add_text('Find', '', hint='a part of the name')
         self._find.on_update(lambda _: self._draw())
         self._folder = gui.add_folder('In the world')
-        self._rest = gui.add_markdown('', visible=False)
+        self._rest = Words(gui, visible=False)
         selection.on_change(self._draw)
 
     def apply(self, _change: SceneChange) -> None:
@@ -64,7 +65,7 @@ class ModelTree(Panel):
             left = len(wanted) - MOST
             self._rest.visible = left > 0
             if left > 0:
-                self._rest.content = f'and {left} more; *Find* shows those with a part of the name'
+                self._rest.show(f'and {left} more; Find shows those with a part of the name')
 
     def _button(self, text: str) -> viser.GuiButtonHandle:
         if self._hidden:

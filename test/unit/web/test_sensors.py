@@ -144,7 +144,7 @@ def test_a_frame_that_nobody_knows_is_told_of(browser, sensors):
     check(browser, sensors, SCAN)
     sensors.place = None
     sensors.readings[SCAN] = ShownReading('moon', points=POINTS, words='one ray')
-    browser.wait_until(lambda: any("one ray\n\nIt is not in the scene: TF does not connect its "
+    browser.wait_until(lambda: any("one ray\nIt is not in the scene: TF does not connect its "
                                    "frame 'moon' with a link." in text for text in browser.texts()))
     assert '/sensors/\u2215scan' not in browser.nodes
     sensors.place = ('base', Pose())  # TF was only late

@@ -80,21 +80,20 @@ def _contacts(message: ContactsState) -> ShownReading:
         points += map(read_vector, state.contact_positions)
         normals += map(read_vector, state.contact_normals)
         force = math.hypot(*read_vector(state.total_wrench.force))
-        words.append(f'- {state.collision1_name} and {state.collision2_name}: {force:.2f} N')
+        words.append(f'{state.collision1_name} and {state.collision2_name}: {force:.2f} N')
     here = np.array(points, np.float32).reshape(-1, 3)
     there = here + NORMAL * np.array(normals, np.float32).reshape(-1, 3)
     told = sorted(set(words))
     if len(told) > MAX_CONTACTS:
-        told[MAX_CONTACTS:] = [f'- and {len(told) - MAX_CONTACTS} more']
+        told[MAX_CONTACTS:] = [f'and {len(told) - MAX_CONTACTS} more']
     return ShownReading(message.header.frame_id, points=here,
                         lines=np.stack([here, there], axis=1),
                         words='\n'.join(told) or 'no contact')
 
 
 def _numbers(message: Any) -> ShownReading:  # noqa: ANN401  any message
-    rows = [f'| {name} | {" ".join(f"{value:.4g}" for value in values)} |'
-            for name, values in _leaves(message, '')]
-    return ShownReading(words='\n'.join(['| | |', '|:--|--:|', *rows]))
+    return ShownReading(rows=tuple((name, ' '.join(f'{value:.4g}' for value in values))
+                                   for name, values in _leaves(message, '')))
 
 
 def _leaves(message: Any, name: str) -> list[tuple[str, list[float]]]:  # noqa: ANN401

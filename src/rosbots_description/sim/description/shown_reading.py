@@ -11,7 +11,8 @@ class ShownReading:
     """A picture, a shape in the scene, or words: whatever there is.
 
     `picture` is (height, width, 3), RGB. `points` (n, 3) and `lines` (n, 2, 3) are in `frame` [m];
-    `colours` (n, 3), RGB, are those of the points. `words` are Markdown.
+    `colours` (n, 3), RGB, are those of the points. `words` are lines of text,
+    `rows` names with what they have.
     """
 
     frame: str = ''
@@ -20,3 +21,4 @@ class ShownReading:
     colours: NDArray[np.uint8] | None = None
     lines: NDArray[np.float32] | None = None
     words: str = ''
+    rows: tuple[tuple[str, str], ...] = ()
