@@ -3,6 +3,7 @@
 from typing import Any
 
 import rospy
+from rosbots_msgs.srv import GetModelOmissions
 
 from ...sim.core import SimError
 from ..clients.gazebo_interface import interruptibly
@@ -24,3 +25,14 @@ def call(name: str, kind: type[Any], timeout: float = TIMEOUT, /, **request: obj
     if not getattr(answer, 'success', True):
         raise SimError(answer.status_message)
     return answer
+
+
+def model_omissions(name: str) -> list[str]:
+    """Return the parts that a model was spawned without, each in a few words; [] of a light."""
+    service = rospy.resolve_name('gazebo/get_model_omissions')
+    try:
+        answer = interruptibly(
+            lambda: rospy.ServiceProxy(service, GetModelOmissions)(name), TIMEOUT)
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise SimError(f'{service}: {error}') from error
+    return list(answer.omissions)

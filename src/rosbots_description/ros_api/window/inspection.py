@@ -13,7 +13,7 @@ from rosbots_msgs.srv import SetFriction
 
 from ...sim.core import Pose, Twist
 from ..messages import fill_pose, fill_twist, read_pose, read_twist
-from .calls import call
+from .calls import call, model_omissions
 
 PATIENCE = 1.0  # for a state that is shown again soon [s, wall]
 _MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
@@ -30,6 +30,10 @@ class RosInspection:
         state = call('get_link_state', GetLinkState, PATIENCE,
                      link_name=f'{model}::{link}').link_state
         return read_pose(state.pose), read_twist(state.twist)
+
+    def omissions(self, model: str) -> list[str]:
+        """Return the parts that a model was spawned without, each in a few words."""
+        return model_omissions(model)
 
     def set_state(self, model: str, link: str | None, pose: Pose, twist: Twist) -> None:
         """Set pose and velocity in the world."""

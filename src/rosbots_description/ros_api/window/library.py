@@ -1,12 +1,7 @@
 """What can be inserted: models of the model path, robot descriptions on parameters, and files."""
 
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 from xml.sax.saxutils import escape
 
-import rospkg
 import rospy
 from rosbots_msgs.srv import GetModelLibrary
 
@@ -16,11 +11,10 @@ from ...sim.formats import sdf_of_light, sdf_of_model
 from ...sim.resources import MAX_XML_BYTES, root_tag
 from ..transport import NO_MASTER
 from .calls import call
+from .xacro_sandbox import expanded
 
 INCLUDE = ('<sdf version="1.7"><world name="w"><include><uri>model://{}</uri></include></world>'
            '</sdf>')
-EXPANSION = 20  # of a xacro file, at most [s of processor time]
-MEMORY = 2_000_000_000  # of that [bytes]
 
 
 class RosLibrary:
@@ -68,7 +62,7 @@ class RosLibrary:
         if len(content) > MAX_XML_BYTES:
             raise SimError(f"'{name}' has {len(content)} bytes; {MAX_XML_BYTES} are accepted")
         if name.lower().endswith('.xacro'):
-            content = _expanded(name, content)
+            content = expanded(name, content)
         try:
             return ModelText('', plain_text(content, name))
         except (LookupError, UnicodeDecodeError):
@@ -86,26 +80,3 @@ class RosLibrary:
 def _holds_urdf(parameter: str) -> bool:
     value = rospy.get_param(parameter, None)
     return isinstance(value, str) and root_tag(value) == 'robot'
-
-
-def _expanded(name: str, content: bytes) -> bytes:
-    """Return what the program xacro makes of a file, in a folder of its own."""
-    try:
-        program = Path(rospkg.RosPack().get_path('xacro'), 'xacro')
-    except rospkg.ResourceNotFound:
-        raise SimError(f"'{name}': the package xacro is not there to expand it") from None
-    with tempfile.TemporaryDirectory(prefix='gzweb-') as folder:
-        file = Path(folder, 'upload.xacro')
-        file.write_bytes(content)
-        # It may not use more, whatever its expressions compute.
-        limits = ['prlimit', f'--cpu={EXPANSION}', f'--as={MEMORY}']
-        ended = subprocess.run(
-            [*limits, sys.executable, '-X', 'utf8', str(program), str(file)], check=False,
-            capture_output=True, stdin=subprocess.DEVNULL, cwd=folder)
-    if ended.returncode:
-        said = ended.stderr.decode(errors='replace')
-        said = said.replace(str(file), name).replace(f'{folder}/', '')
-        reasons = (line.removeprefix('error:').strip() for line in said.splitlines())
-        reason = next(filter(None, reasons), 'it takes too much time or memory')
-        raise SimError(f"'{name}': xacro rejects it: {reason}")
-    return ended.stdout
