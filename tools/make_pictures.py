@@ -59,7 +59,7 @@ ROOM: Steps = [
     (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
      'Successfully spawned entity'),
 ]
-BROWSER = {'web.png': '', 'web_dark.png': '?darkMode'}  # what the address ends with
+BROWSER = {'web.png': '', 'web_dark.png': '&darkMode'}  # what the address ends with
 # Viser fades the scene in as it draws frames; in software that may stop halfway.
 FADED_IN = """const style = document.createElement('style');
 style.textContent = 'canvas { opacity: 1 !important }';

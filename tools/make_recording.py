@@ -28,7 +28,7 @@ WORLD = ROOT / 'src' / 'rosbots_description' / 'worlds' / 'room.world'
 VIEW = '<gui><camera><pose>2.4 -1.8 2.2 0 0.5 2.5</pose></camera></gui>'
 PAGE = (960, 600)  # [pixels]
 SIZE = (640, 400)  # of the animation [pixels]
-QUERY = '?fixedDpr=1'  # not fewer pixels where the processor is slow
+QUERY = '&fixedDpr=1'  # not fewer pixels where the processor is slow
 QUALITY = 70  # of 100
 STEP = 0.001  # [s]
 FRAME = 0.08  # [s] between two pictures

@@ -5,12 +5,14 @@ import json
 import math
 import os
 import re
+import secrets
 import signal
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 from time import monotonic
+from urllib.parse import urlsplit
 
 import numpy as np
 import rospy
@@ -59,7 +61,7 @@ WORLD = f"""<sdf version="1.6"><world name="default">
   </camera></gui>
 </world></sdf>"""
 # The picture is of the scene only, and not of fewer pixels where the processor is slow.
-QUERY = '?fixedDpr=1'
+QUERY = '&fixedDpr=1'
 SCENE_ONLY = """const style = document.createElement('style');
 style.textContent = 'body *:not(canvas):not(:has(canvas)) { visibility: hidden !important }';
 document.head.append(style)"""
@@ -186,6 +188,7 @@ class ChromiumTest(unittest.TestCase):
         cls.world.write_text(WORLD)
         cls.server = cls.start_server()
         cls.addClassCleanup(cls.end_server)
+        os.environ['GZWEB_TOKEN'] = secrets.token_urlsafe()  # the same after a restart
         cls.address = cls.open_window('0')
         cls.prepare()
         cls.open_page()
@@ -248,9 +251,10 @@ class ChromiumTest(unittest.TestCase):
                 self.wait_for_the_robot(page)
                 self.assertEqual(faults(driver), [])
             asked = self.addresses(json.loads(log.read_text()))
-        self.assertIn(self.address.replace('http', 'ws'), asked)
+        host = urlsplit(self.address).netloc
+        self.assertTrue(any(one.startswith(f'ws://{host}/') for one in asked), asked)
         self.assertEqual([one for one in asked if not re.match(
-            f'(http|ws)://{self.address.split("/")[2]}/|data:|blob:', one)], [])
+            f'(http|ws)://{host}/|data:|blob:', one)], [])
 
     def wait_for_the_robot(self, page):
         reference = np.asarray(Image.open(REFERENCE), float)
@@ -322,12 +326,12 @@ class ChromiumTest(unittest.TestCase):
         has_gone = staleness_of(self.page.button('Play'))
         self.window.process.kill()
         self.window.process.wait()
-        self.assertEqual(self.open_window(self.address.split(':')[-1].strip('/')), self.address)
+        self.assertEqual(self.open_window(str(urlsplit(self.address).port)), self.address)
         wait_until(lambda: has_gone(self.page.driver), 'other buttons', SLOW)
         self.page.click('Play')
         wait_until(lambda: not is_paused(), 'time', SLOW)
         # Attempts to reconnect fail in several ways: refused, reset, closed before the handshake.
-        lost = f"WebSocket connection to '{self.address.replace('http', 'ws').rstrip('/')}"
+        lost = f"WebSocket connection to 'ws://{urlsplit(self.address).netloc}/"
         self.assertEqual([fault for fault in faults(self.page.driver) if lost not in fault], [])
 
 

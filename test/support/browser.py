@@ -1,5 +1,7 @@
 """A browser without a picture: it opens the window's connection and decodes what comes."""
 
+import html
+import re
 import struct
 import time
 
@@ -15,6 +17,9 @@ CAMERA = {
     'fov': 1.0, 'near': 0.01, 'far': 1000.0, 'image_height': 100, 'image_width': 100,
     'look_at': [0.0, 0.0, 0.0], 'up_direction': [0.0, 0.0, 1.0],
 }
+
+
+WORDS = '<div class="words"'  # begins lines of text
 
 
 class Browser:
@@ -66,11 +71,11 @@ class Browser:
 
     def click(self, label):
         """Press the button of that label."""
-        self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
-                   'updates': {'value': True}})
+        self.choose(label, True)
 
     def hold(self, label):
         """Be holding the button of that label, once."""
+        self.wait_until(lambda: self.control(label))
         self.send({'type': 'GuiButtonHoldMessage', 'uuid': self.control(label), 'frequency': 10.0})
 
     def press(self, key):
@@ -78,7 +83,8 @@ class Browser:
         self.send({'type': 'CommandTriggerMessage', 'uuid': self.keys[key]})
 
     def choose(self, label, value):
-        """Set the value of a control."""
+        """Set the value of a control, when there is one of that label."""
+        self.wait_until(lambda: self.control(label))
         self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
                    'updates': {'value': value}})
 
@@ -91,11 +97,6 @@ class Browser:
         self.send({'type': 'SceneNodeClickMessage', 'name': name, 'instance_index': None,
                    'ray_origin': [0.0, 0.0, 0.0], 'ray_direction': [1.0, 0.0, 0.0],
                    'screen_pos': [0.5, 0.5], 'modifier': None, 'owner': ''})
-
-    def choose_when_there(self, label, value):
-        """Set the value of a control that is about to come."""
-        self.wait_until(lambda: self.control(label))
-        self.choose(label, value)
 
     def grab(self, node):
         """Begin to drag a handle of the scene."""
@@ -160,14 +161,17 @@ class Browser:
                      if props.get('label') == label), None)
 
     def texts(self):
-        """Return the texts that are shown."""
-        return [props['_markdown'] for kind, props in self.controls.values()
-                if kind == 'GuiMarkdownMessage' and props.get('visible', True)]
+        """Return the texts that are shown, with spaces between what a table has."""
+        return [html.unescape(re.sub('<[^>]*>', ' ', content.replace('<br>', '\n'))).strip()
+                for content in self._html() if content.startswith(WORDS)]
 
     def tables(self):
-        """Return the HTML that is shown, in one."""
-        return ''.join(props['content'] for kind, props in self.controls.values()
-                       if kind == 'GuiHtmlMessage' and props.get('visible', True))
+        """Return the HTML that is shown of what is selected, in one."""
+        return ''.join(content for content in self._html() if not content.startswith(WORDS))
+
+    def _html(self):
+        return [props['content'] for kind, props in self.controls.values()
+                if kind == 'GuiHtmlMessage' and props.get('visible', True)]
 
     def value(self, label):
         """Return the value of the control of that label."""

@@ -40,6 +40,7 @@ class FakeSimulator:
         self.contacts, self.joints = FakeContacts(), FakeJoints()
         self.sensors, self.signals = FakeSensors(), FakeSignals()
         self.names = []  # of models on the model path
+        self.missing = []  # what models are spawned without
 
     def open(self, change, motion):
         self.change, self.motion = change, motion
@@ -68,6 +69,9 @@ class FakeSimulator:
 
     def file(self, name, content):
         return ModelText('', f'{name}: {content.decode()}')
+
+    def omissions(self, name):
+        return self.missing
 
     def shape(self, spec):
         return ModelText(spec.name, spec)

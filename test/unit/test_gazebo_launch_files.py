@@ -44,7 +44,8 @@ ARGUMENTS = {
     'willowgarage_world': {},
 }
 # Ours, of every launch file.
-WEB = {'web': 'false', 'web_host': '127.0.0.1', 'web_port': '8080'}
+WEB = {'web': 'false', 'web_host': '127.0.0.1', 'web_port': '8080', 'web_open': 'true',
+       'web_token': 'true'}
 HANDED_ON = {name: f'$(arg {name})' for name in WEB}
 FIXED = {
     'paused': 'false', 'use_sim_time': 'true', 'gui': 'true', 'headless': 'false',

@@ -174,7 +174,9 @@ def test_each_world_can_be_seen_in_a_browser(load, file):
     file = f'{file}.launch' if isinstance(file, str) else file
     assert 'gzweb' not in nodes(load(file))
     config = load(file, 'web:=true', 'web_host:=0.0.0.0', 'web_port:=8081')
-    assert arguments(config, 'gzweb') == '--host 0.0.0.0 --port 8081'
+    assert arguments(config, 'gzweb') == '--host 0.0.0.0 --port 8081 --open'
+    config = load(file, 'web:=true', 'web_open:=false', 'web_token:=false')
+    assert arguments(config, 'gzweb') == '--host 127.0.0.1 --port 8080 --no-token'
 
 
 def test_simulation_passes_its_arguments_to_the_simulator(load):

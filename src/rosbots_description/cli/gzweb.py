@@ -2,28 +2,40 @@
 
 import argparse
 import importlib.util
+import logging
+import os
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext
 
 from .gzserver import split_remappings
+from .web_browser import opened
+
+logger = logging.getLogger(__name__)
 
 HOST, PORT = '127.0.0.1', 8080
 PERIOD = 0.5  # between looks at the simulator [s, wall]
-NAME = 'gzweb'
+NAME, VARIABLE = 'gzweb', 'GZWEB_TOKEN'
 
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of gzweb's options."""
     made = argparse.ArgumentParser(
         prog=NAME, description='See and control the simulated world in a browser.',
-        formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+        allow_abbrev=False)  # --token is no --token-file
     made.add_argument('--host', default=HOST,
-                      help='address to serve at; 0.0.0.0 is all of this machine, which lets in '
-                           'everybody who has the address with its token')
+                      help='address to serve at; 0.0.0.0 is all of this machine')
     made.add_argument('--port', type=int, default=PORT, help='0 for any that is free')
-    made.add_argument('--token', default='', help='what the address ends with, unless --host is '
-                                                  'this machine; made at random if not given')
+    made.add_argument('--token-file', metavar='FILE', default='',
+                      help='only its owner can read it; it has the token that the address ends '
+                           f'with, as the variable {VARIABLE} may; made at random without both')
+    made.add_argument('--no-token', action='store_true',
+                      help='let in everybody who reaches the port, every user of this machine '
+                           'included')
+    made.add_argument('--open', action='store_true',
+                      help='open the address in a browser, where there is a display')
     return made
 
 
@@ -43,25 +55,47 @@ def main(arguments: Sequence[str] | None = None) -> int:
         watch_master,
     )
     from ..ros_api.window import GazeboSimulator
-    from ..web import Page, Site, WindowError
+    from ..web import LOOPBACK, Page, Site, WindowError
 
     try:
-        site = Site(options.host, options.port, options.token)
+        site = Site(options.host, options.port, given_token(options.token_file),
+                    is_open=options.no_token)
         start_node(NAME, remappings, wall_time=True)
     except (WindowError, AddressError) as error:
         return _fail(str(error))
+    except OSError as error:
+        return _fail(f"no token in '{options.token_file}': {error.strerror or error}")
     connect_logging(time.time_ns)
     watch_master(Registrar(), ())
-    if site.token:
+    if not site.token:
+        logger.warning('there is no token: everybody who reaches port %d of this machine, each of '
+                       'its users included, sees and controls the simulation', site.get_port())
+    elif options.host not in LOOPBACK:
         _say('whoever has this address sees and controls the simulation, and the connection is '
              'not encrypted')
     page = Page(site, GazeboSimulator())
     _say(f'the world is at {site.address}')
-    while is_running():
-        page.poll()
-        time.sleep(PERIOD)
+    with opened(site.address) if options.open else nullcontext():
+        while is_running():
+            page.poll()
+            time.sleep(PERIOD)
     site.stop()
     return 0
+
+
+def given_token(path: str) -> str:
+    """Return the token of a file, else of the environment, else ''.
+
+    Raises:
+        OSError: the file cannot be read, or others can read it.
+    """
+    if not path:
+        return os.environ.get(VARIABLE, '')
+    with open(path, encoding='utf-8', errors='replace') as file:
+        status = os.fstat(file.fileno())
+        if status.st_mode & 0o077 or status.st_uid != os.geteuid():
+            raise PermissionError('others can read it; make it your own, and chmod 600')
+        return file.read(1000).strip()
 
 
 def _fail(sentence: str) -> int:

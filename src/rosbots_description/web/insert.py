@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import viser
 
@@ -16,11 +16,10 @@ from .place import Places
 from .shapes import KINDS, lamp, shape
 from .site import Site
 
-MAX_BYTES = 10_000_000  # of an uploaded file
+MOST = 1000  # names that are offered
+LISTED = 4  # parts that a model was spawned without
 LOOKS = 10  # refreshes between two looks at what can be inserted
 NONE = '(none)'
-NO_XACRO = ("'{}': xacro files can run code, so they are taken only where the page is open to this "
-            'machine alone; expand it with rosrun xacro xacro, and upload the URDF')
 
 
 class Library(Protocol):
@@ -53,7 +52,7 @@ class InsertPanel(Panel):
 
     def __init__(self, site: Site, library: Library, hands: Hands, history: History,
                  complain: Callable[[str], None]) -> None:
-        self._site, self._library, self._hands = site, library, hands
+        self._library, self._hands = library, hands
         self._history, self._complain = history, complain
         self._lights: Mapping[str, LightSpec] = {}
         self._refreshes = 0
@@ -79,7 +78,6 @@ class InsertPanel(Panel):
             self._parameters = gui.add_dropdown('Parameter', [NONE], hint='holds a URDF')
             add_parameter = gui.add_button('Insert robot', icon=viser.Icon.PLUS)
             upload = gui.add_upload_button('Upload URDF, xacro or SDF', icon=viser.Icon.UPLOAD)
-        site.limit_uploads(MAX_BYTES, self._refuse_size)
         site.on_client_disconnect(self._places.forget)
 
         def rgb() -> Vector:
@@ -87,17 +85,17 @@ class InsertPanel(Panel):
             return red, green, blue
 
         place.on_click(lambda event: self._places.choose(event.client))
-        add_shape.on_click(lambda event: self._insert(event, lambda _: library.shape(
+        add_shape.on_click(lambda event: self._insert(event.client, lambda _: library.shape(
             shape(kind.value, size.value, mass.value, rgb(), static.value))))
-        add_lamp.on_click(lambda event: self._insert(event, lambda place: library.light(
+        add_lamp.on_click(lambda event: self._insert(event.client, lambda place: library.light(
             lamp(place, rgb()))))
         remove_light.on_click(lambda _: attempt(self._remove_light, complain))
-        add_model.on_click(lambda event: self._insert(event, lambda _: library.model(
+        add_model.on_click(lambda event: self._insert(event.client, lambda _: library.model(
             _chosen(self._models.value, 'model on the model path'))))
-        add_parameter.on_click(lambda event: self._insert(event, lambda _: library.parameter(
+        add_parameter.on_click(lambda event: self._insert(event.client, lambda _: library.parameter(
             _chosen(self._parameters.value, 'parameter with a URDF'))))
-        upload.on_upload(lambda event: self._insert(event, lambda _: self._uploaded(
-            event.target.value)))
+        site.receive_files(upload, lambda client, name, content: self._insert(
+            client, lambda _: library.file(name, content)))
 
     def open(self) -> None:
         """Look at once."""
@@ -119,21 +117,19 @@ class InsertPanel(Panel):
         _offer(self._models, self._library.models())
         _offer(self._parameters, self._library.parameters())
 
-    def _uploaded(self, file: viser.UploadedFile) -> ModelText:
-        if file.name.lower().endswith('.xacro') and not self._site.is_local:
-            raise SimError(NO_XACRO.format(file.name))
-        return self._library.file(file.name, file.content)
-
-    def _refuse_size(self, name: str) -> None:
-        self._complain(f"'{name}' has more than {MAX_BYTES} bytes, which no description needs")
-
-    def _insert(self, event: viser.GuiEvent[Any], read: Callable[[Vector], ModelText]) -> None:
-        """Insert what `read` returns for the place."""
+    def _insert(self, client: viser.ClientHandle | None,
+                read: Callable[[Vector], ModelText]) -> None:
+        """Insert what `read` returns for the place of a browser."""
         def insert() -> None:
-            place = self._places.take(event.client)
+            place = self._places.take(client)
             text = replace(read(place), pose=Pose(place))
             name = self._hands.insert(text, on_ground=True, beside=True)
             self._history.add(f"insert '{name}'", lambda: self._hands.delete(name))
+            missing = self._hands.omissions(name)
+            if missing:
+                more = f' and {len(missing) - LISTED} more' if len(missing) > LISTED else ''
+                self._complain(f"'{name}' was spawned without {', '.join(missing[:LISTED])}{more}; "
+                               'the log of the simulator says why')
 
         attempt(insert, self._complain)
 
@@ -148,7 +144,7 @@ class InsertPanel(Panel):
 
 
 def _offer(dropdown: viser.GuiDropdownHandle[str], names: Sequence[str]) -> None:
-    options = tuple(names) or (NONE,)
+    options = tuple(dict.fromkeys(names[:MOST])) or (NONE,)
     if tuple(dropdown.options) != options:
         dropdown.options = options
 

@@ -34,6 +34,7 @@ from .show import ShowPanel
 from .site import Site
 from .start_view import StartView
 from .take_away import TakeAwayPanel, Worlds
+from .text import plain
 from .tree import ModelTree
 
 logger = logging.getLogger(__name__)
@@ -41,6 +42,8 @@ logger = logging.getLogger(__name__)
 SILENCE = 2.0  # [s, wall] without a motion after which the simulator has gone
 GONE = 'The simulator does not answer. This page shows its last state.'
 BACK = 'The simulator is there again.'
+MOST = 1000  # characters of a notice
+NOTICES, NOTICE_RATE = 20.0, 2.0  # notices at once, and in a second
 
 
 class View(Protocol):
@@ -113,6 +116,7 @@ class Page:
         self._is_open = self._is_complete = False  # the view, and what it has shown
         self._heard = 0.0  # when the last motion came [s, monotonic]
         self._lost = False
+        self._notices, self._noticed = NOTICES, time.monotonic()
         site.gui.configure_theme(show_logo=False, show_share_button=False)
         site.gui.set_panel_label('gzweb')
         models = Models()
@@ -245,5 +249,12 @@ class Page:
             panel.move(motion)
 
     def _notify(self, sentence: str) -> None:
+        """Show a sentence in all browsers, unless there are too many to be read."""
+        now = time.monotonic()
+        self._notices = min(NOTICES, self._notices + NOTICE_RATE * (now - self._noticed))
+        self._noticed = now
+        if self._notices < 1.0:
+            return
+        self._notices -= 1.0
         for client in self._site.get_clients().values():
-            client.add_notification(sentence, '', auto_close_seconds=8.0)
+            client.add_notification(plain(sentence, MOST), '', auto_close_seconds=8.0)

@@ -1,30 +1,18 @@
-"""Where the page is served, and to whom.
+"""Where the page is served: viser's server on a socket of our own, with a door and a gate."""
 
-Viser serves whoever reaches its port. Here its port is on this machine only, unless another address
-is asked for: then requests need a token. Pages of other sites that are open in the same browser are
-refused.
-"""
-
-import hmac
-import http
-import secrets
+import logging
 import socket
 import warnings
-from collections.abc import Callable
-from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from unittest import mock
-from urllib.parse import parse_qs, urlsplit
 
 import rich
 import viser
 import websockets.asyncio.server
-from viser._messages import FileTransferPart, FileTransferPartAck, FileTransferStartUpload
-from websockets.asyncio.server import ServerConnection
-from websockets.http11 import Request, Response
 
-LOOPBACK = ('127.0.0.1', '::1', 'localhost')
-Process = Callable[[ServerConnection, Request], Response | None]
+from .door import TOKEN, Door, Process, new_token
+from .gate import MAX_MESSAGE, Gate, Received
+from .policy import page_headers
 
 
 class WindowError(Exception):
@@ -32,121 +20,66 @@ class WindowError(Exception):
 
 
 class Site(viser.ViserServer):
-    """Viser's server on a socket of our own, with a guarded door."""
+    """Viser's server for those who have the token."""
 
-    def __init__(self, host: str, port: int, token: str = '') -> None:
+    def __init__(self, host: str, port: int, token: str = '', *, is_open: bool = False) -> None:
         """Begin to serve.
 
         Args:
             host: address or name of the interface; port: 0 for any that is free.
-            token: what requests need; '' for a new one, unless only this machine is served.
+            token: what requests need, 16 to 128 letters, digits, - and _; '' for a new one.
+            is_open: let in everybody who reaches the port; there is no token then.
         Raises:
-            WindowError: the address is not this machine's, or the port is in use.
+            WindowError: the address is not this machine's, the port is in use, or the token is
+                not one.
         """
+        if token and not TOKEN.fullmatch(token):
+            raise WindowError('the token is not one: it has 16 to 128 letters, digits, - and _')
         listener = _listen(host, port)
         port = listener.getsockname()[1]
-        self.token = '' if host in LOOPBACK else token or secrets.token_urlsafe(16)
+        self.token = '' if is_open else token or new_token()
         shown = f'[{host}]' if ':' in host else host
         if host in {'0.0.0.0', '::'}:
             shown = socket.gethostname()
         self.address = f'http://{shown}:{port}/' + (f'?token={self.token}' if self.token else '')
-        door = Door(port, self.token)
+        self._gate = gate = Gate()
+        door = Door(host, port, self.token, page_headers())
         serve = websockets.asyncio.server.serve
 
         def serve_here(handler: Any, *_address: Any, process_request: Process,  # noqa: ANN401
                        **options: Any) -> Any:  # noqa: ANN401
-            return serve(handler, sock=listener, process_request=door.guarding(process_request),
-                         **options)
+            options |= {'max_size': MAX_MESSAGE, 'max_queue': 1, 'server_header': None,
+                        'create_connection': gate.connection_class()}
+            return serve(gate.counting(handler), sock=listener,
+                         process_request=door.guarding(process_request), **options)
 
         rich.reconfigure(quiet=True)  # viser's own lines
+        logging.getLogger('websockets.server').addFilter(_NO_NOISE)
         # Somebody has left, which is no fault.
         warnings.filterwarnings('ignore', r'Queued a \w+ on a closed connection')
         # Viser looks for a free port by itself and takes no socket and no guard.
         with mock.patch('websockets.asyncio.server.serve', serve_here):
             super().__init__(host, port, verbose=False)
+        gate.site = self
 
-    @property
-    def is_local(self) -> bool:
-        """Tell whether only this machine is served."""
-        return not self.token
-
-    def limit_uploads(self, most: int, refused: Callable[[str], None]) -> None:
-        """Drop files of more than so many bytes before they fill the memory; viser takes any.
-
-        Args:
-            refused: called with the name of the file; it must not wait.
-        """
-        states = self.gui._current_file_upload_states  # viser's, of files that are on their way
-
-        def drop(message: FileTransferStartUpload | FileTransferPart) -> None:
-            state = states.pop(message.transfer_uuid)
-            size = state['total_bytes']
-            self._websock_server.queue_message(FileTransferPartAck(  # that ends it in the browser
-                message.source_component_uuid, message.transfer_uuid, size, size))
-            refused(state['filename'])
-
-        def start(_client: int, message: FileTransferStartUpload) -> None:
-            if message.transfer_uuid in states and message.size_bytes > most:
-                drop(message)
-
-        def go_on(_client: int, message: FileTransferPart) -> None:
-            state = states.get(message.transfer_uuid)
-            if state is not None and state['transferred_bytes'] > most:
-                drop(message)
-
-        self._websock_server.register_handler(FileTransferStartUpload, start)
-        self._websock_server.register_handler(FileTransferPart, go_on)
+    def receive_files(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:
+        """Call back, on a thread, with browser, name and content of each file of a button."""
+        self._gate.receive(button, received)
 
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to publish this page through viser's servers."""
         return None
 
 
-class Door:
-    """Tells which requests are let in."""
+class _NoNoise(logging.Filter):
+    """Drops what strangers could fill the log with."""
 
-    def __init__(self, port: int, token: str) -> None:
-        self._token = token
-        self._cookie = f'rosbots_window_{port}'  # a browser's cookies are for all ports of a host
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Keep what is wrong with connections that are open."""
+        return 'handshake' not in record.getMessage() and 'rejected' not in record.getMessage()
 
-    def guarding(self, process: Process) -> Process:
-        """Return `process` for those requests only that are let in."""
-        def guarded(connection: ServerConnection, request: Request) -> Response | None:
-            try:
-                reason = self.refusal(request.path, request.headers)
-            except ValueError:  # of urlsplit
-                reason = 'The address in this request is malformed.'
-            if reason:
-                return connection.respond(http.HTTPStatus.FORBIDDEN, reason + '\n')
-            response = process(connection, request)
-            if response is not None and self._token:
-                # The page connects without the token in its address.
-                response.headers['Set-Cookie'] = (
-                    f'{self._cookie}={self._token}; HttpOnly; SameSite=Strict')
-                response.headers['Referrer-Policy'] = 'no-referrer'
-            return response
-        return guarded
 
-    def refusal(self, path: str, headers: Any) -> str:  # noqa: ANN401  a mapping without its type
-        """Return why a request is refused, in a sentence; '' if it is not."""
-        host, origin = headers.get('Host', ''), headers.get('Origin', '')
-        if origin and urlsplit(origin).netloc != host:
-            return 'This window is not for other pages.'
-        if not self._token:
-            local = urlsplit(f'//{host}').hostname in LOOPBACK
-            return '' if local else 'This window is for this machine only; web_host opens it.'
-        if self._knows_token(path, headers.get('Cookie', '')):
-            return ''
-        return 'The address needs the token that gzweb has printed.'
-
-    def _knows_token(self, path: str, cookies: str) -> bool:
-        try:
-            kept = SimpleCookie(cookies).get(self._cookie)
-        except CookieError:
-            kept = None
-        told = parse_qs(urlsplit(path).query).get('token', [])
-        return any(hmac.compare_digest(one.encode(), self._token.encode())
-                   for one in (*told, *((kept.value,) if kept else ())))
+_NO_NOISE = _NoNoise()
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -13,7 +13,9 @@ from ..sim.core import SimError
 from ..sim.description import ShownMotion
 from .panel import Panel
 from .takes import PATIENCE, SceneTake, Take, VideoTake
+from .text import plain
 
+BACKLOG = 50  # messages for a browser that wait, at most, when another file is sent
 Click = viser.GuiEvent[viser.GuiButtonHandle]
 Complain = Callable[[str], None]
 
@@ -34,6 +36,8 @@ class TakeAwayPanel(Panel):
 
     def __init__(self, site: viser.ViserServer, worlds: Worlds | None, complain: Complain) -> None:
         self._complain = complain
+        self._lock = threading.Lock()
+        self._served: set[int] = set()  # browsers that are being given a file
         gui = site.gui
         if worlds is not None:
             self._button('World', viser.Icon.WORLD_DOWNLOAD, partial(_give_world, worlds), gui,
@@ -65,19 +69,29 @@ class TakeAwayPanel(Panel):
     def _button(self, label: str, icon: Any, act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
                 gui: viser.GuiApi, hint: str) -> None:
         def click(event: Click) -> None:
-            if event.client is not None:
-                try:
-                    act(event.client)
-                except SimError as error:
-                    self._complain(str(error))
+            client = event.client
+            if client is None:
+                return
+            with self._lock:
+                if client.client_id in self._served:
+                    return  # one file after the other
+                self._served.add(client.client_id)
+            try:
+                act(client)
+            except SimError as error:
+                self._complain(str(error))
+            finally:
+                self._served.discard(client.client_id)
 
         gui.add_button(label, icon=icon, hint=hint).on_click(click)
 
 
 def _give_world(worlds: Worlds, client: viser.ClientHandle) -> None:
+    if len(client._websock_connection.get_message_buffer().message_from_id) > BACKLOG:
+        raise SimError('this browser does not take what it is sent, so it gets no world')
     text, sentence = worlds.save()
     client.send_file_download('saved.world', text.encode(), save_immediately=True)
-    client.add_notification('World', sentence, auto_close_seconds=8.0)
+    client.add_notification('World', plain(sentence), auto_close_seconds=8.0)
 
 
 def _give_picture(client: viser.ClientHandle) -> None:

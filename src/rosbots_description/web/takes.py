@@ -15,6 +15,7 @@ logger = logging.getLogger(__name__)
 
 LONGEST = 120.0  # [s, wall] of a recording or video
 MOST_POSES = 200_000  # of a recording, some 20 MB
+MOST_BYTES = 100_000_000  # of the meshes and points in it
 WIDEST = 1280  # [pixels] of a video
 RATE = 20.0  # frames per second of a video, if the browser is that fast
 PATIENCE = 60.0  # [s, wall] for a frame; the first one in a browser without a graphics card is slow
@@ -44,11 +45,13 @@ class SceneTake:
         self._begin: float | None = None  # real time [s]
         self._now = 0.0
         self._poses = 0
+        self._counted = self._bytes = 0  # buffers, and what they have
 
     @property
     def is_full(self) -> bool:
         """Whether it has reached its greatest length."""
-        return self._length >= LONGEST or self._poses >= MOST_POSES
+        return (self._length >= LONGEST or self._poses >= MOST_POSES
+                or self._bytes >= MOST_BYTES)
 
     @property
     def _length(self) -> float:
@@ -62,6 +65,10 @@ class SceneTake:
             self._serializer.insert_sleep(motion.real_time - self._now)
         self._now = motion.real_time
         self._poses += len(motion.poses)
+        buffers = self._serializer._binary_buffers  # viser's, which only grow
+        while self._counted < len(buffers):
+            self._bytes += buffers[self._counted].nbytes
+            self._counted += 1
 
     def finish(self) -> bytes:
         """Return the page, in HTML."""

@@ -27,3 +27,20 @@ def test_an_address_that_cannot_be_served_is_told_in_a_sentence(arguments, capsy
     assert gzweb.main(arguments) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith('gzweb: no window at ')
+
+
+@pytest.mark.parametrize(('arguments', 'token'), [
+    (['--token-file', '/nowhere/token'], ''), ([], 'short'),
+])
+def test_a_token_that_cannot_be_used_is_told_in_a_sentence(arguments, token, monkeypatch, capsys):
+    monkeypatch.setenv(gzweb.VARIABLE, token)
+    assert gzweb.main([*arguments, '--port', '0']) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith('gzweb: ')
+    assert 'token' in line
+
+
+def test_a_token_is_no_argument(capsys):
+    with pytest.raises(SystemExit):
+        gzweb.main(['--token', 'x' * 20])
+    assert 'unrecognized' in capsys.readouterr().err

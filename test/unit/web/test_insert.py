@@ -5,7 +5,7 @@ from support.browser import Browser
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Box, Cylinder, SceneChange, Sphere
-from rosbots_description.web import insert
+from rosbots_description.web import insert, uploads
 from rosbots_description.web.place import on_ground
 from rosbots_description.web.shapes import lamp, shape
 
@@ -94,20 +94,36 @@ def test_refusal_is_shown_and_nothing_can_be_undone(ready, simulator):
     assert ready.control('Undo')
 
 
-def test_large_file_is_dropped_before_it_fills_the_memory(ready, simulator, site, monkeypatch):
-    ready.upload(UPLOAD, 'large.urdf', 3000 * b'x', claimed=insert.MAX_BYTES + 1)
-    ready.wait_until(lambda: any("'large.urdf' has more than" in note for note in ready.notes()))
+@pytest.mark.parametrize('claimed', [uploads.MAX_BYTES + 1, 2999, 3001])
+def test_file_that_is_too_large_or_not_as_large_as_claimed_is_dropped(ready, simulator, claimed):
+    ready.upload(UPLOAD, 'large.urdf', 3000 * b'x', claimed=claimed)
+    ready.wait_until(lambda: any("'large.urdf' has" in note for note in ready.notes()))
     ready.upload(UPLOAD, 'b.urdf', b'b')
     ready.wait_until(lambda: inserted(simulator))
     assert [text.xml for text in inserted(simulator)] == ['b.urdf: b']
 
 
-def test_xacro_is_refused_where_others_can_reach_the_page(ready, simulator, site):
-    site.token = 'secret'
-    ready.upload(UPLOAD, 'a.XACRO', b'<robot/>')
-    ready.wait_until(lambda: any(note.startswith("'a.XACRO': xacro files can run code")
-                                 for note in ready.notes()))
-    assert simulator.told == []
+def test_empty_file_is_handed_over(ready, simulator):
+    ready.upload(UPLOAD, 'empty.urdf', b'')
+    ready.wait_until(lambda: inserted(simulator))
+    assert inserted(simulator)[0].xml == 'empty.urdf: '
+
+
+def test_files_of_two_browsers_at_once_are_not_confused(ready, simulator, site):
+    with Browser(site.address) as other:
+        other.wait_until(lambda: other.control(UPLOAD))
+        for browser, name in ((ready, 'one'), (other, 'two')):
+            browser.upload(UPLOAD, name, name.encode())
+        ready.wait_until(lambda: len(inserted(simulator)) == 2)
+    assert {text.xml for text in inserted(simulator)} == {'one: one', 'two: two'}
+
+
+def test_what_a_model_was_spawned_without_is_shown(ready, simulator):
+    simulator.missing = [f"plugin '{number}'" for number in range(6)]
+    ready.upload(UPLOAD, 'a.urdf', b'a')
+    ready.wait_until(lambda: any(
+        "was spawned without plugin '0', plugin '1', plugin '2', plugin '3' and 2 more" in note
+        for note in ready.notes()))
 
 
 def test_place_is_where_one_clicks_once(ready, simulator, site):

@@ -57,7 +57,7 @@ def test_what_is_checked_is_shown_as_a_part_of_each_link(browser, simulator, nam
 
 
 def test_models_that_come_or_change_get_it_too(browser, simulator):
-    browser.choose_when_there('Centres of mass', True)
+    browser.choose('Centres of mass', True)
     simulator.change(SceneChange(True, (ROBOT,)))
     ball = '/models/robot/arm/Centres of mass'
     browser.wait_until(lambda: ball in browser.nodes)
@@ -72,7 +72,7 @@ def test_models_that_come_or_change_get_it_too(browser, simulator):
 
 def test_only_what_is_selected_is_marked_if_that_is_asked_for(browser, simulator, page):
     simulator.change(SceneChange(True, (ROBOT, model('other', 9))))
-    browser.choose_when_there('Only of what is selected', True)
+    browser.choose('Only of what is selected', True)
     browser.choose('Frames', True)
     page.selection.choose('robot')
     browser.wait_until(lambda: '/models/robot/foot/Frames' in browser.nodes)
@@ -112,7 +112,7 @@ def files(browser, path):
 
 def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, site, page):
     assert simulator.contacts.show is None
-    browser.choose_when_there('Contacts and forces', True)
+    browser.choose('Contacts and forces', True)
     browser.wait_until(lambda: simulator.contacts.show)
     up, down = (0.0, 0.0, 10.0), (5.0, 0.0, -10.0)
     simulator.contacts.show([ShownContact((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), up),
@@ -144,7 +144,7 @@ def length_after(simulator, lines, force):
 
 
 def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
-    browser.choose_when_there('Contacts and forces', True)
+    browser.choose('Contacts and forces', True)
     browser.wait_until(lambda: simulator.contacts.show)
     browser.__exit__()
     wait_until(lambda: simulator.contacts.show is None)
@@ -155,7 +155,7 @@ def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
 def test_cameras_follow_the_selected_model_and_keep_their_offset(browser, simulator, page):
     simulator.change(SceneChange(True, (model('a', 1),)))
     page.selection.choose('a')
-    browser.choose_when_there('Follow', True)
+    browser.choose('Follow', True)
     browser.send(CAMERA | {'position': [3.0, 0.0, 2.0], 'look_at': [1.0, 0.0, 1.0]})
     browser.wait_until(lambda: page_camera(page) == (3.0, 0.0, 2.0))
     simulator.motion(clock(_1=Pose((10.0, 5.0, 0.0))))

@@ -1,0 +1,42 @@
+"""Open an address in the person's browser without a trace of it in the list of processes.
+
+A command line is readable by every user of a machine. So the browser is given a file that only
+its owner can read, and which leads to the address.
+"""
+
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from pathlib import Path
+
+PAGE = ('<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer">'
+        '<meta http-equiv="refresh" content="0;url={}"><title>gzweb</title>\n')
+
+
+@contextmanager
+def opened(address: str) -> Iterator[bool]:
+    """Open a browser at an address; yield whether there is a display and xdg-open for that."""
+    program = shutil.which('xdg-open')
+    if program is None or not (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
+        yield False
+        return
+    # A folder of mode 700; that of the session, if there is one, is cleared at its end.
+    with tempfile.TemporaryDirectory(
+            prefix='gzweb-', dir=_own_folder(), ignore_cleanup_errors=True) as folder:
+        page = Path(folder, 'window.html')
+        page.touch(mode=0o600)
+        page.write_text(PAGE.format(escape(address)), encoding='utf-8')
+        # It ends at once, or when the browser does; in both cases it is not waited for.
+        subprocess.Popen([program, str(page)], stdin=subprocess.DEVNULL,
+                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                         start_new_session=True)
+        yield True
+
+
+def _own_folder() -> str | None:
+    folder = os.environ.get('XDG_RUNTIME_DIR', '')
+    return folder if os.path.isdir(folder) and os.access(folder, os.W_OK) else None

@@ -1,0 +1,184 @@
+"""What browsers may make the server do and keep: checked before viser reads it."""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import Any
+
+import viser
+from viser._messages import FileTransferPartAck
+from websockets.asyncio.server import ServerConnection
+from websockets.typing import Data
+
+from .client_messages import MalformedError, RefusedError, check_value, read
+from .text import plain
+from .uploads import Upload, Uploads, content
+
+logger = logging.getLogger(__name__)
+
+MOST_CLIENTS = 16
+FULL = 'This window has no room for another browser.'
+MAX_MESSAGE = 24_000_000  # [bytes], that of a large picture
+RATE, BURST = 1000.0, 5000.0  # messages of a browser in a second, and at once
+BACKLOG = 200  # commands that wait to be carried out
+BUSY = 'The simulator is busy: some of what was done here is left out'
+PAUSE = 1.0  # [s, wall] between two notices of refusals
+
+Received = Callable[[viser.ClientHandle, str, bytes], object]
+
+
+@dataclass
+class Visitor:
+    """A connection, and what is known of it."""
+
+    connection: ServerConnection
+    allowed: float = BURST  # messages at once
+    counted: float = field(default_factory=time.monotonic)
+    next_notice: float = 0.0  # [s, monotonic]
+
+    def delay(self) -> float:
+        """Count a message; return how long to wait before the next one is read [s]."""
+        now = time.monotonic()
+        self.allowed = min(BURST, self.allowed + RATE * (now - self.counted)) - 1.0
+        self.counted = now
+        return max(0.0, -self.allowed / RATE)
+
+
+class Gate:
+    """Reads the messages of all connections; on the server's own thread."""
+
+    def __init__(self) -> None:
+        self.site: viser.ViserServer | None = None  # when it is complete
+        self._visitors: dict[int, Visitor] = {}  # by the identity of the connection
+        self._uploads = Uploads()
+        self._receivers: dict[str, Received] = {}  # of files, by the numbers of buttons
+
+    def receive(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:
+        """Call back, on a thread, with browser, name and content of each file of a button."""
+        self._receivers[button._impl.uuid] = received
+
+    def connection_class(self) -> type[ServerConnection]:
+        """Return the class of connections whose messages are checked here."""
+        gate = self
+
+        class Connection(ServerConnection):
+            async def recv(  # type: ignore[override]  # of its overloads, viser uses none
+                    self, decode: bool | None = None) -> Data:
+                while True:
+                    raw = await super().recv(decode)
+                    if await gate._admits(self, raw):
+                        return raw
+
+        return Connection
+
+    def counting(self, handler: Callable[[ServerConnection], Any]) -> Callable[..., Any]:
+        """Return the handler of a connection with a limit on how many there are."""
+        async def counted(connection: ServerConnection) -> None:
+            if self.site is None or len(self._visitors) >= MOST_CLIENTS:
+                await connection.close(1013, FULL)
+                return
+            visitor = self._visitors[id(connection)] = Visitor(connection)
+            try:
+                await handler(connection)
+            finally:
+                del self._visitors[id(connection)]
+                self._uploads.leave(visitor)
+        return counted
+
+    async def _admits(self, connection: ServerConnection, raw: object) -> bool:
+        """Return whether viser is to read a message; a malformed one ends its connection."""
+        visitor = self._visitors[id(connection)]
+        delay = visitor.delay()
+        if delay > 0.0:
+            await asyncio.sleep(delay)
+        try:
+            return self._check(visitor, read(raw))
+        except RefusedError as error:
+            self._notify(visitor, str(error))
+        except MalformedError as error:
+            logger.warning('a browser is disconnected: %s', error)
+            await connection.close(1008, str(error)[:100])
+        return False
+
+    def _check(self, visitor: Visitor, message: Any) -> bool:  # noqa: ANN401  a struct
+        assert self.site is not None
+        kind = type(message).__name__
+        if kind == 'FileTransferStartUpload':
+            self._start(visitor, message)
+            return False
+        if kind == 'FileTransferPart':
+            self._add(visitor, message)
+            return False
+        if kind in {'FileTransferPartAck', 'GetRenderResponseMessage'}:
+            return True
+        executor: Any = self.site._thread_executor  # viser's
+        if executor._work_queue.qsize() > BACKLOG:
+            raise RefusedError(BUSY)
+        if kind == 'GuiUpdateMessage':
+            control = self.site.gui._gui_input_handle_from_uuid.get(message.uuid)
+            if control is not None:
+                check_value(control, message.updates['value'])
+        return True
+
+    def _start(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
+        if message.source_component_uuid not in self._receivers:
+            raise MalformedError('This is no button for files.')
+        try:
+            whole = self._uploads.start(visitor, message)
+        except RefusedError:
+            self._acknowledge(visitor, message, message.size_bytes)  # ends it in the browser
+            raise
+        if whole is not None:
+            self._acknowledge(visitor, message, 0)
+            self._hand_over(visitor, whole)
+
+    def _add(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
+        try:
+            upload, is_whole = self._uploads.add(visitor, message)
+        except RefusedError:
+            self._acknowledge(visitor, message, 0)
+            raise
+        if upload is not None:
+            self._acknowledge(visitor, message, upload.size, upload.received)
+            if is_whole:
+                self._hand_over(visitor, upload)
+
+    def _acknowledge(self, visitor: Visitor, message: Any, size: int,  # noqa: ANN401
+                     received: int | None = None) -> None:
+        """Let a browser show how much of its file has come; all of it, unless it is told."""
+        client = self._client(visitor)
+        if client is not None:
+            client._websock_connection.queue_message(FileTransferPartAck(
+                message.source_component_uuid, message.transfer_uuid,
+                size if received is None else received, size))
+
+    def _hand_over(self, visitor: Visitor, upload: Upload) -> None:
+        client = self._client(visitor)
+        if client is not None:
+            assert self.site is not None
+            executor: Executor = self.site._thread_executor
+            executor.submit(self._receivers[upload.button], client, upload.name,
+                            content(upload)).add_done_callback(_log_failure)
+
+    def _notify(self, visitor: Visitor, sentence: str) -> None:
+        """Tell a browser what is refused, unless it was told of something just now."""
+        client, now = self._client(visitor), time.monotonic()
+        if client is not None and now >= visitor.next_notice:
+            visitor.next_notice = now + PAUSE
+            client.add_notification(plain(sentence), '', auto_close_seconds=8.0)
+
+    def _client(self, visitor: Visitor) -> viser.ClientHandle | None:
+        """Return viser's handle of a connection; None before its first camera message."""
+        assert self.site is not None
+        connections = self.site._websock_server._live_connections
+        return next((self.site.get_clients().get(number)
+                     for number, one in connections.items() if one is visitor.connection), None)
+
+
+def _log_failure(done: Any) -> None:  # noqa: ANN401  a future
+    error = done.exception()
+    if error is not None:
+        logger.error('an uploaded file is not used', exc_info=error)

@@ -1,0 +1,365 @@
+"""Attempts of strangers, each by its own: at the door without the token, and inside with it.
+
+Whoever is inside may command the simulator, but neither break the page of others nor fill the
+memory. After each attempt a browser with the token sees the page as before.
+"""
+
+import math
+import socket
+import time
+from contextlib import suppress
+
+import msgspec
+import pytest
+from support.browser import CAMERA, Browser
+from support.patience import PATIENCE
+from support.window import FakeSimulator
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
+
+from rosbots_description.sim.description import SceneChange
+from rosbots_description.web import Page, Site
+from rosbots_description.web.gate import MOST_CLIENTS
+from rosbots_description.web.uploads import MAX_BYTES, OF_ONE
+
+UPLOAD = 'Upload URDF, xacro or SDF'
+SECRET = 'the-token-of-this-test'
+KEY = 'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n'
+SOCKET = f'Upgrade: websocket\r\nConnection: Upgrade\r\n{KEY}'
+
+
+@pytest.fixture(scope='module')
+def served():
+    """A page, and the simulator behind it."""
+    site = Site('127.0.0.1', 0, SECRET)
+    simulator = FakeSimulator()
+    page = Page(site, simulator)
+    yield site, simulator, page
+    site.stop()
+
+
+@pytest.fixture
+def site(served):
+    """The window; when the attempt has been made, it works."""
+    site, simulator, _ = served
+    simulator.told.clear()
+    yield site
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: simulator.change)
+        simulator.change(SceneChange(True))
+        browser.wait_until(lambda: browser.control('Pause') and browser.control(UPLOAD)
+                           and {'SetCameraPositionMessage'} <= {
+                               message['type'] for message in browser.messages})
+
+
+@pytest.fixture
+def browser(site, served):
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: served[1].change and browser.control(UPLOAD))
+        yield browser
+
+
+def answer(site, request):
+    """Return all that is answered to the bytes of a request."""
+    with socket.create_connection(('127.0.0.1', site.get_port()), timeout=PATIENCE) as connection:
+        connection.sendall(request.encode('latin-1').replace(
+            b'PORT', str(site.get_port()).encode()))
+        connection.shutdown(socket.SHUT_WR)
+        received = b''
+        try:
+            while part := connection.recv(65536):
+                received += part
+        except ConnectionResetError:
+            pass
+        return received
+
+
+def request(target='/', headers='', method='GET', host='127.0.0.1:PORT', version='HTTP/1.1'):
+    return f'{method} {target} {version}\r\nHost: {host}\r\n{headers}\r\n'
+
+
+TARGETS = [
+    '/', '/index.html', '/?token', '/?token=', '/?token=x', '/?token=%00', '/?token=%FF',
+    f'/?token={SECRET[:-1]}', f'/?token={SECRET}x', f'/?token={SECRET.upper()}',
+    f'/?Token={SECRET}', f'/?token%20={SECRET}', f'/?token=%20{SECRET}', f'/?token[]={SECRET}',
+    f'/#?token={SECRET}', f'/?a={SECRET}', f'/{SECRET}', f'/{SECRET}/', f'/token={SECRET}',
+    '//', '///?token=x', '/..', '/../', '/%2e%2e/', '/..%2f', '/..%5c..%5c', '/....//', '/%00',
+    '/.git/config', '/etc/passwd', '//etc/passwd', '/%2fetc%2fpasswd', '/static/../../site.py',
+    '/rosbots_window', '/' + 'A' * 22, '/' + 'A' * 22 + '/', '/' + 'a/' * 2000, '/' + 'x' * 9000,
+    'http://127.0.0.1/', f'http://evil.example/?token={SECRET[1:]}', '*', 'evil.example:80',
+    '/?token=x&token=y', '/?' + '&'.join(['token=x'] * 1000), '/?websocket=ws://evil.example',
+    '/;token=x', '/?token=\u00e9',
+]
+HEADERS = [
+    'Cookie: \r\n', 'Cookie: rosbots_window_PORT=\r\n', 'Cookie: rosbots_window_PORT=x\r\n',
+    f'Cookie: rosbots_window_PORT={SECRET}\r\n',  # it is for a path that nobody knows
+    f'Cookie: token={SECRET}\r\n', f'Cookie: rosbots_window_PORT="{SECRET}"\r\n',
+    f'Authorization: Bearer {SECRET}\r\n', f'Authorization: token {SECRET}\r\n',
+    f'X-Token: {SECRET}\r\n', f'Referer: http://127.0.0.1:PORT/?token={SECRET}\r\n',
+    'Origin: null\r\n', 'Origin: http://evil.example\r\n', 'Origin: http://127.0.0.1:1\r\n',
+    'Origin: http://127.0.0.1:PORT.evil.example\r\n', 'Origin: file://\r\n',
+    'Origin: http://[\r\n', 'X-Forwarded-For: 127.0.0.1\r\n', 'X-Forwarded-Host: localhost\r\n',
+    'X-Original-URL: /?token=x\r\n', f'X-Rewrite-URL: /?token={SECRET}\r\n',
+    'Transfer-Encoding: chunked\r\n', 'Content-Length: 5\r\n', 'Cookie: a[]=1; =;;\r\n',
+    'Cookie: ' + 'a=b; ' * 1500 + '\r\n', 'A: b\r\n' * 200, 'X: ' + 'y' * 9000 + '\r\n',
+    ' folded: x\r\n', 'no colon\r\n', 'Host: evil.example\r\n',
+]
+METHODS = ['POST', 'PUT', 'DELETE', 'OPTIONS', 'HEAD', 'TRACE', 'CONNECT', 'PATCH', 'get', 'X' * 99]
+
+
+@pytest.mark.parametrize('target', TARGETS)
+@pytest.mark.parametrize('headers', ['', SOCKET], ids=['page', 'socket'])
+def test_no_target_without_the_token_leads_in(site, target, headers):
+    outside(answer(site, request(target, headers)))
+
+
+@pytest.mark.parametrize('extra', HEADERS)
+@pytest.mark.parametrize('headers', ['', SOCKET], ids=['page', 'socket'])
+def test_no_header_replaces_the_token(site, extra, headers):
+    outside(answer(site, request('/', headers + extra)))
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_no_other_method_leads_in(site, method):
+    outside(answer(site, request('/', method=method)))
+    # Not even with the token: there is nothing to put or to delete.
+    said = answer(site, request(f'/?token={SECRET}', method=method))
+    assert b'<html' not in said and b'HTTP/1.1 101' not in said
+
+
+@pytest.mark.parametrize('raw', [
+    '', '\r\n', '\0' * 100, 'GET', 'GET / HTTP/1.1', 'GET / HTTP/1.0\r\n\r\n', 'GET /\r\n\r\n',
+    'GET / HTTP/2.0\r\nHost: a\r\n\r\n', '\x16\x03\x01\x02\x00\x01', 'PRI * HTTP/2.0\r\n\r\nSM',
+    'GET  /  HTTP/1.1\r\n\r\n', 'GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n', 'x' * 100_000,
+])
+def test_what_is_no_request_leads_nowhere(site, raw):
+    outside(answer(site, raw))
+
+
+@pytest.mark.parametrize('origin', ['http://evil.example', 'null', 'http://127.0.0.1', 'file://',
+                                    'https://127.0.0.1:PORT.evil.example', 'chrome-extension://x'])
+def test_a_page_of_others_does_not_get_in_with_the_token(site, origin):
+    outside(answer(site, request(f'/?token={SECRET}', f'{SOCKET}Origin: {origin}\r\n')))
+
+
+def outside(said):
+    """Check that an answer is no page, opens no socket and gives nothing away."""
+    status = said.split(b'\r\n', 1)[0]
+    assert b' 200' not in status
+    assert b' 101' not in status
+    assert b' 500' not in status
+    assert b'<html' not in said
+    assert SECRET.encode() not in said
+    assert b'Set-Cookie' not in said
+    assert b'Traceback' not in said
+
+
+MALFORMED = {
+    'text': 'text', 'empty': b'', 'no msgpack': b'\xc1', 'a number': msgspec.msgpack.encode(1),
+    'a list': msgspec.msgpack.encode([1]), 'no type': msgspec.msgpack.encode({}),
+    'deep': b'\x91' * 100_000, 'cut off': msgspec.msgpack.encode(CAMERA)[:-3],
+    **{name: msgspec.msgpack.encode(message) for name, message in {
+        'unknown type': {'type': 'Nothing'},
+        'class of python': {'type': 'object'},
+        'base class': {'type': 'Message'},
+        'share': {'type': 'ShareUrlRequest'},
+        'script': {'type': 'RunJavascriptMessage', 'source': 'alert(1)'},
+        'notification': {'type': 'NotificationShowMessage', 'uuid': 'x', 'props': {}},
+        'theme': {'type': 'ThemeConfigurationMessage'},
+        'remove': {'type': 'RemoveSceneNodeMessage', 'name': '/models'},
+        'remove control': {'type': 'GuiRemoveMessage', 'uuid': 'x'},
+        'background': {'type': 'BackgroundImageMessage'},
+        'storage': {'type': 'LocalStorageGetItemResponseMessage', 'value': 'x', 'error': None,
+                    'request_uuid': 'x'},
+        'form': {'type': 'GuiFormDirtyMessage', 'uuid': 'x'},
+        'camera without a field': {name: value for name, value in CAMERA.items()
+                                   if name != 'fov'},
+        'camera with another field': {**CAMERA, 'client': 1},
+        'camera of text': {**CAMERA, 'position': 'abc'},
+        'camera of two numbers': {**CAMERA, 'position': [1.0, 2.0]},
+        'camera of a thousand': {**CAMERA, 'wxyz': [1.0] * 1000},
+        'camera of nothing': {**CAMERA, 'look_at': None},
+        'camera in a camera': {**CAMERA, 'look_at': [CAMERA] * 3},
+        'width of text': {**CAMERA, 'image_width': '100'},
+        'click without a ray': {'type': 'SceneNodeClickMessage', 'name': '/x'},
+        'long name': {'type': 'TransformControlsDragStartMessage', 'name': 'x' * 5000,
+                      'owner': ''},
+        'large message': {'type': 'GuiUpdateMessage', 'uuid': 'x',
+                          'updates': {'value': 'x' * 2_000_000}},
+        'other properties': {'type': 'GuiUpdateMessage', 'uuid': 'x',
+                             'updates': {'removed': True}},
+        'callbacks': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {'update_cb': []}},
+        'no property': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {}},
+        'two properties': {'type': 'GuiUpdateMessage', 'uuid': 'x',
+                           'updates': {'value': 1, 'sync_cb': None}},
+        'picture that is none': {'type': 'GetRenderResponseMessage', 'payload': b'GIF89a',
+                                 'render_uuid': 'x'},
+        'picture of text': {'type': 'GetRenderResponseMessage', 'payload': 'x',
+                            'render_uuid': 'x'},
+        'file for no button': {'type': 'FileTransferStartUpload', 'source_component_uuid': 'x',
+                               'transfer_uuid': 'x', 'filename': 'x', 'mime_type': '',
+                               'part_count': 1, 'size_bytes': 1},
+    }.items()},
+}
+
+
+@pytest.mark.parametrize('raw', MALFORMED.values(), ids=MALFORMED)
+def test_who_sends_what_no_page_sends_is_disconnected(browser, raw):
+    browser._connection.send(raw)
+    with pytest.raises(ConnectionClosed) as closed:
+        browser.wait_until(lambda: False)
+    assert closed.value.rcvd.code == 1008
+
+
+def test_a_message_larger_than_any_picture_ends_its_connection(browser):
+    with pytest.raises(ConnectionClosed):
+        for _ in range(2):
+            browser._connection.send(b'x' * 30_000_000)
+        browser.wait_until(lambda: False)
+
+
+BAD = (math.nan, math.inf, -math.inf, 1e300)
+CAMERAS = [
+    *[{name: [number, 0.0, 0.0]} for number in BAD for name in ('position', 'look_at')],
+    *[{'wxyz': [number, 0.0, 0.0, 0.0]} for number in BAD],
+    *[{'up_direction': [number, 0.0, 0.0]} for number in BAD],
+    *[{name: number} for number in BAD for name in ('fov', 'near', 'far')],
+    {'wxyz': [0.0] * 4}, {'up_direction': [0.0] * 3}, {'look_at': CAMERA['position']},
+    {'fov': 0.0}, {'fov': -1.0}, {'fov': 4.0}, {'near': 0.0}, {'far': 0.001},
+    {'image_height': 0}, {'image_width': -1}, {'image_width': 100_000},
+    {'image_height': 2**63 - 1},
+]
+
+
+@pytest.mark.parametrize('change', CAMERAS, ids=str)
+def test_a_camera_that_looks_nowhere_is_ignored(browser, site, change):
+    _, client = max(site.get_clients().items())  # the newest
+    browser.send({**CAMERA, **change})
+    browser.wait_until(lambda: any('of this browser' in note for note in browser.notes()))
+    assert all(map(math.isfinite, client.camera.position))
+    browser.look_at([1.0, 2.0, 3.0])
+    browser.wait_until(lambda: list(client.camera.look_at) == [1.0, 2.0, 3.0])
+
+
+VALUES = [
+    ('Steps', math.nan), ('Steps', math.inf), ('Steps', 0), ('Steps', -5), ('Steps', 10**9),
+    ('Size [m]', [math.nan, 1.0, 1.0]), ('Size [m]', [1.0, math.inf, 1.0]),
+    ('Shape mass [kg]', math.nan), ('Force [N]', [0.0, 0.0, math.inf]), ('Duration [s]', -1.0),
+    ('Duration [s]', math.nan), ('Speed', '100x'), ('Kind', 'sphere; rm'), ('Find', 'x' * 1001),
+    ('Curve', 'x' * 1001), ('Force per metre [N]', 0.0), ('Visuals', ''),
+    ('Model path', '../../etc/passwd'), ('Parameter', '/secret'), ('Light', '__proto__'),
+]
+
+
+@pytest.mark.parametrize(('label', 'value'), VALUES, ids=str)
+def test_a_value_that_a_control_cannot_have_is_refused_in_a_sentence(browser, label, value):
+    before = browser.value(label)
+    browser.choose(label, value)
+    browser.wait_until(lambda: any(f"'{label}'" in note for note in browser.notes()))
+    assert browser.value(label) == before
+
+
+@pytest.mark.parametrize(('label', 'value'), [
+    ('Steps', 'many'), ('Steps', None), ('Steps', True), ('Steps', [1]), ('Steps', {}),
+    ('Size [m]', 1.0), ('Size [m]', [1.0, 1.0]), ('Size [m]', ['a', 'b', 'c']), ('Static', 'yes'),
+    ('Find', 5), ('Find', b'x'), (UPLOAD, True), (UPLOAD, {'name': 'x', 'content': b''}),
+    ('Colour', [1]), ('Speed', 3), ('Pause', 'x'),
+], ids=str)
+def test_a_value_of_another_type_ends_the_connection(browser, label, value):
+    browser.choose(label, value)
+    with pytest.raises(ConnectionClosed):
+        browser.wait_until(lambda: False)
+
+
+def start(browser, number, size=1000, count=2, **more):
+    """Begin a file."""
+    browser.send({'type': 'FileTransferStartUpload', 'filename': 'x', 'mime_type': '',
+                  'source_component_uuid': browser.control(UPLOAD), 'transfer_uuid': str(number),
+                  'part_count': count, 'size_bytes': size, **more})
+
+
+def part(browser, number, index=0, content=b'x'):
+    """Send a part of it."""
+    browser.send({'type': 'FileTransferPart', 'source_component_uuid': browser.control(UPLOAD),
+                  'transfer_uuid': str(number), 'part_index': index, 'content': content})
+
+
+def test_unfinished_files_are_few_and_go_with_their_browser(browser, site):
+    for number in range(60):
+        start(browser, number, MAX_BYTES)
+        part(browser, number, 0, 500_000 * b'x')
+    browser.wait_until(lambda: any('at once' in note for note in browser.notes()))
+    assert len(site._gate._uploads) <= OF_ONE
+    browser._connection.close()
+    end = time.monotonic() + PATIENCE
+    while len(site._gate._uploads):
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize(('count', 'size'), [(-1, 10), (10**9, 10), (2, -1), (1, 2**60)])
+def test_a_file_of_impossible_size_is_not_begun(browser, site, count, size):
+    start(browser, 1, size, count)
+    with suppress(ConnectionClosed):
+        browser.wait_until(lambda: any("'x' has more than" in note or 'of this browser' in note
+                                       for note in browser.notes()))
+    assert len(site._gate._uploads) == 0
+
+
+@pytest.mark.parametrize('index', [-1, 2, 2**29, 0])
+def test_a_part_that_is_none_ends_the_connection(browser, index):
+    start(browser, 1)
+    part(browser, 1, 0)
+    part(browser, 1, index)
+    with pytest.raises(ConnectionClosed):
+        browser.wait_until(lambda: False)
+
+
+def test_parts_of_a_file_of_another_browser_are_ignored(browser, site, served):
+    start(browser, 'mine', 2)
+    part(browser, 'mine', 0, b'a')
+    with Browser(site.address) as other:
+        other.wait_until(lambda: other.control(UPLOAD))
+        part(other, 'mine', 1, b'!')
+        other.choose('Find', 'is read')  # after the part
+        other.wait_until(lambda: True)
+        browser.wait_until(lambda: browser.value('Find') == 'is read')
+        other.choose('Find', '')
+    part(browser, 'mine', 1, b'b')
+    browser.wait_until(lambda: any(what == 'insert' for what, *_ in served[1].told))
+    (text,) = (one[1] for one in served[1].told if one[0] == 'insert')
+    assert text.xml == 'x: ab'
+
+
+def test_name_of_a_file_is_one_line_of_text(browser, served):
+    browser.upload(UPLOAD, 'a\n\u202e\0' + 'x' * 900, b'x')
+    browser.wait_until(lambda: any(what == 'insert' for what, *_ in served[1].told))
+    (text,) = (one[1] for one in served[1].told if one[0] == 'insert')
+    name = text.xml.partition(':')[0]
+    assert len(name) <= 300
+    assert name.startswith('a \ufffd\ufffdxx')
+
+
+def test_there_is_room_for_so_many_browsers(site):
+    browsers = []
+    try:
+        with pytest.raises((ConnectionClosed, InvalidHandshake)):
+            for _ in range(MOST_CLIENTS + 1):
+                browsers.append(Browser(site.address))
+                browsers[-1].wait_until(lambda: browsers[-1].messages)
+        assert len(browsers) in (MOST_CLIENTS, MOST_CLIENTS + 1)
+    finally:
+        for browser in browsers:
+            browser._connection.close()
+    end = time.monotonic() + PATIENCE
+    while site._gate._visitors:
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_a_flood_of_messages_is_slowed_down_and_the_page_answers_others(browser, site, served):
+    for _ in range(8000):
+        browser.look_at([1.0, 2.0, 3.0])
+    with Browser(site.address) as other:
+        other.wait_until(lambda: other.control('Pause'))
+        other.click('Pause')
+        other.wait_until(lambda: ('pause',) in served[1].told)
