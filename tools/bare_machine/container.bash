@@ -24,6 +24,7 @@ run_container_steps() {
     esac
   done 3< <(instructions "$repository/Containerfile")
   echo "== as $user: ${entry[*]} ${command[*]}"
+  AROUND=("${ALONE[@]}")  # the port of its ROS master is free there
   # shellcheck disable=SC2154
   inside "$user" sh -c "cd '$folder' && exec timeout --signal INT 60 \"\$@\"" sh "${entry[@]}" \
     "${command[@]}" 2>&1 | tee "$bare.output" || true  # timeout ends it

@@ -74,11 +74,6 @@ works() {
   if [[ $code -eq 0 ]]; then verdict ok works; else verdict FAILED "exit code $code"; fi
 }
 
-# A network that has only this machine.
-ALONE=(unshare --net python3 -c 'import fcntl, os, socket, struct, sys
-fcntl.ioctl(socket.socket(), 0x8914, struct.pack("16sH14s", b"lo", 1, b""))  # SIOCSIFFLAGS: up
-os.execvp(sys.argv[1], sys.argv[1:])')
-
 IMPORT=(exec python3 -c 'import rospy, pybullet')
 
 # ---- before anything is installed -----------------------------------------------------------

@@ -1,6 +1,10 @@
 # An empty Debian; sourced by tools/bare_machine_test.sh, needs release, bare and repository.
 
 CLONE=/home/newcomer/rosbots
+# A network that has only this machine.
+ALONE=(unshare --net python3 -c 'import fcntl, os, socket, struct, sys
+fcntl.ioctl(socket.socket(), 0x8914, struct.pack("16sH14s", b"lo", 1, b""))  # SIOCSIFFLAGS: up
+os.execvp(sys.argv[1], sys.argv[1:])')
 AROUND=()  # what a command inside is started by: unshare --net …
 
 suite() { if [[ $release == 12 ]]; then echo bookworm; else echo trixie; fi; }
