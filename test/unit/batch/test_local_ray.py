@@ -24,12 +24,14 @@ def test_folders_of_killed_programs_are_removed_with_their_processes_and_no_othe
     for folder in (abandoned, foreign):
         folder.mkdir()
     (abandoned / 'rosbots.lock').touch()
-    with subprocess.Popen([sys.executable, '-c', 'input()', f'{abandoned}/socket'],
-                          stdin=subprocess.PIPE) as left, local_ray.own_folder() as living:
-        assert left.wait(timeout=30.0) == -signal.SIGKILL
-        with local_ray.own_folder() as other:
-            assert set(place.iterdir()) == {Path(living), Path(other), foreign}
-        assert set(place.iterdir()) == {Path(living), foreign}
+    command = [sys.executable, '-c', 'print(flush=True); input()', f'{abandoned}/socket']
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as left:
+        assert left.stdout.readline()  # before that, its command line may not be visible yet
+        with local_ray.own_folder() as living:
+            assert left.wait(timeout=60.0) == -signal.SIGKILL
+            with local_ray.own_folder() as other:
+                assert set(place.iterdir()) == {Path(living), Path(other), foreign}
+            assert set(place.iterdir()) == {Path(living), foreign}
     assert list(place.iterdir()) == [foreign]
 
 
