@@ -3,6 +3,7 @@
 import threading
 import time
 from types import SimpleNamespace
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -119,7 +120,7 @@ def test_reset_is_up_to_the_program(env):
 
 
 def test_port_in_use_and_missing_viser_are_named(env, monkeypatch):
-    port = int(env.render().rstrip('/').rpartition(':')[2])
+    port = urlsplit(env.render()).port
     with pytest.raises(SimError, match=f'port {port}'):
         Drive(render_mode='web', web_port=port, settle=0.1)
     monkeypatch.setattr('importlib.util.find_spec', lambda _name: None)
