@@ -123,7 +123,9 @@ class FramesTest(unittest.TestCase):
             shown = CONTROL.sub('', terminal.shown())
             lines = [line for line in shown.splitlines() if line.strip()]
             self.assertLessEqual(len(lines), LINES, shown)
-            self.assertNotRegex(shown, 'Traceback|has died|no such package|QStandard')
+            # Debian's RViz may also crash later by the heap that it corrupts at its start.
+            ours = debian_rviz.CRASH.sub('', shown)
+            self.assertNotRegex(ours, 'Traceback|has died|no such package|QStandard')
             # A new state publisher may publish each wheel once before it is known.
             self.assertLessEqual(shown.count('TF_'), len(WHEELS), shown)
 
