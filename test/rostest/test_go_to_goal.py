@@ -65,7 +65,7 @@ class GoToGoalTest(ExampleNodeTest):
         self.assertLess(max(between.min(axis=0).max(), between.min(axis=1).max()), NEAR)
 
     def test_3_the_learned_policy_drives_the_robot_by_its_node(self):
-        self.limit_rate(2000)
+        self.limit_rate(1000)  # of real time, so that commands are as late as for a reader
         environment = RosGoToGoal()
         environment.reset(options=LEARNED)
         environment.close()
