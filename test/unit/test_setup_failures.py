@@ -24,7 +24,7 @@ def set_up(script, workspace):
 @pytest.mark.parametrize(('log', 'sentence'), [
     ('E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt-get)',
      'another program is installing packages; run this again when it has ended'),
-    ("Err:1 http://deb.debian.org/debian bookworm InRelease\n  Temporary failure resolving 'deb'",
+    ("Err:1 http://mirror.example/debian bookworm InRelease\n  Temporary failure resolving 'x'",
      'a server of packages cannot be reached'),
     ('urllib3: Failed to establish a new connection: [Errno -3] Temporary failure in name',
      'a server of packages cannot be reached'),
