@@ -37,6 +37,6 @@ setup(
         if (files := glob(f'{folder}/*') if folder else ['package.xml'])
     ],
     # Of `sim` and the command line; what the ROS side needs comes from Debian, as package.xml says.
-    install_requires=required('base'),
+    install_requires=required('core'),
     extras_require={name: required(name) for name in ('batch', 'gym', 'web')},
 )

@@ -2,20 +2,14 @@
 
 # The workspaces that the caller has sourced precede ours: their packages hide ours of the same name.
 enter_environment() {
-  local name room
-  room=$(find_room) || exit 1
+  local name
   local -A callers=()
   for name in CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONPATH ROS_PACKAGE_PATH; do
     callers[$name]=${!name:-}
     unset "$name"
   done
   find_ros_home  # first: rospack, in a hook of the setup file, writes there
-  # The generated setup file reads variables that may be unset, and its own _CATKIN_SETUP_DIR.
-  set +u
-  unset _CATKIN_SETUP_DIR
-  # shellcheck disable=SC1091
-  TMPDIR=$room source "$WORKSPACE/devel/setup.bash"
-  set -u
+  if has_workspace; then source_workspace; else use_sources; fi
   for name in "${!callers[@]}"; do
     export "$name=$(put_before "${callers[$name]}" "${!name:-}")"
   done
@@ -24,6 +18,28 @@ enter_environment() {
   export ROSBOTS_ROOT=$ROOT
   find_address
   find_runtime_folder
+}
+
+source_workspace() {
+  local room
+  room=$(find_room) || exit 1
+  # The generated setup file reads variables that may be unset, and its own _CATKIN_SETUP_DIR.
+  set +u
+  unset _CATKIN_SETUP_DIR
+  # shellcheck disable=SC1091
+  TMPDIR=$room source "$WORKSPACE/devel/setup.bash"
+  set -u
+}
+
+# What the workspace's set-up file would say, were there one: packages and modules as they lie here.
+use_sources() {
+  export ROS_PACKAGE_PATH=$ROOT:$ROOT/companions:/usr/share
+  export PYTHONPATH=$WORKSPACE/messages:$ROOT/src
+  local folder
+  for folder in "$ROOT"/companions/*/src; do PYTHONPATH+=:$folder; done
+  export PATH=$WORKSPACE/venv/bin:$PATH
+  export ROS_MASTER_URI=${ROS_MASTER_URI:-http://localhost:11311} ROS_ETC_DIR=/etc/ros
+  export ROS_ROOT=/usr/share/ros ROS_DISTRO=Debian ROS_PYTHON_VERSION=3 ROS_VERSION=1
 }
 
 # roslaunch imports distutils; replaced by setuptools, it would start 0.1 s later. From Python 3.12 on

@@ -1,8 +1,8 @@
 # Install what is missing of the chosen sets, and only that; sourced by ./rosbots, needs ROOT.
 #
-# Three parts: Debian packages and Python packages, of each set, and the workspace. A part is done
-# when its stamp file holds the fingerprint of everything it was made from; comparing these costs
-# milliseconds.
+# Three parts: Debian packages and Python packages, of each set, and the workspace (of the set demo
+# alone, only the modules of messages). A part is done when its stamp file holds the fingerprint of
+# everything it was made from; comparing these costs milliseconds.
 
 source "$ROOT/tools/setup/progress.bash"
 source "$ROOT/tools/setup/sets.bash"
@@ -45,8 +45,24 @@ python_done() {
   [[ -x $WORKSPACE/venv/bin/python ]] && are_done python "$(python_fingerprint)"
 }
 
+has_workspace() { [[ " ${CHOSEN[*]} " == *' base '* ]]; }
+
 workspace_done() {
-  [[ -f $WORKSPACE/devel/setup.bash ]] && is_done workspace "$(workspace_fingerprint)"
+  if has_workspace; then
+    [[ -f $WORKSPACE/devel/setup.bash ]] && is_done workspace "$(workspace_fingerprint)"
+  else
+    is_done messages "$(messages_fingerprint)"
+  fi
+}
+
+set_up_workspace() {
+  if has_workspace; then
+    phase 'Workspace' catkin_make build_workspace
+    mark_done workspace "$(workspace_fingerprint)"
+  else
+    phase 'Messages' messages make_messages
+    mark_done messages "$(messages_fingerprint)"
+  fi
 }
 
 # Say in a line what a set is for and how large it is.
@@ -80,9 +96,6 @@ set_up() {
     set_up_python
     mark_all_done python "$(python_fingerprint)"
   fi
-  if ! workspace_done; then
-    phase 'Workspace' catkin_make build_workspace
-    mark_done workspace "$(workspace_fingerprint)"
-  fi
+  if ! workspace_done; then set_up_workspace; fi
   exec {lock}>&-
 }

@@ -11,8 +11,8 @@ import pytest
 from support import ROOT
 
 DOCTOR = runpy.run_path(str(ROOT / 'tools' / 'doctor.py'))
-ROWS = ('platform', 'clone', 'versions', 'set base', 'set web', 'set gym', 'set batch', 'set test',
-        'set bench', 'workspace', 'OpenGL', 'display', 'ports', 'terminal')
+ROWS = ('platform', 'clone', 'versions', 'set demo', 'set base', 'set web', 'set gym', 'set batch',
+        'set test', 'set bench', 'workspace', 'OpenGL', 'display', 'ports', 'terminal')
 
 
 def doctor(clone, *arguments, **environment):
@@ -53,7 +53,7 @@ def test_clone_without_set_up_is_told_the_command_and_left_as_it_is(clone):
     assert result.returncode == 1
     (base,) = [line for line in result.stdout.splitlines() if line.startswith('set base')]
     assert base.startswith('set base    missing: ')
-    assert '5 Python packages' in base
+    assert '6 Python packages' in base
     assert base.endswith('; ./rosbots setup base')
     assert sorted(clone.rglob('*')) == before
 

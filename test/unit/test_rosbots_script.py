@@ -136,7 +136,9 @@ def test_users_package_takes_precedence_except_in_demo_and_test(
         arguments, sees_theirs, theirs, tmp_path):
     # the final exec is replaced to show which package it would use
     instead = tmp_path / 'instead.bash'
-    instead.write_text('exec() { rospack find rosbots_description; }')
+    # (a redirection of the set-up is not the final one)
+    instead.write_text('exec() { if type -P "$1" > /dev/null; then rospack find '
+                       'rosbots_description; fi; }')
     result = rosbots(*arguments, BASH_ENV=str(instead), ROS_PACKAGE_PATH=str(theirs.parent))
     found = os.path.realpath(result.stdout.strip())
     assert found == str(theirs if sees_theirs else ROOT), result.stderr
@@ -211,7 +213,7 @@ def test_error_without_any_writable_folder_names_all_of_them(tmp_path):
         place.mkdir()
     result = on_full_disks(
         [temporary, '/dev/shm', workspace], 'bash', '-euc',
-        'source "$ROOT/tools/environment.bash"; enter_environment',
+        'source "$ROOT/tools/environment.bash"; source_workspace',
         ROOT=str(ROOT), WORKSPACE=str(workspace), TMPDIR=str(temporary))
     assert result.returncode == 1
     assert result.stderr == (

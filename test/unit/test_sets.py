@@ -9,7 +9,8 @@ import pytest
 from support import ROOT
 
 REQUIREMENTS = ROOT / 'requirements'
-SETS = ('base', 'web', 'gym', 'batch', 'test', 'bench')
+SETS = ('demo', 'base', 'web', 'gym', 'batch', 'test', 'bench')  # of which commands ask for one
+INNER = 'core'  # which others include
 
 
 def entries(path):
@@ -52,7 +53,7 @@ def sets_of(tmp_path):
 
 
 @pytest.mark.parametrize(('command', 'sets'), [
-    ('demo', 'base'), ('demo --web', 'web'), ('shell', 'base'), ('exec true', 'base'),
+    ('demo', 'demo'), ('demo --web', 'web'), ('shell', 'base'), ('exec true', 'base'),
     ('launch gazebo_ros empty_world.launch', 'base'),
     ('launch gazebo_ros empty_world.launch gui:=false web:=true', 'web'),
     ('launch gazebo_ros empty_world.launch web:=True', 'web'),
@@ -68,23 +69,24 @@ def test_command_installs_its_set(sets_of, command, sets):
 def test_unknown_set_is_named_with_the_known_ones(sets_of):
     result = sets_of('setup', 'base', 'moon')
     assert (result.returncode, result.stdout) == (2, '')
-    assert result.stderr == ("rosbots: there is no set 'moon'; the sets are base web gym batch "
-                             'test bench, and --all is all of them\n')
+    assert result.stderr == ("rosbots: there is no set 'moon'; the sets are demo base web gym "
+                             'batch test bench, and --all is all of them\n')
 
 
 def test_files_are_those_of_the_sets():
-    assert {path.stem for path in REQUIREMENTS.glob('*.pip')} == set(SETS)
-    assert {path.stem for path in REQUIREMENTS.glob('*.apt')} <= {*SETS, 'optional'}
+    assert {path.stem for path in REQUIREMENTS.glob('*.pip')} == {INNER, *SETS}
+    assert {path.stem for path in REQUIREMENTS.glob('*.apt')} <= {INNER, *SETS, 'optional'}
 
 
-@pytest.mark.parametrize('name', SETS)
+@pytest.mark.parametrize('name', [INNER, *SETS])
 def test_first_line_says_what_a_set_is_for_and_how_large_it_is(name):
     (line,) = in_setup(f'purpose {name}')
     assert re.fullmatch(r'[a-z].+: .*\d+ [MG]B of .* packages.*', line)
 
 
 def test_included_sets_come_first_and_once():
-    assert in_setup('with_included gym test; echo "${CHOSEN[@]}"') == ['base gym web batch test']
+    assert in_setup('with_included gym test; echo "${CHOSEN[@]}"') == [
+        'core demo base gym web batch test']
 
 
 def test_python_packages_are_pinned_or_come_from_debian():
@@ -119,8 +121,8 @@ def test_a_python_package_comes_from_debian_or_from_pypi(debian, architecture):
 ])
 def test_headers_of_python_are_installed_where_something_is_built(platform, builds):
     debian, architecture = platform
-    packages = debian_packages('base', debian=debian, architecture=architecture)
-    assert ('python3-dev' in packages) == builds
+    packages = debian_packages('demo', debian=debian, architecture=architecture)
+    assert ({'build-essential', 'cmake', 'python3-dev'} <= packages) == builds
 
 
 def test_base_has_no_browser_and_no_test_tools():
@@ -128,9 +130,14 @@ def test_base_has_no_browser_and_no_test_tools():
     for name, of_all in zip(('chromium', 'ray'), everything, strict=True):
         assert name in of_all
     assert not {'chromium', 'catkin-lint', 'python3-pytest', 'xvfb'} & debian_packages('base')
-    assert python_packages('base') == {'embreex', 'moderngl', 'pybullet', 'pycollada', 'xacro'}
+    assert python_packages('base') == {
+        'embreex', 'matplotlib', 'moderngl', 'pybullet', 'pycollada', 'xacro'}
+
+
+def test_the_demo_needs_no_compiler_no_catkin_and_no_rviz():
+    assert not {'build-essential', 'catkin', 'cmake', 'rviz'} & debian_packages('demo')
 
 
 def test_wheel_is_made_of_the_version_in_the_list():
     version = runpy.run_path(str(ROOT / 'tools' / 'pybullet_build' / 'wheel.py'))['VERSION']
-    assert [f'pybullet=={version}'] in entries(REQUIREMENTS / 'base.pip')
+    assert [f'pybullet=={version}'] in entries(REQUIREMENTS / 'core.pip')

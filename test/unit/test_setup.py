@@ -18,7 +18,7 @@ def arguments(monkeypatch, folder):
 
 def test_requirements_are_those_of_the_sets(monkeypatch):
     called = arguments(monkeypatch, ROOT)
-    for name, requirements in {'base': called['install_requires'],
+    for name, requirements in {'core': called['install_requires'],
                                **called['extras_require']}.items():
         text = (ROOT / 'requirements' / f'{name}.pip').read_text(encoding='utf-8')
         assert requirements

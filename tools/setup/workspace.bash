@@ -1,4 +1,4 @@
-# The catkin workspace; sourced by tools/setup.bash.
+# The catkin workspace, or what serves where only the demo is set up; sourced by tools/setup.bash.
 
 # Paths that neither catkin nor a '#!' line can hold (spaces, umlauts) get a workspace elsewhere.
 find_workspace() {
@@ -62,4 +62,16 @@ build_workspace() {
     ROS_LANG_DISABLE=genlisp \
     /usr/bin/catkin_make -C "$WORKSPACE" "-DPYTHON_EXECUTABLE=$python" "-DPython_EXECUTABLE=$python" \
     -DCATKIN_ENABLE_TESTING=OFF
+}
+
+# ---- without a workspace: a compiler and catkin would take most of a newcomer's first minute ----
+
+messages_fingerprint() {
+  find "$ROOT/tools/make_messages.py" "$ROOT"/companions/*_msgs -type f -print0 | sort -z |
+    xargs -0 sha256sum | sha256sum
+}
+
+make_messages() {
+  rm -rf "$WORKSPACE/messages"
+  /usr/bin/python3 "$ROOT/tools/make_messages.py" "$ROOT/companions" "$WORKSPACE/messages"
 }

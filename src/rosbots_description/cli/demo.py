@@ -9,6 +9,7 @@ import signal
 import socket
 import sys
 import time
+import warnings
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -83,6 +84,8 @@ def _run(folder: Path, web: bool) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     environment = _private_environment(folder)
     os.environ.update(environment)  # for our own node
+    # matplotlib says so where Debian's is installed, too, and hides the parts for three dimensions.
+    warnings.filterwarnings('ignore', 'Unable to import Axes3D')
     # Imported late, so that --help is fast.
     from ..ros_api.clients.demo import DemoClient
     from .demo_plot import save_picture

@@ -6,11 +6,9 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-
-matplotlib.use('Agg')  # before importing pyplot: there may be no display
-from matplotlib import pyplot
+from matplotlib.figure import Figure
+from matplotlib.image import imsave
 
 from ..ros_api.clients.planar_sample import PlanarSample
 from .demo_report import Segment
@@ -24,7 +22,7 @@ def save_picture(path: Path, pixels: np.ndarray) -> None:
     Raises:
         OSError: the file cannot be written.
     """
-    pyplot.imsave(path, pixels)
+    imsave(path, pixels)
 
 
 def plot_path(
@@ -40,7 +38,8 @@ def plot_path(
     Raises:
         OSError: the file cannot be written.
     """
-    figure, axes = pyplot.subplots(figsize=(8, 6), layout='constrained')
+    figure = Figure(figsize=(8, 6), layout='constrained')
+    axes = figure.subplots()
     for segment, samples in drive:
         label = f'{segment.name}: {segment.speed:g} m/s, {segment.turn_rate:g} rad/s'
         axes.plot([s.x for s in samples], [s.y for s in samples], linewidth=3, label=label)
@@ -53,7 +52,4 @@ def plot_path(
     axes.margins(0.15)
     axes.grid(alpha=0.3)
     axes.legend(loc='best', fontsize='small')
-    try:
-        figure.savefig(path, dpi=120)
-    finally:
-        pyplot.close(figure)
+    figure.savefig(path, dpi=120)
