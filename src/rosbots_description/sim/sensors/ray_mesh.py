@@ -5,11 +5,13 @@ centre is the origin. Where there is no Embree for Python (arm64), a `TriangleTr
 readings within that precision, in 10 to 25 ms.
 """
 
+import os
 from collections.abc import Iterable
 from concurrent.futures import Future
 from importlib.util import find_spec
 from threading import Thread
 from typing import Protocol
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,6 +104,22 @@ class RayMesh:
         return np.where(met < reach, skipped + met, np.inf)
 
 
+_builders: WeakSet[Thread] = WeakSet()
+
+
+def _finish() -> None:
+    """Wait for the meshes that are being built.
+
+    A fork has none of the threads: its meshes would never be ready, and the import of Embree that a
+    thread may be in the middle of would keep its lock.
+    """
+    for thread in tuple(_builders):
+        thread.join()
+
+
+os.register_at_fork(before=_finish)
+
+
 def build_later(meshes: Iterable[Mesh]) -> dict[Mesh, Future[RayMesh]]:
     """Build meshes on a thread of their own; 20 000 triangles take 20 ms.
 
@@ -117,5 +135,7 @@ def build_later(meshes: Iterable[Mesh]) -> dict[Mesh, Future[RayMesh]]:
                 future.set_exception(error)
 
     if futures:
-        Thread(target=build, name='ray meshes', daemon=True).start()
+        thread = Thread(target=build, name='ray meshes', daemon=True)
+        thread.start()
+        _builders.add(thread)
     return futures
