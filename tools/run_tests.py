@@ -2,9 +2,9 @@
 """Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
 
 Phases: lint (ruff, mypy, catkin_lint, launch files) beside unit (pytest, no ROS master), engine
-(pytest, PyBullet without a window), rostest (each test/rostest/*.test with its own master, several
-side by side). A phase without any test counts as failed. What failed is listed at the end with the
-command that repeats it.
+(pytest, PyBullet without a window), each with a process per processor, and rostest (each
+test/rostest/*.test with its own master, several side by side). A phase without any test counts as
+failed. What failed is listed at the end with the command that repeats it.
 """
 
 from __future__ import annotations
@@ -37,10 +37,9 @@ from results import (
 )
 from rostests import choose, run_rostests
 
-COVERAGE = REPORTS / 'coverage'
 SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
-LEAST = 5  # files to list
-AT_ONCE = ('lint', 'unit')  # phases of one process each
+AT_ONCE = ('lint', 'unit')  # phases
+HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
 
 def run_command(phase: str, name: str, command: list[str]) -> Count:
@@ -87,14 +86,14 @@ def run_lint(_word: str) -> Count:
     return sum((run_command('lint', name, command) for name, command in checks.items()), Count())
 
 
-def run_pytest(phase: str, options: list[str], measure: tuple[str, ...] = ()) -> Count:
-    """Run tests of test/<phase>; `measure` is what runs pytest as a module and watches it."""
+def run_pytest(phase: str, options: list[str]) -> Count:
+    """Run tests of test/<phase>."""
     report, log = REPORTS / f'{phase}.xml', REPORTS / f'{phase}.log'
     start = time.monotonic()
     with log.open('w') as written, subprocess.Popen(
-            [sys.executable, *measure, '-m', 'pytest', '-q', f'--junitxml={report}', *options],
-            cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            errors='replace') as process:
+            [sys.executable, '-m', 'pytest', '-q', f'--timeout={HOPELESS}',
+             f'--junitxml={report}', *options], cwd=ROOT, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, errors='replace') as process:
         assert process.stdout is not None
         for line in process.stdout:
             written.write(line)
@@ -119,41 +118,16 @@ def node_of(classname: str, name: str) -> str:
     return ''
 
 
-def run_unit(word: str) -> Count:
-    """Run test/unit with coverage; a part of it would say nothing.
-
-    test/engine runs without it: its loops over steps take 1.8 times as long when traced, which is
-    minutes. So what needs an engine or a renderer is listed as not covered.
-    """
-    watched = ('-m', 'coverage', 'run', f'--data-file={COVERAGE}')
-    return run_pytest('unit', ['-k', word, 'test/unit'], () if word else watched)
-
-
-def run_engine(word: str) -> Count:
-    """Run test/engine, a process per processor: 176 s instead of 308 s on two."""
-    return run_pytest('engine', ['-n', 'auto', '--dist', 'loadfile', '-k', word, 'test/engine'])
-
-
-def least_covered() -> str:
-    """Return one line about the coverage of test/unit."""
-    done = subprocess.run(
-        [sys.executable, '-m', 'coverage', 'json', '-i', '-o', '-', f'--data-file={COVERAGE}'],
-        cwd=ROOT, stdout=subprocess.PIPE, check=True)
-    report = json.loads(done.stdout)
-    files = {path.removeprefix('src/rosbots_description/'): file['summary']
-             for path, file in report['files'].items()}
-    share = {path: summary['percent_covered'] for path, summary in files.items()}
-    order = sorted(files, key=lambda path: (share[path], -files[path]['num_statements']))
-    least = (f'{path} {share[path]:.0f} %' for path in order[:LEAST])
-    total = report['totals']['percent_covered']
-    return (f'test/unit runs {total:.0f} % of the lines of sim and ros_api; '
-            f'fewest of {", ".join(least)}')
+def pytest_phase(phase: str) -> Callable[[str], Count]:
+    """Return what runs test/<phase>, a process per processor."""
+    return lambda word: run_pytest(
+        phase, ['-n', 'auto', '--dist', 'loadfile', '-k', word, f'test/{phase}'])
 
 
 PHASES: dict[str, Callable[[str], Count]] = {
     'lint': run_lint,
-    'unit': run_unit,
-    'engine': run_engine,
+    'unit': pytest_phase('unit'),
+    'engine': pytest_phase('engine'),
     'rostest': lambda word: run_rostests(choose(word)),
 }
 
@@ -234,8 +208,6 @@ def main(argv: list[str] | None = None) -> int:
         'seconds': took | {'all': time.monotonic() - start}, 'passed': total.passed,
         'failed': total.failed, 'failures': [failure.name for failure in total.failures]}))
     skipped = f' ({total.skipped} skipped)' if total.skipped else ''
-    if COVERAGE.exists():
-        say('', least_covered())
     say_failures(total.failures, arguments.seed)
     say('', f'all phases took {time.monotonic() - start:.0f} s{skipped}',
         f'{total.passed} passed, {total.failed} failed')

@@ -29,7 +29,6 @@ def modules(monkeypatch, tmp_path):
     for module in (results, rostests, run_tests):
         monkeypatch.setattr(module, 'REPORTS', tmp_path / 'reports')
     monkeypatch.setattr(run_tests, 'SUMMARY', tmp_path / 'reports' / 'summary.json')
-    monkeypatch.setattr(run_tests, 'COVERAGE', tmp_path / 'no coverage')
     return results, rostests, run_tests
 
 

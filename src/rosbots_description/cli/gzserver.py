@@ -14,7 +14,7 @@ from ..sim.core import SimError
 EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'
 _VERSION = "gzserver of rosbots_description: Gazebo 11's ROS interface, by PyBullet"
-# Requirement to install for a missing module, as in requirements/base.pip.
+# Requirement to install for a missing module, as in requirements/core.pip.
 _INSTALLED_BY = {
     'pybullet': 'pybullet==3.2.7',
     'collada': 'pycollada==0.9.3',

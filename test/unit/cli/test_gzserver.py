@@ -11,7 +11,7 @@ import pytest
 from rosbots_description.cli.gzserver import main, parser, remarks, split_remappings
 from rosbots_description.ros_api.node import node
 
-REQUIREMENTS = Path(__file__).resolve().parents[3] / 'requirements' / 'base.pip'
+REQUIREMENTS = Path(__file__).resolve().parents[3] / 'requirements' / 'core.pip'
 
 
 def _read(line):
