@@ -122,7 +122,7 @@ def test_a_python_package_comes_from_debian_or_from_pypi(debian, architecture):
 def test_headers_of_python_are_installed_where_something_is_built(platform, builds):
     debian, architecture = platform
     packages = debian_packages('demo', debian=debian, architecture=architecture)
-    assert ({'build-essential', 'cmake', 'python3-dev'} <= packages) == builds
+    assert ({'build-essential', 'cmake', 'python3-dev', 'python3-setuptools'} <= packages) == builds
 
 
 def test_base_has_no_browser_and_no_test_tools():
