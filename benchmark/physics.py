@@ -43,10 +43,10 @@ def gazebo_errors(tuning: Tuning) -> tuple[float, float]:
     speeds, times = [], []
     for command in load('article')['drives']:
         for one in compare_drive('article', command, tuning):
-            if one.quantity in ('v', 'w') and abs(one.gazebo) > SMALL:
-                speeds.append(abs(one.ours / one.gazebo - 1.0))
+            if one.quantity in ('v', 'w') and abs(one.expected) > SMALL:
+                speeds.append(abs(one.ours / one.expected - 1.0))
             elif one.quantity.startswith('t90'):
-                times.append(abs(one.ours / one.gazebo - 1.0))
+                times.append(abs(one.ours / one.expected - 1.0))
     return max(speeds), max(times)
 
 

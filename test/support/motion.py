@@ -10,6 +10,7 @@ from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 
 from . import empty_world, robot_spec
+from .mechanics import DRIVES
 from .recorded import DATA, Difference, load
 
 ROBOTS = ('article', 'burger', 'box4', 'skid4', 'planar', 'tricycle')
@@ -182,6 +183,11 @@ def compare_drive(
     for joint, speed in data.get('wheels', {}).items():
         tolerance = max(SPEED_SHARE * abs(speed), WHEEL_FLOOR)
         add(joint, 'rad/s', speed, ours[joint], tolerance)
+    for one, quantity, value, reason in DRIVES:
+        if one == scene:
+            tolerance = _tolerance(quantity, value, rim, bool(turning))
+            found.append(Difference(scene, quantity, tolerance[0], value, ours[quantity],
+                                    tolerance[1], reference='mechanics', reason=reason))
     return found + list(_compare_paths(scene, data, samples, floor))
 
 
