@@ -1,7 +1,6 @@
 """How hypothesis looks for counterexamples: the same examples every time, unless asked for more.
 
-More of them, and others each time, are tried with the profile `search`:
-./rosbots exec python3 -m pytest test/unit test/engine -k properties --hypothesis-profile=search
+More of them, and others each time, are tried with the profile `search`: ./rosbots bench fuzz
 """
 
 import tempfile

@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import box_urdf, empty_world, package_directory, robot_urdf, urdf_spec
 from support.descriptions import sdfs, urdfs
+from support.fuzzing import MEMORY, STEPS
 from support.invariants import check_sentence, numbers_in
-from support.isolation import isolated
+from support.isolation import isolated, limit_memory
 from support.mutations import damaged
 
 from rosbots_description.sim.core.errors import SimError
@@ -19,7 +20,6 @@ from rosbots_description.sim.resources.uris import UnknownPackage
 from rosbots_description.sim.resources.xml_parser import root_tag
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
-STEPS = 20
 ASIDE = Pose((1e4, 1e4, 0.5))  # [m] beyond the reach of moving models
 RIGHT = Pose((0.0, 0.0, 100.0))
 
@@ -35,20 +35,21 @@ def world():
     """Open the initial world of every example: ground and a distant box at rest."""
     with empty_world() as world:
         world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'bystander', ASIDE)
-        live(world, robot_urdf(), 100)  # children inherit the converted meshes
+        live(world, robot_urdf())  # children inherit the converted meshes
         yield world
 
 
-def live(world, text, steps):
+def live(world, text, more=0):
     """Spawn, simulate and delete a model; return whether it stayed finite, and the bystander."""
     spec, pose = read(text)
     model = world.spawn(spec, 'model', pose if math.hypot(*pose.position) < 1e3 else RIGHT)
-    world.run(steps)
+    world.run(STEPS)
     states = [link.state() for link in model.links.values()]
     states += [joint.state() for joint in model.joints.values()]
     states.append(model.state())
     numbers = list(numbers_in(states))
     finite = all(map(math.isfinite, numbers))
+    world.run(more)
     world.delete('model')
     assert list(world.models) == ['ground_plane', 'bystander']
     return finite, world.models['bystander'].state()
@@ -56,12 +57,15 @@ def live(world, text, steps):
 
 def survive(world, text):
     """Simulate a model that may be rejected; return the state of the bystander."""
+    limit_memory(MEMORY)
     try:
-        return live(world, text, 2 * PERIOD)[1]
+        finite, bystander = live(world, text, 2 * PERIOD)
     except (SimError, UnknownPackage) as error:
         check_sentence(error)
         world.run(1)
         return world.models['bystander'].state()
+    assert finite
+    return bystander
 
 
 def check_bystander(state):
@@ -72,7 +76,7 @@ def check_bystander(state):
 
 @given(st.one_of(urdfs(), sdfs()))
 def test_valid_model_is_simulated(world, description):
-    finite, bystander = isolated(lambda: live(world, description.text, STEPS))
+    finite, bystander = isolated(lambda: live(world, description.text))
     assert finite
     check_bystander(bystander)
 
