@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from logged_errors import read_expected, unexpected
 from results import (
     REPORTS,
     ROOT,
@@ -55,7 +56,8 @@ def run_rostest(path: Path) -> Count:
     results = REPORTS / 'rostest' / path.stem
     results.mkdir(parents=True)
     log = results / 'output.log'
-    environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(results)}
+    environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(results),
+                   'ROS_LOG_DIR': str(results / 'log')}
     for name in NOT_OURS:
         environment.pop(name, None)
     start = time.monotonic()
@@ -66,10 +68,13 @@ def run_rostest(path: Path) -> Count:
     reports = [read_report(report) for report in results.rglob('rosunit-*.xml')]
     count = with_exit_code(sum((report.count for report in reports), Count()), code)
     cases = [name for report in reports for _, name in report.failed]
+    logged = unexpected([log, *results.rglob('log/**/*.log')], read_expected(path.stem))
+    if not count.failed:  # else they may be for that
+        count, cases = count + Count(failed=len(logged)), logged
     if count.failed:
         name = ', '.join([f'{path.name}: {cases[0]}', *cases[1:]]) if cases else path.name
         command = f'./rosbots test {path.relative_to(ROOT)}'
         count += Count(failures=(Failure(name, command, log),))
     say_result('rostest', path.name, count, time.monotonic() - start,
-               *(end_of(log) if count.failed else ()))
+               *(end_of(log) if count.failed else ()), *(f'    {error}' for error in logged))
     return count

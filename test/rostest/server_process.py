@@ -38,7 +38,17 @@ class ServerProcess:
             self.process.kill()
         self.process.wait()
         self.process.stdin.close()
+        if not self.process.stdout.closed:
+            os.set_blocking(self.process.stdout.fileno(), False)  # its children may have it open
+            with contextlib.suppress(BlockingIOError, TypeError):
+                self._keep(self.process.stdout.read())
         self.process.stdout.close()
+
+    def _keep(self, printed):
+        """Add what it has printed to the logs, which tools/rostests.py searches for errors."""
+        if printed and (folder := os.environ.get('ROS_LOG_DIR')):
+            log = Path(folder, f'{self.name.strip("/")}-{self.process.pid}-printed.log')
+            log.write_text(printed, encoding='utf-8')
 
     def wait_ready(self):
         """Wait until the last service is registered."""
@@ -94,6 +104,7 @@ class ServerProcess:
     def wait(self):
         """Wait until it ends by itself; return its exit code and output."""
         printed, _ = self.process.communicate(timeout=2 * DEADLINE)
+        self._keep(printed)
         return self.process.returncode, printed
 
 
