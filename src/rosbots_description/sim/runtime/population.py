@@ -4,7 +4,7 @@ import logging
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ..core import SimError
+from ..core import SimError, shortened
 from ..description import WorldSpec
 from .world import World
 from .world_file_state import apply_state, state_of
@@ -37,14 +37,15 @@ def populate(world: World, spec: WorldSpec) -> None:
     for state in spec.states:
         model = world.models.get(state.name)
         if model is None:
-            logger.warning("the world's <state> names a model '%s' that does not exist", state.name)
+            logger.warning("the world's <state> names a model '%s' that does not exist",
+                           shortened(state.name))
         else:
             apply_state(model, state)
     for plugin in spec.plugins:
         if plugin.filename not in _SERVED:
             logger.warning(
-                "world plugin '%s' (%s, line %d) is not run here", plugin.name, plugin.filename,
-                plugin.element.line,
+                "world plugin '%s' (%s, line %d) is not run here", shortened(plugin.name),
+                shortened(plugin.filename), plugin.element.line,
             )
 
 

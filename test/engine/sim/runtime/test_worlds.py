@@ -269,3 +269,11 @@ def test_world_is_loaded_without_a_model_that_the_engine_rejects(world, monkeypa
                          f'{model.format("bad")}{model.format("good")}</world></sdf>'))
     assert list(world.models) == ['good']
     assert caplog.messages == ["model 'bad': no room; this model is left out"]
+
+
+def test_names_that_a_terminal_would_obey_are_not_logged_as_they_are(world, caplog):
+    populate(world, load(
+        '<sdf version="1.6"><world name="w"><plugin name="\u202ea" filename="b.so"/>'
+        '<state world_name="w"><model name="\u202e\x7f"/></state></world></sdf>'))
+    assert len(caplog.messages) == 2
+    assert all(message.isprintable() for message in caplog.messages)
