@@ -1,24 +1,27 @@
 #!/usr/bin/env python3
 """Mutation testing: whether the tests notice a wrong number, sign or comparison.
 
-One place of a file is changed in a copy of the repository, and the unit and engine tests that
-import the file run there, those of its own folder first. A mutant that no test notices survived:
-it is printed, to become a test, or to show that the line is not needed.
+One place of a file is changed, and the unit and engine tests that import the file run, those of its
+own folder first, up to the first that fails. That happens in a fork of this process, where the
+import of the file gives the changed one; no file is written. A mutant that no test notices
+survived: it is printed, to become a test, or to show that the line is not needed.
 
-    ./rosbots bench mutants [--sample N] [--seed S] [FOLDER…]
+    ./rosbots bench mutants [--sample N] [--seed S] [--own] [FOLDER…]
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import contextlib
 import copy
+import importlib
 import os
 import random
-import shutil
-import subprocess
+import resource
+import signal
 import sys
-import tempfile
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / 'tools'))
@@ -29,7 +32,11 @@ PACKAGE = Path('src', 'rosbots_description')
 ROOMS = ('sim/plugins/drive', 'sim/sensors', 'sim/physics/bullet', 'sim/description/inertia.py',
          'gym/tasks')
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
-HOPELESS = 900.0  # [s, wall] after which a mutant runs forever, and so was noticed
+HOPELESS = 300, 1800  # [s, processor], [s, wall] after which a mutant hangs, and so was noticed
+# What tests import besides the product; all forks share it.
+OTHERS = ('pytest', '_pytest.assertion.rewrite', 'hypothesis', 'numpy', 'pybullet', 'lxml.etree',
+          'yaml', 'msgspec', 'gymnasium', 'rospy', 'collada', 'PIL.Image', 'rosgraph',
+          'sensor_msgs.msg', 'gazebo_msgs.srv', 'tf2_msgs.msg', 'pyarrow', 'viser', 'scipy.spatial')
 OPPOSITE: dict[type[ast.AST], type[ast.AST]] = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
     ast.Lt: ast.GtE, ast.GtE: ast.Lt, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq,
@@ -78,27 +85,52 @@ def mutant(tree: ast.Module, number: int) -> ast.Module:
 
 
 def tests_of(path: Path) -> list[list[str]]:
-    """Return the tests that import a file: those of its folder, and the others."""
+    """Return the tests that import a file: unit and engine tests of its folder, and all others."""
     folder = path.relative_to(ROOT / PACKAGE).parent
-    found = [test for test in test_files() if path in dependencies(test)]
-    own = [test for test in found if test.relative_to(ROOT / 'test').parts[1:-1] == folder.parts]
-    return [[str(test.relative_to(ROOT)) for test in tests]
-            for tests in (own, [test for test in found if test not in own]) if tests]
+    found = [test.relative_to(ROOT) for test in test_files() if path in dependencies(test)]
+    own = [test for test in found if test.parts[2:-1] == folder.parts]
+    stages = [[test for test in own if test.parts[1] == level] for level in ('unit', 'engine')]
+    stages.append([test for test in found if test not in own])
+    return [list(map(str, stage)) for stage in stages]
 
 
-def is_noticed(place: Path, tests: list[list[str]]) -> bool:
-    """Tell whether a test fails in a copy of the repository."""
-    for some in tests:
-        try:
-            code = subprocess.run(
-                [sys.executable, '-m', 'pytest', '-xq', '-n', 'auto', '--dist', 'loadfile', *some],
-                cwd=place, env=os.environ | {'PYTHONDONTWRITEBYTECODE': '1'}, timeout=HOPELESS,
-                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
-        except subprocess.TimeoutExpired:
-            return True
-        if code:
-            return True
-    return False
+def is_noticed(path: Path, changed: ast.Module, tests: list[list[str]]) -> bool:
+    """Tell whether a test fails, hangs or crashes where the content of a file is another."""
+    return any(_fails(path, changed, some) for some in tests if some)
+
+
+def _fails(path: Path, changed: ast.Module, tests: list[str]) -> bool:
+    child = os.fork()
+    if child == 0:
+        code = 1
+        with contextlib.suppress(BaseException):
+            os.setsid()
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, 1)
+            os.dup2(nowhere, 2)
+            resource.setrlimit(resource.RLIMIT_CPU, (HOPELESS[0], HOPELESS[0]))
+            signal.alarm(HOPELESS[1])
+            code = _run_tests(path, changed, tests)
+        os._exit(code)
+    _, status = os.waitpid(child, 0)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child, signal.SIGKILL)  # what its tests have left behind
+    return status != 0
+
+
+def _run_tests(path: Path, changed: ast.Module, tests: list[str]) -> int:
+    import pytest
+
+    get_code = SourceFileLoader.get_code
+
+    def get_changed(loader: SourceFileLoader, name: str) -> object:
+        if Path(loader.path).resolve() == path:  # the product has two names
+            return compile(changed, str(path), 'exec')
+        return get_code(loader, name)
+
+    SourceFileLoader.get_code = get_changed  # type: ignore[method-assign, assignment]
+    sys.dont_write_bytecode = True
+    return int(pytest.main(['-xq', '-p', 'no:cacheprovider', '-p', 'no:xdist', *tests]))
 
 
 def files(rooms: list[str]) -> list[Path]:
@@ -115,25 +147,26 @@ def main() -> int:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--sample', type=int, default=SAMPLE, help='how many mutants')
     parser.add_argument('--seed', type=int, default=0)
+    parser.add_argument('--own', action='store_true',
+                        help="only by the tests of the file's own folder, in minutes")
     parser.add_argument('folders', nargs='*', default=ROOMS, help='of the package')
     arguments = parser.parse_args()
     trees = {path: ast.parse(path.read_bytes()) for path in files(list(arguments.folders))}
     every = [(path, number) for path, tree in trees.items() for number in places(tree)]
     chosen = random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
     print(f'{len(chosen)} of {len(every)} mutants, seed {arguments.seed}')
+    os.chdir(ROOT)
+    for name in OTHERS:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
     noticed = 0
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder, 'copy')
-        shutil.copytree(ROOT, place, ignore=shutil.ignore_patterns('.ws', '.git', '__pycache__'))
-        for path, number in chosen:
-            copied = place / path.relative_to(ROOT)
-            copied.write_text(ast.unparse(mutant(trees[path], number)), encoding='utf-8')
-            if is_noticed(place, tests_of(path)):
-                noticed += 1
-            else:
-                lines = '  ->  '.join(changed_line(trees[path], number))
-                print(f'survived: {path.relative_to(ROOT / PACKAGE)}: {lines}')
-            shutil.copy(path, copied)
+    for path, number in chosen:
+        tests = tests_of(path)[:2 if arguments.own else None]
+        if is_noticed(path, ast.fix_missing_locations(mutant(trees[path], number)), tests):
+            noticed += 1
+        else:
+            lines = '  ->  '.join(changed_line(trees[path], number))
+            print(f'survived: {path.relative_to(ROOT / PACKAGE)}: {lines}', flush=True)
     print(f'{noticed} of {len(chosen)} noticed')
     return 0 if noticed >= WANTED * len(chosen) else 1
 

@@ -43,11 +43,31 @@ def test_each_mutant_changes_one_place(module):
 
 def test_tests_of_the_files_own_folder_come_first(module):
     path = ROOT / module.PACKAGE / 'sim/physics/bullet/contact_stiffness.py'
-    own, others = module.tests_of(path)
-    assert own and all(Path(name).parts[2:-1] == ('sim', 'physics', 'bullet') for name in own)
+    unit, engine, others = module.tests_of(path)
+    for level, own in (('unit', unit), ('engine', engine)):
+        assert own
+        assert all(Path(name).parts[1:-1] == (level, 'sim', 'physics', 'bullet') for name in own)
     assert 'test/engine/gym/test_parallel.py' in others
 
 
 def test_every_room_has_mutants(module):
     for room in module.ROOMS:
         assert any(module.places(ast.parse(path.read_bytes())) for path in module.files([room]))
+
+
+@pytest.mark.parametrize(('change', 'noticed'), [
+    (lambda text: text, False), (lambda text: text.replace('0.005', '0.01'), True),
+    (lambda _: 'import os\nos.abort()', True),
+])
+def test_a_mutant_is_noticed_by_a_test_that_fails_or_crashes_in_a_fork(module, change, noticed):
+    path = ROOT / module.PACKAGE / 'sim/physics/bullet/friction_rolling.py'
+    tests = [['test/unit/sim/physics/bullet/test_friction_rolling.py']]
+    before = path.read_bytes()
+    changed = ast.parse(change(path.read_text()))
+    loaded = {name: sys.modules.pop(name) for name in list(sys.modules)
+              if name.partition('.')[0] in ('rosbots_description', 'rosbots_simulator')}
+    try:
+        assert module.is_noticed(path, changed, tests) == noticed
+    finally:
+        sys.modules.update(loaded)
+    assert path.read_bytes() == before
