@@ -85,10 +85,14 @@ def mutant(tree: ast.Module, number: int) -> ast.Module:
 
 
 def tests_of(path: Path) -> list[list[str]]:
-    """Return the tests that import a file: unit and engine tests of its folder, and all others."""
-    folder = path.relative_to(ROOT / PACKAGE).parent
+    """Return the tests that import a file: unit and engine tests of its folder, and all others.
+
+    Its folder is the nearest one above that has tests.
+    """
     found = [test.relative_to(ROOT) for test in test_files() if path in dependencies(test)]
-    own = [test for test in found if test.parts[2:-1] == folder.parts]
+    folders = [one.parts for one in path.relative_to(ROOT / PACKAGE).parents]
+    near = next(one for one in folders if not one or one in {test.parts[2:-1] for test in found})
+    own = [test for test in found if test.parts[2:-1] == near]
     stages = [[test for test in own if test.parts[1] == level] for level in ('unit', 'engine')]
     stages.append([test for test in found if test not in own])
     return [list(map(str, stage)) for stage in stages]

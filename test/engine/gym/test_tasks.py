@@ -41,6 +41,10 @@ def test_goal_ahead_is_reached_and_the_way_is_rewarded(task):
     assert observation['goal'] == pytest.approx((2.0, 1.0, 0.0), abs=1e-3)
     assert not info['is_success']
     assert_arrives(task, 1.0 + 2.0 - 0.4)
+    observation, _ = task.reset(options={'start': (1.0, 0.5, 0.3), 'goal': (-0.5, -1.0)})
+    bearing = math.atan2(-1.5, -1.5) - 0.3
+    assert observation['goal'] == pytest.approx(
+        (math.hypot(1.5, 1.5), math.cos(bearing), math.sin(bearing)), abs=0.02)
 
 
 @pytest.mark.parametrize('task', ['GoToGoal'], indirect=True)

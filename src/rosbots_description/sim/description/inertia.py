@@ -53,9 +53,9 @@ def principal_axes(inertial: Inertial) -> tuple[Vector, Quaternion]:
     moments, axes = np.linalg.eigh(tensor(inertial))
     order = _nearest_order(axes)
     moments, axes = moments[order], axes[:, order]
+    # Right-handed: else a00 = a12 a21 - a11 a22 <= a12 a21, which a00 >= 1/sqrt(3), the greatest of
+    # its row, and |a12| <= a11 exclude.
     axes = axes * np.where(np.diag(axes) < 0.0, -1.0, 1.0)
-    if np.linalg.det(axes) < 0.0:
-        axes[:, np.argmin(np.abs(np.diag(axes)))] *= -1.0
     turned = compose(Pose(orientation=own), Pose(orientation=_quaternion(rounded(axes))))
     return as_vector(rounded(moments)), normalise(turned.orientation)
 

@@ -31,20 +31,31 @@ def test_diagonal_tensor_keeps_its_axes_and_order():
     assert principal_axes(inertial) == ((3.0, 1.0, 2.0), turned)
 
 
-@pytest.mark.parametrize('seed', range(20))
-def test_principal_axes_and_moments_reproduce_the_tensor(seed):
-    random = np.random.default_rng(seed)
-    root = random.normal(size=(3, 3))
-    full = root @ root.T
-    inertial = Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
-                        ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
-    moments, axes = principal_axes(inertial)
+def with_tensor(full):
+    return Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
+                    ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
+
+
+def random_tensor(seed):
+    root = np.random.default_rng(seed).normal(size=(3, 3))
+    return root @ root.T
+
+
+@pytest.mark.parametrize('full', map(random_tensor, range(20)))
+def test_principal_axes_and_moments_reproduce_the_tensor(full):
+    moments, axes = principal_axes(with_tensor(full))
     assert math.isclose(math.hypot(*axes), 1.0)
     np.testing.assert_allclose(in_link_axes(moments, axes), full, atol=1e-12)
+    near = sorted(rotate(axes, axis)[i] for i, axis in enumerate(np.eye(3).tolist()))
+    assert near[0] + near[1] >= -1e-12  # otherwise those two, reversed, were nearer
 
 
-def test_small_product_of_inertia_rotates_the_axes_slightly():
-    _, axes = principal_axes(Inertial(1.0, ixx=3.0, iyy=1.0, izz=2.0, ixy=1e-6))
+@pytest.mark.parametrize('product', ['ixy', 'ixz', 'iyz'])
+@pytest.mark.parametrize('size', [1e-6, -1e-6])
+@pytest.mark.parametrize('moments', [(3.0, 1.0, 2.0), (1.0, 2.0, 3.0), (3.0, 2.0, 1.0)])
+def test_small_product_of_inertia_rotates_the_axes_slightly(product, size, moments):
+    diagonal = dict(zip(('ixx', 'iyy', 'izz'), moments, strict=True))
+    _, axes = principal_axes(Inertial(1.0, **diagonal, **{product: size}))
     assert axes[3] > 0.999999
 
 
@@ -157,6 +168,10 @@ def test_tensor_is_rotated_into_link_axes_about_the_same_centre():
     (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, ixz=0.1), REVOLUTE, False),
     (Inertial(1.0, Pose(orientation=from_rpy(0.0, 1.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE,
      False),
+    # The same for a wheel of 5 cm: its imbalance counts relative to its moment about the axis.
+    (Inertial(0.1, Pose((0.0, 0.0, 0.3)), ixx=6e-5, iyy=6e-5, izz=1.2e-4), REVOLUTE, True),
+    (Inertial(0.1, IDENTITY, ixx=6e-5, iyy=8e-5, izz=1.2e-4), REVOLUTE, False),
+    (Inertial(0.1, Pose((0.02, 0.0, 0.0)), ixx=6e-5, iyy=6e-5, izz=1.2e-4), REVOLUTE, False),
 ])
 def test_a_wheel_is_balanced_and_a_lever_is_not(inertial, joint_type, balanced):
     assert is_balanced(inertial, JointSpec('j', joint_type, 'a', 'b')) == balanced

@@ -246,6 +246,7 @@ def test_tags_that_contradict_the_wheels_give_one_warning(caplog):
     make(wheel_collisions=wheel_of(0.23))
     lines = [r for r in caplog.records if 'contradict' in r.getMessage()]
     assert len(lines) == 1
+    assert 'contradict the collision geometry (0.46 m and 0.8 m)' in lines[0].getMessage()
     assert '0.88 of the commanded speed' in lines[0].getMessage()
     assert 'or at 0.87 and 1.20 if it drags a caster' in lines[0].getMessage()
     assert lines[0].levelno == logging.WARNING

@@ -70,11 +70,11 @@ def test_odometry_of_a_too_fast_turn_is_the_command():
 
 def test_command_expires_after_its_timeout():
     plugin = make(cmdTimeout='0.1')
-    plugin.command(0.5, 0.0)
+    plugin.command(0.5, 0.3, 0.2)
     run(plugin, 100)
-    assert plugin.model.twist.linear[0] == 0.5
+    assert plugin.model.twist.angular == (0.0, 0.0, 0.3)
     run(plugin, 1)
-    assert plugin.model.twist.linear[0] == 0.0
+    assert plugin.model.twist == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def test_command_without_timeout_holds_even_after_a_reset():
