@@ -24,13 +24,14 @@ ARROWS = {
     'sim/meshes': 'sim/core sim/description sim/resources',
     'sim/formats': '',
     'sim/formats/xml': 'sim/core sim/description sim/plugin_registry',
+    'sim/formats/ogre': 'sim/core sim/description sim/resources',
     'sim/formats/kinematics': 'sim/core sim/description sim/formats/xml',
     'sim/formats/urdf':
         'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/xacro_module '
-        'sim/formats/xml sim/formats/kinematics',
+        'sim/formats/xml sim/formats/kinematics sim/formats/ogre',
     'sim/formats/sdf':
         'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
-        'sim/formats/kinematics',
+        'sim/formats/kinematics sim/formats/ogre',
     'sim/physics': 'sim/core sim/description sim/meshes',
     'sim/physics/bullet': 'sim/core sim/description sim/meshes sim/physics',
     'sim/runtime': 'sim/core sim/description sim/physics sim/plugin_registry',

@@ -52,7 +52,7 @@ from ..views.frames import advertise_frames
 from ..views.overview_picture import advertise_view
 from ..views.scene import advertise_scene
 from ..views.visuals import advertise_visuals
-from .packages import find_model, find_package
+from .packages import find_file, find_model, find_package
 from .world_loading import held_records, read_world, replay
 
 logger = logging.getLogger(__name__)
@@ -111,7 +111,7 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
                 disable_rostime=True,  # see log_bridge
             )
             loop = Loop(world, publishing.batched)
-            server = Server(world, loop, Registrar(), find_package, find_model, sandbox)
+            server = Server(world, loop, Registrar(), find_package, find_model, sandbox, find_file)
             _simulate(options, spec, records, server)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         return 0

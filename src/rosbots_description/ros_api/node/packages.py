@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import rospkg
 
 from ...sim.core import NotFoundError
-from ...sim.resources import ModelSearch, path_directories
+from ...sim.resources import FileSearch, ModelSearch, path_directories
 
 _MANIFESTS = ('manifest.xml', 'package.xml')  # of a package; the first one there is counts
 
@@ -83,4 +83,10 @@ find_model = ModelSearch([
     lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
     lambda: exported_directories('gazebo_model_path'),
     lambda: [os.path.expanduser('~/.gazebo/models')],
+])
+
+# file:// with a relative path, and materials by their name.
+find_file = FileSearch([
+    lambda: path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')),
+    lambda: exported_directories('gazebo_media_path'),
 ])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ...sim.physics import CrashSandbox
-from ...sim.resources import FindModel, FindPackage
+from ...sim.resources import FileSearch, FindModel, FindPackage
 from ...sim.runtime import World
 from ..transport import Registrar
 from .loop import Loop
@@ -23,6 +23,7 @@ class Server:
     find_package: FindPackage
     find_model: FindModel
     sandbox: CrashSandbox
+    find_file: FileSearch = field(default_factory=FileSearch)
     static_frames: StaticFrames = field(default_factory=StaticFrames)  # of other nodes
     lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)

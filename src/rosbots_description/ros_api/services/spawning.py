@@ -85,6 +85,7 @@ def read_description(
         robot_namespace=request.robot_namespace,
         find_model=server.find_model,
         find_package=server.find_package,
+        find_file=server.find_file,
     ))
 
 
@@ -95,6 +96,7 @@ def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, P
         robot_namespace=request.robot_namespace,
         find_package=server.find_package,
         find_model=server.find_model,
+        find_file=server.find_file,
     )
 
 

@@ -9,6 +9,7 @@ from ..description import ModelSpec
 from ..formats import expand_xacro, load_sdf, load_urdf
 from ..resources import (
     MAX_XML_BYTES,
+    FileSearch,
     FindModel,
     ModelSearch,
     PackageSearch,
@@ -34,6 +35,8 @@ class Descriptions:
             lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
             os.path.expanduser('~/.gazebo/models'),
         ])
+        self.find_file = FileSearch([
+            lambda: path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', ''))])
 
     def packages(self, inside: str | None = None) -> PackageSearch:
         """Return the package search for a description in the file `inside`."""
@@ -56,7 +59,8 @@ class Descriptions:
         text, source, tag = self.text(given, arguments)
         load = load_urdf if tag == 'robot' else load_sdf
         return load(text, name or own_name(text, source), source=source,
-                    find_package=self._packages_of(source), find_model=self.find_model)
+                    find_package=self._packages_of(source), find_model=self.find_model,
+                    find_file=self.find_file)
 
     def text(
         self, description: Description, arguments: Mapping[str, str]

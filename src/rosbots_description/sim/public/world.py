@@ -102,6 +102,7 @@ class World(runtime.World):
                 file,
                 find_model=world._descriptions.find_model,
                 find_package=world._descriptions.packages(os.fspath(file)),
+                find_file=world._descriptions.find_file,
             ))
         except BaseException:
             world.close()

@@ -1,24 +1,24 @@
 """Resolve the addresses of files, open them safely, and write world files."""
 
+from .addresses import Addresses
 from .new_file import require_world_path, write_world
 from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within
 from .scratch import SharedFile, SharedFiles
 from .search_path import (
     BUILT_IN_MODELS,
+    FileSearch,
     FindModel,
     ModelSearch,
     below_model_path,
     description_file,
     find_world,
-    in_models,
     model_names,
     path_directories,
 )
 from .uris import (
     FindPackage,
     UnknownPackage,
-    file_path,
     refuse_parent_folders,
     substitute_in_tree,
     substitute_packages,
@@ -28,6 +28,8 @@ from .xml_parser import MAX_XML_BYTES, check_xml_bounds, own_name, parse_xml, ro
 __all__ = [
     'BUILT_IN_MODELS',
     'MAX_XML_BYTES',
+    'Addresses',
+    'FileSearch',
     'FindModel',
     'FindPackage',
     'ModelSearch',
@@ -38,9 +40,7 @@ __all__ = [
     'below_model_path',
     'check_xml_bounds',
     'description_file',
-    'file_path',
     'find_world',
-    'in_models',
     'model_names',
     'own_name',
     'parse_xml',

@@ -54,24 +54,24 @@ BUILT_IN_MODELS = {
 }
 
 
-class ModelSearch:
-    """Looks for model:// addresses along directories; the first match counts.
+class _PathSearch:
+    """Looks for relative paths along directories; the first match counts."""
 
-    An instance is called with the part after model://.
-    """
+    FOLDERS: tuple[str, ...] = ('',)  # searched in each directory, in this order
 
     def __init__(self, directories: Directories = ()) -> None:
-        """Search these directories, each of which holds models' folders."""
+        """Search these directories."""
         self._directories = tuple(directories)
 
     def __call__(self, inner: str) -> str | None:
-        """Return the absolute path of a model's folder, or of a file in one; None if unknown."""
+        """Return the absolute path of a file or a folder; None if it is not found."""
         if leaves_folder(inner):
             return None
         for directory in self.directories():
-            path = os.path.join(directory, inner)
-            if os.path.exists(path):
-                return os.path.abspath(path)
+            for folder in self.FOLDERS:
+                path = os.path.join(directory, folder, inner)
+                if os.path.exists(path):
+                    return os.path.abspath(path)
         return None
 
     def directories(self) -> Iterator[str]:
@@ -79,6 +79,16 @@ class ModelSearch:
         for entry in self._directories:
             for path in entry() if callable(entry) else [entry]:
                 yield os.fspath(path)
+
+
+class ModelSearch(_PathSearch):
+    """Looks for the part after model:// along the model path, which holds models' folders."""
+
+
+class FileSearch(_PathSearch):
+    """Looks for the part after file:// along the resource path, as GAZEBO_RESOURCE_PATH."""
+
+    FOLDERS = ('', 'models', 'media/models', 'Media/models')  # as Gazebo
 
 
 def model_names(find_model: FindModel) -> list[str]:
@@ -94,9 +104,9 @@ def model_names(find_model: FindModel) -> list[str]:
     return sorted(found)
 
 
-def searched(find_model: FindModel) -> str:
+def searched(find: Callable[[str], str | None]) -> str:
     """Return the directories of a search, for messages; '' if they are unknown."""
-    directories = getattr(find_model, 'directories', None)
+    directories = getattr(find, 'directories', None)
     return ', '.join(directories()) if directories else ''
 
 

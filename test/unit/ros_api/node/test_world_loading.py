@@ -100,6 +100,22 @@ def test_exported_worlds_and_models_of_packages_are_found(tmp_path, places):
     assert [model.name for model, _ in world.models] == ['door']
 
 
+def test_files_of_packages_are_found_along_the_exported_media_path(tmp_path, places):
+    folder = tmp_path / 'packages' / 'shops'
+    exporting(folder, 'gazebo_media_path="${prefix}"')
+    write(folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj',
+          'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3')
+    write(folder / 'worlds' / 'shop.world', """<sdf version="1.6"><world name="shop">
+      <model name="shelf"><link name="l"><visual name="v"><geometry><mesh>
+      <uri>file://models/shelf/meshes/shelf.obj</uri></mesh></geometry></visual></link></model>
+      </world></sdf>""")
+    places(folder)
+    (shelf, _), = read_world('worlds/shop.world').models
+    assert shelf.links[0].visuals[0].geometry.path == str(
+        folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj')
+    assert shelf.left_out == ()
+
+
 @pytest.mark.parametrize('flaw', [
     ('a@b.example', 'you@todo'), ('<version>1.0.0</version>', ''), ('<name>houses', '<name>A B'),
     ('<license>BSD</license>', ''),

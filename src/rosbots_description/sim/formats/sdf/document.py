@@ -7,21 +7,17 @@ from typing import TypeVar
 from lxml import etree
 
 from ...core import ModelError, fault
+from ...description import Material
 from ...resources import (
     BUILT_IN_MODELS,
     MAX_XML_BYTES,
-    FindModel,
-    FindPackage,
+    Addresses,
     below_model_path,
     description_file,
-    file_path,
-    in_models,
     parse_xml,
     read_file,
-    refuse_parent_folders,
-    substitute_packages,
-    within,
 )
+from ..ogre import script_material
 from ..xml import remove_xacro, scalar, tag_of
 from .omissions import Notes
 from .pose_repair import complete_poses
@@ -77,31 +73,13 @@ class SdfDocument:
         self.version = self._read_version()
 
     def file(self, element: etree._Element, uri: str) -> str:
-        """Return the absolute path of an address in `element`.
+        """Return the absolute path of an address in `element`; see `Addresses.path`."""
+        return self.library.addresses.path(element, uri, self._directory, self._home)
 
-        model:// is searched along the model path, package:// among ROS packages; file:// and plain
-        paths are absolute or relative to the file that contains them.
-
-        Raises:
-            ModelError: nothing is found there, or the address leaves (`..`) a model, a package or
-                the folder of the model that this document describes.
-        """
-        if uri.startswith('model://'):
-            return in_models(element, uri, self.library.find_model)
-        if uri.startswith('package://'):
-            refuse_parent_folders(element, uri)
-            if self.library.find_package is not None:
-                uri = substitute_packages(uri, self.library.find_package)
-            return file_path(element, uri)
-        plain = uri.removeprefix('file://')
-        if '://' not in plain and not os.path.isabs(plain) and self._directory:
-            path = os.path.normpath(os.path.join(self._directory, plain))
-            if self._home and not within(path, self._home):
-                raise fault(
-                    element, f"'{uri}' leads out of '{self._home}'; '..' is not accepted there"
-                )
-            return path
-        return file_path(element, uri)
+    def script_material(self, element: etree._Element, name: str) -> Material | None:
+        """Return a material of a script that a <material> names; see `ogre.script_material`."""
+        return script_material(
+            element, name, self.library.addresses, self._directory, self._home)
 
     def included(self, element: etree._Element) -> 'SdfDocument':
         """Return the document that an <include> names.
@@ -151,16 +129,10 @@ def _home(uri: str, path: str) -> str:
 
 
 class SdfLibrary:
-    """The documents that are opened while one is read, each file once.
+    """The documents that are opened while one is read, each file once."""
 
-    Args:
-        find_model: path below the model path -> the file or directory, or None.
-        find_package: package name -> its directory, or None; None: there are no packages.
-    """
-
-    def __init__(self, find_model: FindModel, find_package: FindPackage | None) -> None:
-        self.find_model = find_model
-        self.find_package = find_package
+    def __init__(self, addresses: Addresses) -> None:
+        self.addresses = addresses
         self._documents: dict[str, SdfDocument] = {}
         self._reading: list[SdfDocument] = []
         self._included = 0

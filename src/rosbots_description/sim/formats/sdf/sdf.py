@@ -6,7 +6,7 @@ from lxml import etree
 
 from ...core import IDENTITY, ModelError, Pose, fault
 from ...description import LightSpec, ModelSpec
-from ...resources import FindModel, FindPackage
+from ...resources import Addresses, FileSearch, FindModel, FindPackage
 from ..xml import check_name, inject_namespace
 from .document import SdfDocument, SdfLibrary
 from .lights import read_light
@@ -24,6 +24,7 @@ def load_sdf(
     robot_namespace: str = '',
     find_model: FindModel,
     find_package: FindPackage | None = None,
+    find_file: FileSearch = FileSearch(),  # noqa: B008 (it is immutable)
 ) -> tuple[ModelSpec, Pose]:
     """Read and check the first model of an SDF: its <model>, or the <include> of its <world>.
 
@@ -34,6 +35,7 @@ def load_sdf(
         find_model: path below the model path -> file or directory, or None, for model://; see
             `ModelSearch`.
         find_package: package name -> its directory, or None if unknown, for package://.
+        find_file: for file:// with a relative path.
 
     Returns:
         The model and its <pose>, that of the <include> for an included model. The caller spawns it
@@ -45,7 +47,7 @@ def load_sdf(
     What is simulated differently than written is logged as a warning, once per file.
     """
     check_name(name)
-    library = SdfLibrary(find_model, find_package)
+    library = SdfLibrary(Addresses(find_model, find_package, find_file))
     document = library.add(text, source)
     inject_namespace(document.root, robot_namespace)
     parts, pose_element = _first_model(document)
@@ -60,7 +62,7 @@ def load_sdf_light(text: str | bytes, name: str, *, source: str = 'model_xml') -
     Raises:
         ModelError: the text is not SDF, or a number of the light is not valid.
     """
-    library = SdfLibrary(lambda inner: None, None)
+    library = SdfLibrary(Addresses(lambda inner: None))
     document = library.add(text, source)
     first = document.root[0] if len(document.root) else None
     if first is None or first.tag.lower() != 'light':

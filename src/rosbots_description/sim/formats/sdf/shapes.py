@@ -22,7 +22,6 @@ from ...description import (
 from ...meshes import check_mesh, submesh_file
 from ..xml import ENDLESS_FRICTION, is_endless, scalar, tag_of
 from .document import SdfDocument
-from .material_scripts import script_material
 from .values import (
     boolean_of,
     colour_of,
@@ -218,7 +217,7 @@ def _material(document: SdfDocument, visual: etree._Element) -> Material | None:
     colours = {tag: colour_of(element, tag) for tag in _COLOURS}
     if not script and not any(colours.values()):
         return None
-    base = gazebo_material(script) or script_material(document, element, script)
+    base = gazebo_material(script) or document.script_material(element, script)
     if base is None and not (colours['diffuse'] or colours['ambient']):
         document.notes.warn(
             element,

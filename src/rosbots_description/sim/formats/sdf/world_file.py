@@ -11,7 +11,7 @@ from lxml import etree
 
 from ...core import ModelError, Pose, fault
 from ...description import Element, LightSpec, ModelSpec, ModelState, PluginSpec, WorldSpec
-from ...resources import MAX_XML_BYTES, FindModel, FindPackage, read_file
+from ...resources import MAX_XML_BYTES, Addresses, FileSearch, FindModel, FindPackage, read_file
 from ..xml import required_name, to_element
 from .document import SdfDocument, SdfLibrary
 from .frames import Frames
@@ -54,6 +54,7 @@ def load_world(
     *,
     find_model: FindModel,
     find_package: FindPackage | None = None,
+    find_file: FileSearch = FileSearch(),  # noqa: B008 (it is immutable)
 ) -> WorldSpec:
     """Read and check a world file.
 
@@ -64,10 +65,11 @@ def load_world(
         source: the file's path; it begins every message, and relative addresses start from it.
         find_model: see `load_sdf`.
         find_package: see `load_sdf`.
+        find_file: see `load_sdf`.
     Raises:
         ModelError: the text is not SDF with a <world>, or a number of the world is not valid.
     """
-    library = SdfLibrary(find_model, find_package)
+    library = SdfLibrary(Addresses(find_model, find_package, find_file))
     directory = os.path.dirname(os.path.abspath(source)) if os.path.isfile(source) else ''
     document = library.add(text, source, directory)
     world = document.root.find('world')
@@ -110,6 +112,7 @@ def open_world(
     *,
     find_model: FindModel,
     find_package: FindPackage | None = None,
+    find_file: FileSearch = FileSearch(),  # noqa: B008 (it is immutable)
 ) -> WorldSpec:
     """Read and check the world file at `path`, as `load_world` does.
 
@@ -117,7 +120,8 @@ def open_world(
         ModelError: the file cannot be read; or as `load_world`.
     """
     text = read_file(os.fspath(path), MAX_XML_BYTES, 'world file')
-    return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package)
+    return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package,
+                      find_file=find_file)
 
 
 @contextmanager

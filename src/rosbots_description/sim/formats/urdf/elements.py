@@ -35,7 +35,7 @@ from ...description import (
     Visual,
     gazebo_material,
 )
-from ...resources import FindModel, file_path, in_models, refuse_parent_folders
+from ...resources import Addresses, refuse_parent_folders
 from ..kinematics import FREE, TreeJoint, TreeLink
 from ..xml import (
     LeftOut,
@@ -78,12 +78,12 @@ class LinkReader:
         robot: etree._Element,
         check_mesh: CheckMesh,
         left_out: LeftOut,
-        find_model: FindModel,
+        addresses: Addresses,
     ) -> None:
         self._check_mesh = check_mesh
         self._materials: dict[str, Material] = {}
         self.notes: list[str] = []  # warnings
-        self._left_out, self._find_model = left_out, find_model
+        self._left_out, self._addresses = left_out, addresses
         for element in robot.iterfind('material'):
             colour = self._colour(element)
             if colour is not None:
@@ -190,7 +190,7 @@ class LinkReader:
         uri = element.get('uri', filename)
         refuse_parent_folders(element, uri)
         try:
-            path = self._path(element, filename)
+            path = self._addresses.path(element, filename)
         except AbsentError as error:
             raise ShapeError(str(error).removeprefix(f'{location(element)}: '), uri) from error
         try:
@@ -198,11 +198,6 @@ class LinkReader:
         except ModelError as error:
             raise ShapeError(str(error), uri) from error
         return Mesh(path, scale, uri)
-
-    def _path(self, element: etree._Element, filename: str) -> str:
-        if filename.startswith('model://'):
-            return in_models(element, filename, self._find_model)
-        return file_path(element, filename)
 
 
 def _inertial(link: etree._Element) -> Inertial | None:

@@ -39,7 +39,9 @@ from ...description import (
     material_of_colours,
 )
 from ...plugin_registry import library_remark
+from ...resources import Addresses
 from ..kinematics import LinkFlags, TreeLink
+from ..ogre import script_material
 from ..xml import (
     ENDLESS_FRICTION,
     LeftOut,
@@ -117,6 +119,7 @@ class LinkTags:
 class GazeboTags:
     """The contents of all blocks."""
 
+    addresses: Addresses
     links: dict[str, LinkTags] = field(default_factory=dict)
     kept_joints: dict[str, str] = field(default_factory=dict)  # fixed joint -> its joint type
     joints: dict[str, SpringTags] = field(default_factory=dict)
@@ -146,16 +149,20 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
 
 
 def read_gazebo_tags(
-    robot: etree._Element, links: Collection[str], joints: Collection[str]
+    robot: etree._Element,
+    links: Collection[str],
+    joints: Collection[str],
+    addresses: Addresses,
 ) -> GazeboTags:
     """Read all <gazebo> blocks below <robot>.
 
     Args:
         links, joints: the names a `reference` may have.
+        addresses: of material scripts.
     Raises:
         ModelError: a value that must be a finite number is not one.
     """
-    tags = GazeboTags()
+    tags = GazeboTags(addresses)
     unread: list[str] = []
     for block in robot.findall('gazebo'):
         _leading_numbers(block, tags)
@@ -336,11 +343,12 @@ _LINK_READERS: Mapping[str, Callable[[etree._Element, LinkTags], None]] = {
 
 def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> None:
     script = scalar(element)
-    material = gazebo_material(script)
+    block = next(element.iterancestors('material'), element)
+    material = gazebo_material(script) or script_material(block, script, tags.addresses)
     if material is None:
         note(tags.notes, lambda: (
-            f"{location(element)}: material '{shortened(script, 60)}' is not one of Gazebo's; "
-            'grey is shown; write e.g. Gazebo/Red'
+            f"{location(element)}: material '{shortened(script, 60)}' is neither one of Gazebo's "
+            'nor in a script along GAZEBO_RESOURCE_PATH; grey is shown; write e.g. Gazebo/Red'
         ))
         material = Material(script=script)
     link.material = material

@@ -9,7 +9,14 @@ from ...core import IDENTITY, ModelError, Pose, fault, location, note, shortened
 from ...description import WORLD, LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, regularised
 from ...meshes import check_mesh
-from ...resources import FindModel, FindPackage, parse_xml, substitute_in_tree
+from ...resources import (
+    Addresses,
+    FileSearch,
+    FindModel,
+    FindPackage,
+    parse_xml,
+    substitute_in_tree,
+)
 from ..kinematics import (
     KinematicTree,
     Reduction,
@@ -41,6 +48,7 @@ def load_urdf(
     robot_namespace: str = '',
     find_package: FindPackage | None = None,
     find_model: FindModel = lambda inner: None,
+    find_file: FileSearch = FileSearch(),  # noqa: B008 (it is immutable)
 ) -> tuple[ModelSpec, Pose]:
     """Read and check a URDF, and reduce its fixed joints.
 
@@ -50,6 +58,7 @@ def load_urdf(
         robot_namespace: given to plugins that have no <robotNamespace>; '' for none.
         find_package: package name -> its directory, or None if unknown, for package://.
         find_model: path below the model path -> file, or None, for model:// of meshes.
+        find_file: for file:// with a relative path, and for materials by name.
 
     Returns:
         The model, and the <origin> directly below <robot>. The caller spawns the model at
@@ -71,7 +80,7 @@ def load_urdf(
     xacro = remove_xacro(robot)
     notes = [*xacro, *foreign_tags(robot)]
     try:
-        tree, tags = _read(robot, notes, find_model)
+        tree, tags = _read(robot, notes, Addresses(find_model, find_package, find_file))
     except ModelError as error:
         if not xacro or XACRO_CURE in str(error):
             raise
@@ -106,13 +115,14 @@ def _log(name: str, source: str, warnings: list[str], tags: GazeboTags) -> None:
 
 
 def _read(
-    robot: etree._Element, notes: list[str], find_model: FindModel
+    robot: etree._Element, notes: list[str], addresses: Addresses
 ) -> tuple[KinematicTree, GazeboTags]:
     link_elements, joint_elements = robot.findall('link'), robot.findall('joint')
     tags = read_gazebo_tags(
         robot,
         [required_name(element) for element in link_elements],
         [required_name(element) for element in joint_elements],
+        addresses,
     )
     notes += tags.notes
     joints = [read_urdf_joint(element, tags.kept_joints, notes) for element in joint_elements]
@@ -120,7 +130,7 @@ def _read(
         replace(joint, spec=replace(joint.spec, **tags.joints.get(joint.spec.name, SpringTags())))
         for joint in joints
     ]
-    reader = LinkReader(robot, check_mesh, tags.left_out, find_model)
+    reader = LinkReader(robot, check_mesh, tags.left_out, addresses)
     links = [
         apply_tags(link, tags.links.get(link.spec.name))
         for link in (reader.read(element) for element in link_elements)

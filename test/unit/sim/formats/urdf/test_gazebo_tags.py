@@ -104,7 +104,7 @@ def test_flag_of_a_reduced_link_applies_to_its_parent_with_a_warning(caplog):
 def test_an_unknown_material_is_grey_with_a_warning(caplog):
     spec = load('<gazebo reference="c"><material>Gazebo/Puce</material></gazebo>')
     assert spec.link('c').visuals[0].material == Material(script='Gazebo/Puce')
-    assert "<gazebo reference='c'>: material 'Gazebo/Puce' is not one of Gazebo's" in caplog.text
+    assert "<gazebo reference='c'>: material 'Gazebo/Puce' is neither" in caplog.text
 
 
 def test_visual_block_sets_the_colour():

@@ -70,7 +70,7 @@ def test_meshes_of_a_urdf_are_found_on_the_model_path(tmp_path):
 
 
 @pytest.mark.parametrize('filename, reason', [
-    ('{folder}/m.obj', 'is broken'), ('meshes/m.obj', 'is no absolute address'),
+    ('{folder}/m.obj', 'is broken'), ('meshes/m.obj', 'is not to be found in'),
     ('http://host/m.obj', 'http:// addresses are not read'), ('{folder}/m.wrl', 'is not read'),
 ])
 def test_unreadable_mesh_is_left_out(tmp_path, caplog, filename, reason):

@@ -14,9 +14,7 @@ from lxml import etree
 
 from ...core import ModelError, Vector, parse_numbers
 from ...description import Material, Reflection
-from ...resources import read_file, within
-from ..xml import scalar
-from .document import SdfDocument
+from ...resources import Addresses, read_file, within
 
 logger = logging.getLogger(__name__)
 
@@ -27,15 +25,24 @@ _SETTING = re.compile(
     re.MULTILINE)
 
 
-def script_material(document: SdfDocument, element: etree._Element, name: str) -> Material | None:
+def script_material(
+    element: etree._Element, name: str, addresses: Addresses, directory: str = '', home: str = ''
+) -> Material | None:
     """Return a material of the scripts that the <uri>s of a <material> name, or None.
 
-    A <uri> is a script, or a folder of scripts or images.
+    A <uri> is a script, or a folder of scripts or images. As in Gazebo those of the resource path,
+    in media/materials/scripts, need none.
 
+    Args:
+        directory, home: see `Addresses.path`.
     Raises:
         ModelError: a script cannot be read.
     """
-    places = list(_places(document, element))
+    places = []
+    for uri in element.iterfind('script/uri'):
+        with suppress(ModelError):  # nothing there: Gazebo looks on, too
+            places.append(addresses.path(uri, (uri.text or '').strip(), directory, home))
+    places += addresses.material_folders()
     for path in _scripts(places):
         text = _COMMENT.sub('', read_file(path, MAX_SCRIPT_BYTES, 'material script').decode(
             errors='replace'))
@@ -45,12 +52,6 @@ def script_material(document: SdfDocument, element: etree._Element, name: str) -
                 *(place for place in places if os.path.isdir(place)), folder,
                 os.path.join(os.path.dirname(folder), 'textures')])
     return None
-
-
-def _places(document: SdfDocument, element: etree._Element) -> Iterator[str]:
-    for uri in element.iterfind('script/uri'):
-        with suppress(ModelError):  # nothing there: Gazebo looks on, too
-            yield document.file(uri, scalar(uri))
 
 
 def _scripts(places: list[str]) -> Iterator[str]:

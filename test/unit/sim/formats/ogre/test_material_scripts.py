@@ -3,6 +3,8 @@
 import pytest
 
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
+from rosbots_description.sim.formats.urdf.urdf import load_urdf
+from rosbots_description.sim.resources.search_path import FileSearch
 
 SCRIPT = """
 // material track/line { }
@@ -93,3 +95,23 @@ def test_a_missing_image_or_one_outside_is_named(model, caplog):
 def test_a_broken_script_gives_defaults(model, text):
     (model / 'materials' / 'scripts' / 'track.material').write_text(text, encoding='utf-8')
     assert material_of(model).image == ''
+
+
+def test_a_script_of_the_resource_path_needs_no_address(model):
+    scripts = model / 'media' / 'materials' / 'scripts'
+    scripts.mkdir(parents=True)
+    (scripts / 'x.material').write_text(SCRIPT, encoding='utf-8')
+    find_file = FileSearch([model])
+    visual = '<visual{}><geometry><box{}</geometry>{}</visual>'
+    sdf = visual.format(' name="v"', '><size>1 1 1</size></box>',
+                        '<material><script><name>track/line</name></script></material>')
+    urdf = visual.format('', ' size="1 1 1"/>', '')
+    by_sdf, _ = load_sdf(
+        f'<sdf version="1.6"><model name="m"><link name="l">{sdf}</link></model></sdf>', 'm',
+        find_model=lambda _: None, find_file=find_file)
+    by_urdf, _ = load_urdf(
+        f'<robot name="m"><link name="l"><inertial><mass value="1"/><inertia ixx="1" ixy="0" '
+        f'ixz="0" iyy="1" iyz="0" izz="1"/></inertial>{urdf}</link><gazebo reference="l">'
+        '<material>track/line</material></gazebo></robot>', 'm', find_file=find_file)
+    for spec in (by_sdf, by_urdf):
+        assert spec.links[0].visuals[0].material.rgba == (1.0, 0.5, 0.0, 1.0)
