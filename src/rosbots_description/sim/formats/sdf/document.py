@@ -19,6 +19,7 @@ from ...resources import (
 )
 from ..ogre import script_material
 from ..xml import remove_xacro, scalar, tag_of
+from .conversion import FIRST_WITH_ELEMENTS, to_elements
 from .omissions import Notes
 from .pose_repair import complete_poses
 
@@ -58,19 +59,21 @@ class SdfDocument:
         self.library = library
         self.root = parse_xml(text, source)
         self.notes = Notes(source)
-        for sentence in remove_xacro(self.root):
-            self.notes.say(f'{source}: {sentence}')
-        for sentence in complete_poses(self.root):
-            self.notes.say(f'{source}, {sentence}')
-        self._directory = directory
-        self._home = home
         if self.root.tag not in ('sdf', 'gazebo'):
             raise fault(
                 self.root,
                 f'the first element is <{tag_of(self.root)}>; an SDF begins with '
                 '<sdf version="1.6">',
             )
+        for sentence in remove_xacro(self.root):
+            self.notes.say(f'{source}: {sentence}')
+        self._directory = directory
+        self._home = home
         self.version = self._read_version()
+        if self.version < FIRST_WITH_ELEMENTS:
+            to_elements(self.root)
+        for sentence in complete_poses(self.root):
+            self.notes.say(f'{source}, {sentence}')
 
     def file(self, element: etree._Element, uri: str) -> str:
         """Return the absolute path of an address in `element`; see `Addresses.path`."""

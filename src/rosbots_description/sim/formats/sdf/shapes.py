@@ -126,10 +126,12 @@ def _geometry(document: SdfDocument, element: etree._Element) -> Geometry | None
 
 
 def _mesh(document: SdfDocument, element: etree._Element) -> Mesh:
-    document.notes.check(element, ('uri', 'scale', 'submesh'))
+    document.notes.check(element, ('uri', 'filename', 'scale', 'submesh'))
     uri_element = element.find('uri')
+    if uri_element is None:
+        uri_element = element.find('filename')  # its name until SDF 1.2
     if uri_element is None or not (uri := scalar(uri_element)):
-        raise fault(element, 'a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>')
+        raise ShapeError('a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>')
     scale = vector_of(element, 'scale', (1.0, 1.0, 1.0))
     if 0.0 in scale:
         written = text_of(element, 'scale')
@@ -187,8 +189,9 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         kp=default.kp if stiffness is None
         else not_negative_of(surface, f'{contact}/kp', default.kp),
         kd=not_negative_of(surface, f'{contact}/kd', default.kd),
-        max_vel=not_negative_of(surface, f'{contact}/max_vel', default.max_vel),
-        min_depth=not_negative_of(surface, f'{contact}/min_depth', default.min_depth),
+        # SDF 1.0 files of Gazebo have -1 for these
+        max_vel=max(0.0, number_of(surface, f'{contact}/max_vel', default.max_vel)),
+        min_depth=max(0.0, number_of(surface, f'{contact}/min_depth', default.min_depth)),
         restitution=not_negative_of(surface, 'bounce/restitution_coefficient', 0.0),
         threshold=not_negative_of(surface, 'bounce/threshold', default.threshold),
     )

@@ -284,6 +284,8 @@ def _set_surface(link: LinkTags, key: SurfaceNumber, element: etree._Element) ->
     value = ENDLESS_FRICTION if rubs and is_endless(element) else scalar_number(element)
     if rubs and value < 0.0:
         value = ENDLESS_FRICTION
+    elif value < 0.0 and key in ('max_vel', 'min_depth'):
+        value = 0.0
     elif value < 0.0 and key != 'laser_retro':
         raise fault(element, f'<{tag_of(element)}> is {value:g}; it must not be negative')
     link.surface[key] = value

@@ -62,7 +62,8 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
     </visual><visual name="v3"><geometry><plane><normal>0 0 1</normal><size>1 1</size></plane>
     </geometry></visual><visual name="v4"><geometry><empty/></geometry></visual>
     <visual name="v5"><geometry><mesh><uri>model://meshes/camera.dae</uri><scale>1 1 1</scale>
-      <submesh><name>camera</name><center>1</center></submesh></mesh></geometry></visual></link>
+      <filename>model://meshes/camera.dae</filename><submesh><name>camera</name><center>1</center>
+      </submesh></mesh></geometry></visual></link>
   <link name="b"/><joint name="j" type="revolute"><pose>0 0 0 0 0 0</pose><parent>a</parent>
     <child>b</child><axis><xyz>0 0 1</xyz><use_parent_model_frame>1</use_parent_model_frame>
     <limit><effort>5</effort><lower>0</lower><upper>1</upper></limit>

@@ -147,6 +147,19 @@ def test_mesh_is_found_on_the_model_path_and_scaled(tmp_path):
     assert spec.links[0].visuals[0].material is None
 
 
+def test_a_mesh_without_address_is_left_out_and_the_model_stays(caplog):
+    body = link('<visual name="v"><geometry><mesh/></geometry></visual>')
+    assert load(body).links[0].visuals == ()
+    assert 'a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>' in caplog.text
+
+
+def test_negative_limits_of_contacts_that_gazebo_writes_are_accepted():
+    surface = load(link(
+        f'<collision name="c">{BOX}<surface><contact><ode><max_vel>-1</max_vel><min_depth>-1'
+        '</min_depth></ode></contact></surface></collision>')).links[0].collisions[0].surface
+    assert (surface.max_vel, surface.min_depth) == (0.0, 0.0)
+
+
 def test_a_mesh_of_a_package_is_found(tmp_path):
     (tmp_path / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
     body = link('<visual name="v"><geometry><mesh><uri>package://furniture/seat.obj</uri></mesh>'
@@ -380,7 +393,6 @@ def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
           '</collision>'), 'a size must be greater than zero'),
     (link('<collision name="c"><geometry><torus/></geometry></collision>'),
      "geometry 'torus' is unknown"),
-    (link('<visual name="v"><geometry><mesh/></geometry></visual>'), 'a <mesh> without <uri>'),
     (link(f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact></surface>'
           '</collision>'), '<kp> is -5; it must not be negative'),
 ])
