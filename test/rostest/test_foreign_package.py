@@ -55,6 +55,10 @@ class ForeignPackageTest(unittest.TestCase):
         self.assertEqual(self.run_command(f'./{program}', 'states').splitlines(),
                          ['ground_plane::link 0', 'box::body 0.25', SpawnModel._md5sum])
 
+    def test_a_plugin_of_gazebo_stops_with_one_sentence(self):
+        with self.assertRaisesRegex(AssertionError, 'There is no Gazebo here, so its plugins'):
+            self.run_command('cmake', '--build', 'build', '--target', 'gazebo_plugin')
+
     def test_its_launch_files_find_ours(self):
         for tool, package, path in (
                 ('rospack', 'gazebo_dev', 'package.xml'),

@@ -26,7 +26,8 @@ workspace_fingerprint() (
     find . companions -maxdepth 2 \( -path './.*' -prune \) -o \
       \( -name CMakeLists.txt -o -name package.xml -o -name setup.py \) -print0 |
       sort -z | xargs -0 sha256sum
-    find companions \( -name '*.msg' -o -name '*.srv' \) -print0 | sort -z | xargs -0 -r sha256sum
+    find companions -type f \( -name '*.msg' -o -name '*.srv' -o -path '*/cmake/*' \) -print0 |
+      sort -z | xargs -0 -r sha256sum
     find scripts companions/*/scripts test/rostest -type f 2> /dev/null | sort
   } | sha256sum
 )

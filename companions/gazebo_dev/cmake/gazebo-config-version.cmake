@@ -1,0 +1,8 @@
+# The version that the simulator stands in for; older ones are accepted, as by Gazebo.
+set(PACKAGE_VERSION 11.15.1)
+if(NOT PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)
+  set(PACKAGE_VERSION_COMPATIBLE TRUE)
+endif()
+if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)
+  set(PACKAGE_VERSION_EXACT TRUE)
+endif()

@@ -1,0 +1,1 @@
+#include "gazebo/gazebo.hh"

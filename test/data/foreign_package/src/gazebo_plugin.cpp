@@ -1,0 +1,1 @@
+#include <gazebo/common/Plugin.hh>
