@@ -9,7 +9,12 @@ enter_environment() {
     unset "$name"
   done
   find_ros_home  # first: rospack, in a hook of the setup file, writes there
-  if has_workspace; then source_workspace; else use_sources; fi
+  if has_workspace; then
+    source_workspace
+    put_unbuilt_before_ours "${callers[ROS_PACKAGE_PATH]}"
+  else
+    use_sources
+  fi
   for name in "${!callers[@]}"; do
     export "$name=$(put_before "${callers[$name]}" "${!name:-}")"
   done
@@ -40,6 +45,29 @@ use_sources() {
   export PATH=$WORKSPACE/venv/bin:$PATH
   export ROS_MASTER_URI=${ROS_MASTER_URI:-http://localhost:11311} ROS_ETC_DIR=/etc/ros
   export ROS_ROOT=/usr/share/ros ROS_DISTRO=Debian ROS_PYTHON_VERSION=3 ROS_VERSION=1
+}
+
+# A package of the caller that was never built precedes ours of that name for rospack, but not for
+# catkin, by which roslaunch resolves $(find PACKAGE)/FILE. So it is linked into a workspace of its own
+# before ours. Only those of our packages are hidden that hold nothing but files: an unbuilt package
+# could not replace programs or messages.
+put_unbuilt_before_ours() { # put_unbuilt_before_ours ROS_PACKAGE_PATH
+  local folder name manifest overlay theirs=() place=()
+  IFS=: read -ra place <<< "$1"
+  for name in gazebo_plugins media_export; do
+    for folder in "${place[@]}"; do
+      [[ -d $folder && $folder != */share && $folder != "$WORKSPACE"/* ]] || continue
+      manifest=$(find -L "$folder" -maxdepth 4 -path "*/$name/package.xml" -print -quit 2> /dev/null)
+      [[ -n $manifest ]] || continue
+      theirs+=("$(realpath -- "${manifest%/*}")")
+      break
+    done
+  done
+  [[ ${#theirs[@]} -gt 0 ]] || return 0
+  overlay=$WORKSPACE/overlays/$(sha256sum <<< "${theirs[*]}" | cut -c1-12)
+  mkdir -p "$overlay/src" && ln -sfn -t "$overlay/src" -- "${theirs[@]}" &&
+    printf %s "$overlay/src" > "$overlay/.catkin" || return 0
+  export CMAKE_PREFIX_PATH=$overlay:$CMAKE_PREFIX_PATH
 }
 
 # roslaunch imports distutils; replaced by setuptools, it would start 0.1 s later. From Python 3.12 on

@@ -144,6 +144,23 @@ def test_users_package_takes_precedence_except_in_demo_and_test(
     assert found == str(theirs if sees_theirs else ROOT), result.stderr
 
 
+@pytest.mark.parametrize('path', ['{0}', '{0}/repository', '{0}/repository/gazebo_plugins'])
+def test_file_of_an_unbuilt_package_on_the_path_comes_before_ours(tmp_path, path):
+    inner = 'test/test_worlds/gazebo_ros_range.world'  # we have it, too
+    folder = tmp_path / 'repository' / 'gazebo_plugins'
+    (folder / inner).parent.mkdir(parents=True)
+    (folder / inner).touch()
+    (folder / 'package.xml').write_text(
+        '<package format="2"><name>gazebo_plugins</name><version>1.0.0</version><description>x'
+        '</description><maintainer email="a@b.example">a</maintainer><license>BSD</license>'
+        '</package>')
+    (tmp_path / 'see.launch').write_text(
+        f'<launch><param name="found" value="$(find gazebo_plugins)/{inner}"/></launch>')
+    result = rosbots('exec', 'roslaunch', '--dump-params', str(tmp_path / 'see.launch'),
+                     ROS_PACKAGE_PATH=path.format(tmp_path))
+    assert os.path.realpath(result.stdout.split()[-1]) == str(folder / inner), result.stderr
+
+
 def test_interactive_shell_keeps_the_workspace_of_bashrc_before_ours(theirs, tmp_path):
     (tmp_path / '.bashrc').write_text(
         f'unset CMAKE_PREFIX_PATH PYTHONPATH; ROS_PACKAGE_PATH={theirs.parent}')
