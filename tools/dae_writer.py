@@ -22,11 +22,12 @@ class Colour:
     gloss: float = 0.15
 
 
-def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = 'Z_UP') -> str:
+def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = 'Z_UP',
+            tool: str = 'tools/make_meshes.py') -> str:
     """Return the text of a Collada file with one mesh `name` in metres, joined by colour.
 
     `up_axis` is metadata for modelling tools: RViz, Gazebo and PyBullet do not
-    rotate the mesh by it.
+    rotate the mesh by it. `tool` is the script that made it.
     """
     surfaces: dict[Colour, list[Surface]] = {}
     for colour, surface in parts:
@@ -36,7 +37,7 @@ def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = '
     root = ElementTree.Element('COLLADA', xmlns=NAMESPACE, version='1.4.1')
     asset = _add(root, 'asset')
     contributor = _add(asset, 'contributor')
-    _add(contributor, 'authoring_tool').text = 'rosbots_description tools/make_meshes.py'
+    _add(contributor, 'authoring_tool').text = f'rosbots_description {tool}'
     _add(asset, 'created').text = DATE
     _add(asset, 'modified').text = DATE
     _add(asset, 'unit', name='meter', meter='1')

@@ -55,8 +55,8 @@ def test_the_guard_notices_a_connection():
      'a document type (<!DOCTYPE>) is not accepted'),
     (LOAD_SDF, SDF.format('http://example.org/m'),
      'models are not fetched from the network'),
-    (LOAD_SDF, SDF.format('model://coke_can'),
-     "'model://coke_can' is not to be found along the model path"),
+    (LOAD_SDF, SDF.format('model://euro_pallet'),
+     "'model://euro_pallet' is not to be found along the model path"),
 ], ids=['mesh', 'document type', 'included address', 'unknown model'])
 def test_address_is_rejected_without_network_access(load, text, message):
     assert message in run(load, text)
@@ -74,7 +74,7 @@ def test_mesh_file_does_not_open_other_addresses(tmp_path, name, content, messag
     assert 'urllib' not in error_message
 
 
-@pytest.mark.parametrize('model', ['coke_can', 'http://example.org/coke_can'])
+@pytest.mark.parametrize('model', ['euro_pallet', 'http://example.org/euro_pallet'])
 def test_model_of_the_database_is_searched_on_the_model_path_only(model):
     code = (
         'import argparse\n'

@@ -6,14 +6,15 @@ from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within
 from .scratch import SharedFile, SharedFiles
 from .search_path import (
-    BUILT_IN_MODELS,
     FileSearch,
     FindModel,
+    MissingModel,
     ModelSearch,
     below_model_path,
     description_file,
     find_world,
     model_names,
+    not_on_model_path,
     path_directories,
 )
 from .uris import (
@@ -26,12 +27,12 @@ from .uris import (
 from .xml_parser import MAX_XML_BYTES, check_xml_bounds, own_name, parse_xml, root_tag
 
 __all__ = [
-    'BUILT_IN_MODELS',
     'MAX_XML_BYTES',
     'Addresses',
     'FileSearch',
     'FindModel',
     'FindPackage',
+    'MissingModel',
     'ModelSearch',
     'PackageSearch',
     'SharedFile',
@@ -42,6 +43,7 @@ __all__ = [
     'description_file',
     'find_world',
     'model_names',
+    'not_on_model_path',
     'own_name',
     'parse_xml',
     'path_directories',

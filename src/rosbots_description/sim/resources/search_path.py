@@ -20,40 +20,6 @@ _NEWEST = (1, 7)
 _MANIFESTS = ('model.config', 'manifest.xml')
 _FILES = ('model.config', 'model.sdf')  # either makes a folder a model
 
-# Written here, not in files, so that they are found however the package is installed.
-BUILT_IN_MODELS = {
-    'ground_plane': """<sdf version="1.6">
-  <model name="ground_plane">
-    <static>true</static>
-    <link name="link">
-      <collision name="collision">
-        <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
-        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
-      </collision>
-      <visual name="visual">
-        <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
-        <material><script><name>Gazebo/Grey</name></script></material>
-      </visual>
-    </link>
-  </model>
-</sdf>
-""",
-    'sun': """<sdf version="1.6">
-  <light type="directional" name="sun">
-    <pose>0 0 10 0 0 0</pose>
-    <cast_shadows>true</cast_shadows>
-    <diffuse>0.8 0.8 0.8 1</diffuse>
-    <specular>0.2 0.2 0.2 1</specular>
-    <attenuation>
-      <range>1000</range><constant>0.9</constant><linear>0.01</linear><quadratic>0.001</quadratic>
-    </attenuation>
-    <direction>-0.5 0.1 -0.9</direction>
-  </light>
-</sdf>
-""",
-}
-
-
 class _PathSearch:
     """Looks for relative paths along directories; the first match counts."""
 
@@ -91,17 +57,22 @@ class FileSearch(_PathSearch):
     FOLDERS = ('', 'models', 'media/models', 'Media/models')  # as Gazebo
 
 
+# The models of this library, found where the search finds none of that name.
+_BUILT_IN = ModelSearch([Path(__file__).resolve().parents[2] / 'models'])
+_NO_MODELS = {'sun'}  # lights
+
+
 def model_names(find_model: FindModel) -> list[str]:
-    """Return the names of all models that a search finds, and of those that are always there.
+    """Return the names of all models that a search finds, and of the built-in ones.
 
     A model is a folder with a description. An unreadable directory has none.
     """
-    found = {name for name, text in BUILT_IN_MODELS.items() if '<model' in text}
-    for directory in getattr(find_model, 'directories', list)():
+    found: set[str] = set()
+    for directory in (*getattr(find_model, 'directories', list)(), *_BUILT_IN.directories()):
         with contextlib.suppress(OSError), os.scandir(directory) as entries:
             found |= {entry.name for entry in entries
                       if any(os.path.isfile(os.path.join(entry.path, file)) for file in _FILES)}
-    return sorted(found)
+    return sorted(found - _NO_MODELS)
 
 
 def searched(find: Callable[[str], str | None]) -> str:
@@ -125,13 +96,21 @@ def below_model_path(uri: str) -> str:
     return uri.removeprefix('model://').lstrip('/')
 
 
+class MissingModel(AbsentError):  # noqa: N818 (as UnknownPackage)
+    """A model:// address leads nowhere; `model` is the folder that it names."""
+
+    def __init__(self, sentence: str, model: str) -> None:
+        super().__init__(sentence)
+        self.model = model
+
+
 def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
     """Return the absolute path of a model:// address.
 
     Args:
         element: the element with the address, for the message.
     Raises:
-        AbsentError: nothing is found there.
+        MissingModel: nothing is found there.
         ModelError: it names no model, or leaves (`..`) the model path.
     """
     inner = below_model_path(uri)
@@ -139,16 +118,19 @@ def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
         raise fault(element, f"'{uri}' names no model; write model://MODEL/FILE")
     if leaves_folder(inner):
         raise fault(element, f"'{uri}' leaves the model path; '..' is not accepted there")
-    found = find_model(inner)
+    found = find_model(inner) or _BUILT_IN(inner)
     if found is None:
-        raise fault(
-            element,
-            f"'{uri}' is not to be found along the model path "
-            f"({searched(find_model) or 'which is empty'}); add the folder that holds "
-            f"'{inner.split('/')[0]}' to GAZEBO_MODEL_PATH where the simulator is started",
-            AbsentError,
-        )
+        model = inner.split('/')[0]
+        sentence = f"'{uri}' {not_on_model_path(find_model, repr(model))}"
+        raise MissingModel(str(fault(element, sentence)), model)
     return found
+
+
+def not_on_model_path(find_model: FindModel, models: str, verb: str = 'is') -> str:
+    """Return the end of a sentence about missing models: where was searched, and the cure."""
+    places = searched(find_model) or 'which is empty'
+    return (f'{verb} not to be found along the model path ({places}); add the folder that holds '
+            f'{models} to GAZEBO_MODEL_PATH where the simulator is started')
 
 
 def description_file(path: str, element: etree._Element) -> str:

@@ -6,13 +6,11 @@ from typing import TypeVar
 
 from lxml import etree
 
-from ...core import ModelError, fault
+from ...core import fault
 from ...description import Material
 from ...resources import (
-    BUILT_IN_MODELS,
     MAX_XML_BYTES,
     Addresses,
-    below_model_path,
     description_file,
     parse_xml,
     read_file,
@@ -99,13 +97,7 @@ class SdfDocument:
                 f"'{uri}': models are not fetched from the network; put the model's folder on "
                 'GAZEBO_MODEL_PATH and include model://FOLDER',
             )
-        built_in = BUILT_IN_MODELS.get(below_model_path(uri).rstrip('/'))
-        try:
-            path = self.file(uri_element, uri)
-        except ModelError:
-            if built_in is None:
-                raise
-            return self.library.built_in(uri, built_in)
+        path = self.file(uri_element, uri)
         return self.library.open(description_file(path, uri_element), _home(uri, path))
 
     def _read_version(self) -> tuple[int, int]:
@@ -157,10 +149,6 @@ class SdfLibrary:
         if path not in self._documents:
             self.add(read_file(path, MAX_XML_BYTES), path, os.path.dirname(path), home)
         return self._documents[path]
-
-    def built_in(self, uri: str, text: str) -> SdfDocument:
-        """Return the document of a built-in model."""
-        return self._documents.get(uri) or self.add(text, uri)
 
     def within(self, document: SdfDocument, element: etree._Element, read: Callable[[], T]) -> T:
         """Return `read()`, with `document` marked as being read meanwhile.

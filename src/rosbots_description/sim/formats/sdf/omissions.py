@@ -85,15 +85,16 @@ class Notes:
     def log(self) -> None:
         """Log all notes; those without effect on the simulation at level debug."""
         for sentence in self.left_out.errors():
-            logger.error('%s', self._with_source(sentence))
+            logger.error('%s', self.with_source(sentence))
         for sentence in (*self._sentences, *self.left_out.warnings):
-            logger.warning('%s', self._with_source(sentence))
+            logger.warning('%s', self.with_source(sentence))
         if self._unread:
             logger.warning('%s: not simulated: %s', self._source, _list(self._unread))
         if self._idle:
             logger.debug('%s: without effect here: %s', self._source, _list(self._idle))
 
-    def _with_source(self, sentence: str) -> str:
+    def with_source(self, sentence: str) -> str:
+        """Return a sentence that begins with the file."""
         named = sentence.startswith(self._source)
         return sentence if named else f'{self._source}: {sentence}'
 

@@ -11,8 +11,17 @@ from lxml import etree
 
 from ...core import ModelError, Pose, fault
 from ...description import Element, LightSpec, ModelSpec, ModelState, PluginSpec, WorldSpec
-from ...resources import MAX_XML_BYTES, Addresses, FileSearch, FindModel, FindPackage, read_file
-from ..xml import required_name, to_element
+from ...resources import (
+    MAX_XML_BYTES,
+    Addresses,
+    FileSearch,
+    FindModel,
+    FindPackage,
+    MissingModel,
+    not_on_model_path,
+    read_file,
+)
+from ..xml import listed, required_name, to_element
 from .document import SdfDocument, SdfLibrary
 from .frames import Frames
 from .lights import read_light
@@ -46,6 +55,7 @@ class _Content:
     plugins: list[PluginSpec] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     taken: Counter[str] = field(default_factory=Counter)  # name -> number of its duplicates
+    missing: list[MissingModel] = field(default_factory=list)
 
 
 def load_world(
@@ -83,6 +93,7 @@ def load_world(
         if reader is not None:
             with _left_out(content, element.tag):
                 reader(document, element, frames, content)
+    _report_missing(document, content)
     states: tuple[ModelState, ...] = ()
     time, state = 0.0, world.find('state')
     if state is not None:
@@ -129,9 +140,27 @@ def _left_out(content: _Content, tag: str) -> Iterator[None]:
     """Log a fault in one element of a world as an error, and leave the element out."""
     try:
         yield
+    except MissingModel as error:
+        content.missing.append(error)
     except ModelError as error:
         content.faults.append(str(error))
         logger.error('%s; %s', error, _WITHOUT.get(tag, _WITHOUT['model']))
+
+
+def _report_missing(document: SdfDocument, content: _Content) -> None:
+    """Log the models that are not found in one line."""
+    if not content.missing:
+        return
+    names = list(dict.fromkeys(error.model for error in content.missing))
+    sentence, without = str(content.missing[0]), _WITHOUT['model']
+    if len(content.missing) > 1:
+        without = 'the world is loaded without them'
+        shown = listed([repr(name) for name in names])
+        end = not_on_model_path(
+            document.library.addresses.find_model, 'them', 'is' if len(names) == 1 else 'are')
+        sentence = document.notes.with_source(f'{len(content.missing)} <include>s: {shown} {end}')
+    content.faults.append(sentence)
+    logger.error('%s; %s', sentence, without)
 
 
 def _frames(world: etree._Element, content: _Content) -> Frames:

@@ -1,7 +1,7 @@
 """Names, numbers, poses and plain elements from parsed XML, and the record of omitted parts."""
 
 from .foreign_markup import foreign_tags, remove_xacro
-from .omissions import LeftOut
+from .omissions import LeftOut, listed
 from .robot_namespace import inject_namespace
 from .sensors import read_sensor
 from .values import (
@@ -38,6 +38,7 @@ __all__ = [
     'inject_namespace',
     'is_endless',
     'limit_number',
+    'listed',
     'number',
     'numbers',
     'origin',

@@ -44,11 +44,12 @@ class LeftOut:
         """Return the messages about missing parts; one for each mesh, with all its users."""
         return [
             *self._faults,
-            *(f'{reason}; left out: {_listed(users)}'
+            *(f'{reason}; left out: {listed(users)}'
               for reason, users in islice(self._meshes.items(), MAX_NOTES)),
         ]
 
 
-def _listed(items: list[str], most: int = 12) -> str:
+def listed(items: list[str], most: int = 12) -> str:
+    """Return the items as a list, cut short where there are many."""
     more = f' and {len(items) - most} more' if len(items) > most else ''
     return ', '.join(items[:most]) + more

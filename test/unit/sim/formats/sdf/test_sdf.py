@@ -21,7 +21,7 @@ from rosbots_description.sim.description.built_in import GROUND_PLANE
 from rosbots_description.sim.formats.sdf.sdf import load_sdf, load_sdf_light
 from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 from rosbots_description.sim.meshes.loader import check_mesh, read_mesh
-from rosbots_description.sim.resources.search_path import BUILT_IN_MODELS, ModelSearch
+from rosbots_description.sim.resources.search_path import ModelSearch
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
@@ -80,7 +80,9 @@ def test_malformed_pose_of_the_model_is_ignored(caplog):
 
 
 def test_the_built_in_ground_plane_is_the_one_of_the_empty_world():
-    spec, _ = load_sdf(BUILT_IN_MODELS['ground_plane'], 'ground_plane', find_model=ModelSearch())
+    text = '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri></include>' \
+        '</world></sdf>'
+    spec, _ = load_sdf(text, 'ground_plane', find_model=ModelSearch())
     assert spec == GROUND_PLANE
 
 

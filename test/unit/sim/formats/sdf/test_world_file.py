@@ -88,6 +88,19 @@ def test_invalid_model_is_left_out_with_an_error(caplog):
     assert errors == [f'{fault}; this model is left out' for fault in world.faults]
 
 
+def test_all_missing_models_of_a_world_are_one_error(caplog):
+    included = '<include><uri>model://{}</uri></include>'
+    world = load(''.join(map(included.format, ('shelf', 'sun', 'lamp', 'shelf'))),
+                 directories=['/models'])
+    (fault,) = world.faults
+    assert fault == (
+        "w.world: 3 <include>s: 'shelf', 'lamp' are not to be found along the model path (/models)"
+        '; add the folder that holds them to GAZEBO_MODEL_PATH where the simulator is started')
+    errors = [record.getMessage() for record in caplog.records if record.levelno == logging.ERROR]
+    assert errors == [f'{fault}; the world is loaded without them']
+    assert len(world.lights) == 1
+
+
 def test_physics_is_read():
     assert physics('''<max_step_size>0.002</max_step_size><real_time_factor>1</real_time_factor>
       <real_time_update_rate>0</real_time_update_rate><max_contacts>30</max_contacts>
