@@ -19,7 +19,7 @@ def test_companions_do_not_refer_to_the_package_at_the_root(folder):
     assert not [element.tag for element in manifest
                 if element.tag.endswith('depend') and element.text == 'rosbots_description']
     asking = [path for path in folder.rglob('*') if path.is_file()
-              and ASKING.search(path.read_text(encoding='utf-8'))]
+              and ASKING.search(path.read_text(encoding='utf-8', errors='replace'))]
     assert asking == []
 
 
