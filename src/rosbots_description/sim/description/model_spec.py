@@ -80,6 +80,13 @@ class Surface:
     threshold: float = 1e5  # impact speed from which restitution applies [m/s]
     slip1: float = 0.0  # slip compliance along the first direction [m/s per N]
     slip2: float = 0.0  # along the second direction
+    collide_bitmask: int = 0xFFFF  # of the categories that it collides with
+    category_bitmask: int = 0xFFFF  # of its own categories
+
+    def meets(self, other: 'Surface') -> bool:
+        """Tell whether two collisions collide by their bitmasks, by SDF's rule."""
+        return bool(self.category_bitmask & other.collide_bitmask
+                    | other.category_bitmask & self.collide_bitmask)
 
     @property
     def greatest_mu(self) -> float:

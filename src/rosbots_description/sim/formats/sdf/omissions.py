@@ -16,8 +16,7 @@ _NEUTRAL: dict[str, tuple[float, ...]] = {
     'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0),
     'slip': (0.0,),
     'soft_cfm': (0.0,), 'soft_erp': (0.2,), 'collide_without_contact': (0.0,),
-    'collide_without_contact_bitmask': (1.0,), 'collide_bitmask': (65535.0,),
-    'category_bitmask': (65535.0,),
+    'collide_without_contact_bitmask': (1.0,),
     'coefficient': (1.0,), 'use_patch_radius': (1.0,), 'patch_radius': (0.0,),
     'surface_radius': (0.0,), 'visible': (1.0,), 'initial_position': (0.0,), 'center': (0.0,),
 }

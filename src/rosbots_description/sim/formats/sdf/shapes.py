@@ -20,7 +20,7 @@ from ...description import (
     material_of_colours,
 )
 from ...meshes import check_mesh, submesh_file
-from ..xml import ENDLESS_FRICTION, is_endless, scalar, tag_of
+from ..xml import ENDLESS_FRICTION, bitmask, is_endless, scalar, tag_of
 from .document import SdfDocument
 from .values import (
     boolean_of,
@@ -37,6 +37,7 @@ from .values import (
 
 _NOT_SIMULATED = ('heightmap', 'polyline', 'image', 'capsule', 'ellipsoid', 'cone')
 _COLOURS = ('ambient', 'diffuse', 'specular', 'emissive')
+_BITMASKS = ('collide_bitmask', 'category_bitmask')
 _UP = (0.0, 0.0, 1.0)
 
 
@@ -167,7 +168,7 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         ('.', ('friction', 'contact', 'bounce')),
         ('friction', ('ode',)),
         ('friction/ode', ('mu', 'mu2', 'fdir1', 'slip1', 'slip2')),
-        ('contact', ('ode',)),
+        ('contact', ('ode', *_BITMASKS)),
         ('bounce', ('restitution_coefficient', 'threshold')),
         ('contact/ode', ('kp', 'kd', 'max_vel', 'min_depth')),
     ):
@@ -194,7 +195,17 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         min_depth=max(0.0, number_of(surface, f'{contact}/min_depth', default.min_depth)),
         restitution=not_negative_of(surface, 'bounce/restitution_coefficient', 0.0),
         threshold=not_negative_of(surface, 'bounce/threshold', default.threshold),
+        **_bitmasks(surface),
     )
+
+
+def _bitmasks(surface: etree._Element) -> dict[str, int]:
+    """Return the bitmasks; the category is that which the collision collides with if not given."""
+    written = {tag: element for tag in _BITMASKS
+               if (element := surface.find(f'contact/{tag}')) is not None}
+    masks = {tag: bitmask(element) for tag, element in written.items()}
+    return {'category_bitmask': masks['collide_bitmask'], **masks} \
+        if 'collide_bitmask' in masks else masks
 
 
 def _friction(surface: etree._Element, path: str, default: float) -> float:

@@ -46,6 +46,7 @@ _SURFACE = {
     'min_depth': 'surface/contact/ode/min_depth',
     'restitution': 'surface/bounce/restitution_coefficient',
     'threshold': 'surface/bounce/threshold',
+    'collide_bitmask': 'surface/contact/collide_bitmask',
     'max_contacts': 'max_contacts', 'laser_retro': 'laser_retro',
 }
 # Addresses that mean the same in any file; others are relative to the file that they are in.
@@ -135,6 +136,8 @@ def _add_collision(link: etree._Element, spec: Collision) -> None:
     plain = Surface()
     for field, path in _SURFACE.items():
         put(collision, path, getattr(spec.surface, field), getattr(plain, field))
+    put(collision, 'surface/contact/category_bitmask', spec.surface.category_bitmask,
+        spec.surface.collide_bitmask)
 
 
 def _add_visual(link: etree._Element, spec: Visual) -> None:

@@ -45,6 +45,7 @@ from ..ogre import script_material
 from ..xml import (
     ENDLESS_FRICTION,
     LeftOut,
+    bitmask,
     boolean,
     is_endless,
     read_sensor,
@@ -94,6 +95,8 @@ class SurfaceTags(TypedDict, total=False):
     max_vel: float
     min_depth: float
     max_contacts: int
+    collide_bitmask: int
+    category_bitmask: int
     laser_retro: float
 
 
@@ -299,6 +302,14 @@ def _read_max_contacts(element: etree._Element, link: LinkTags) -> None:
     link.surface['max_contacts'] = int(scalar_number(element))
 
 
+def _read_collide_bitmask(element: etree._Element, link: LinkTags) -> None:
+    link.surface['collide_bitmask'] = link.surface['category_bitmask'] = bitmask(element)
+
+
+def _read_category_bitmask(element: etree._Element, link: LinkTags) -> None:
+    link.surface['category_bitmask'] = bitmask(element)
+
+
 def _read_damping(element: etree._Element, link: LinkTags) -> None:
     value = scalar_number(element)
     require_damping(element, value)
@@ -324,7 +335,9 @@ def _read_collision(element: etree._Element, link: LinkTags) -> None:
         if child is not None:
             _set_surface(link, key, child)
     for path, reader in (
-        ('surface/friction/ode/fdir1', _read_direction), ('max_contacts', _read_max_contacts)
+        ('surface/friction/ode/fdir1', _read_direction), ('max_contacts', _read_max_contacts),
+        ('surface/contact/collide_bitmask', _read_collide_bitmask),
+        ('surface/contact/category_bitmask', _read_category_bitmask),
     ):
         child = element.find(path)
         if child is not None:

@@ -7,6 +7,7 @@ from .sensors import read_sensor
 from .values import (
     ENDLESS_FRICTION,
     XACRO_CURE,
+    bitmask,
     boolean,
     check_name,
     is_endless,
@@ -32,6 +33,7 @@ __all__ = [
     'ENDLESS_FRICTION',
     'XACRO_CURE',
     'LeftOut',
+    'bitmask',
     'boolean',
     'check_name',
     'foreign_tags',

@@ -228,6 +228,19 @@ def scalar_numbers(element: etree._Element, count: int) -> tuple[float, ...]:
     return values
 
 
+def bitmask(element: etree._Element) -> int:
+    """Return a bitmask of 16 bits, written as a decimal number or as 0x….
+
+    Raises:
+        ModelError: it is neither.
+    """
+    try:
+        return int(scalar(element), 0) & 0xFFFF
+    except ValueError:
+        raise fault(element, f"<{tag_of(element)}> is '{scalar(element)[:60]}'; a bitmask is a "
+                    'number such as 3 or 0x03') from None
+
+
 def boolean(element: etree._Element) -> bool:
     """Tell whether the text is true, yes or 1; everything else is false, as in Gazebo."""
     return scalar(element).lower() in _TRUE

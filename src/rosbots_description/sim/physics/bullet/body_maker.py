@@ -9,7 +9,7 @@ from ...description import FIXED, PRISMATIC, ModelSpec, Surface
 from ...description.inertia import is_balanced
 from .body import Body, Mass, Masses, Part, Place
 from .client import pybullet
-from .collision_filter import CollisionFilter
+from .collision_filter import Bitmasks, CollisionFilter
 from .compiler import CompiledContactPart, CompiledTree
 from .contact_stiffness import contact_spring, is_rigid, parting_rate
 from .friction_axes import ISOTROPIC
@@ -56,6 +56,7 @@ class BodyMaker:
         self._sides: dict[Place, tuple[Side, tuple[int, int]]] = {}  # with group and mask
         # Compliant parts: surface, and the rate at which their penetration is corrected [1/s].
         self._soft: dict[Place, tuple[Surface, float]] = {}
+        self._bitmasks = Bitmasks(self._collision_filter)
         self._step_size = 0.001
 
     def set_step_size(self, step_size: float) -> None:
@@ -144,6 +145,7 @@ class BodyMaker:
             self._collision_filter.remove(number)
         for place in [place for place in self._sides if place.body in body.bodies]:
             del self._sides[place]
+            self._bitmasks.remove(place)
             self._soft.pop(place, None)
 
     def set_masses(self, bodies: Mapping[int, Masses]) -> None:
@@ -170,6 +172,7 @@ class BodyMaker:
         """Remove everything."""
         pybullet.resetSimulation(physicsClientId=self._client)
         self._collision_filter.clear()
+        self._bitmasks.clear()
         self._friction_pairs.clear()
         self._sides.clear()
         self._soft.clear()
@@ -234,6 +237,7 @@ class BodyMaker:
                 *place, contactProcessingThreshold=0.0, physicsClientId=self._client
             )
         self._set_filter(place, part.side)
+        self._bitmasks.add(place, part.surface)
         if not is_rigid(part.surface):
             self._soft[place] = part.surface, self._parting_rate(place)
             self._set_spring(place)

@@ -1,5 +1,6 @@
 """Pairs of PyBullet bodies that do not collide, for as long as both exist."""
 
+from ...description import Surface
 from .body import Place
 from .client import pybullet
 
@@ -41,3 +42,36 @@ class CollisionFilter:
         pybullet.setCollisionFilterPair(
             one.body, other.body, one.link, other.link, int(touching), self._client
         )
+
+
+class Bitmasks:
+    """Pairs of parts that do not collide because of <collide_bitmask> and <category_bitmask>.
+
+    PyBullet's own groups and masks assign the roles of friction_pairs.py.
+    """
+
+    def __init__(self, collision_filter: CollisionFilter) -> None:
+        """Add the pairs to that filter, which drops them with their bodies."""
+        self._filter = collision_filter
+        self._surfaces: dict[Place, Surface] = {}
+        self._special: dict[Place, Surface] = {}  # those with other bitmasks than the default
+
+    def add(self, place: Place, surface: Surface) -> None:
+        """Disable collisions of a new part with those that it does not meet."""
+        plain = surface.collide_bitmask == surface.category_bitmask == Surface().collide_bitmask
+        for other, theirs in (self._special if plain else self._surfaces).items():
+            if not surface.meets(theirs):
+                self._filter.add(place, other)
+        self._surfaces[place] = surface
+        if not plain:
+            self._special[place] = surface
+
+    def remove(self, place: Place) -> None:
+        """Drop a part; its body is removed."""
+        self._surfaces.pop(place, None)
+        self._special.pop(place, None)
+
+    def clear(self) -> None:
+        """Drop all parts; PyBullet has been reset as well."""
+        self._surfaces.clear()
+        self._special.clear()

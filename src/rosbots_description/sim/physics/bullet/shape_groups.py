@@ -119,6 +119,7 @@ def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
     groups: dict[tuple[Any, ...], list[Collision]] = {}
     for collision in collisions:
         surface = collision.surface
-        key = (surface.kp, surface.kd, restitution(surface), directions(collision))
+        key = (surface.kp, surface.kd, restitution(surface), directions(collision),
+               surface.collide_bitmask, surface.category_bitmask)
         groups.setdefault((surface.greatest_mu, *key), []).append(collision)
     return [tuple(group) for group in groups.values()]

@@ -116,3 +116,62 @@ def test_links_of_a_joint_do_not_collide_with_any_of_their_surfaces():
         world.run(300)
         assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
         assert abs(model.joint('hinge').velocity) < 0.01
+
+
+def masked(collide, category='', shape='<box><size>1 1 1</size></box>'):
+    """Return a box of 1 m whose collision has these bitmasks."""
+    masks = ''.join(f'<{tag}>{mask}</{tag}>' for tag, mask in (
+        ('collide_bitmask', collide), ('category_bitmask', category)) if mask)
+    return sdf_model(f'<link name="l"><collision name="c"><geometry>{shape}</geometry><surface>'
+                     f'<contact>{masks}</contact></surface></collision></link>')
+
+
+@pytest.mark.parametrize(('lower', 'upper', 'meet'), [
+    (('0x01',), ('0x02',), False),
+    (('0x01',), ('0x03',), True),
+    (('1',), ('',), True),  # by default everything
+    (('0',), ('',), False),
+    (('0x01', '0x02'), ('0x02', '0x01'), True),  # each collides with the other's category
+    (('0x04', '0x02'), ('0x08', '0x01'), False),
+    (('0x04', '0x02'), ('0x02', '0x01'), True),  # one direction is enough
+])
+def test_bitmasks_decide_whether_two_models_collide(lower, upper, meet):
+    with empty_world() as world:
+        world.spawn(masked(*lower), 'lower', Pose((0.0, 0.0, 0.5)))
+        high = world.spawn(masked(*upper), 'upper', Pose((0.0, 0.0, 1.51)))
+        world.run(300)
+        assert (high.pose.position[2] > 1.4) == meet
+
+
+def test_a_shape_that_collides_with_nothing_falls_through_the_ground_and_is_replaced():
+    with empty_world() as world:
+        ghost = world.spawn(masked('0'), 'ghost', Pose((0.0, 0.0, 0.6)))
+        world.run(600)
+        assert ghost.pose.position[2] < -0.5
+        world.delete('ghost')
+        solid = world.spawn(box(), 'solid', Pose((0.0, 0.0, 0.6)))  # with the ghost's number
+        world.run(SECOND)
+        assert solid.pose.position[2] == pytest.approx(0.5, abs=0.01)
+
+
+def test_bitmasks_hold_after_the_world_has_been_rebuilt():
+    with empty_world() as world:
+        world.spawn(masked('0x01'), 'lower', Pose((0.0, 0.0, 0.5)))
+        high = world.spawn(masked('0x02'), 'upper', Pose((0.0, 0.0, 1.51)))
+        world.reset_simulation()
+        world.run(SECOND)
+        assert high.pose.position[2] == pytest.approx(0.5, abs=0.01)
+
+
+def test_collisions_of_one_link_have_their_own_bitmasks():
+    # The left end is held up, the rest passes through the ground: the plank tips over.
+    parts = ''.join(
+        f'<collision name="{name}"><pose>{x} 0 0 0 0 0</pose><geometry><box><size>{long} 1 0.2</size>'
+        f'</box></geometry><surface><contact><collide_bitmask>{mask}</collide_bitmask></contact>'
+        '</surface></collision>'
+        for name, x, long, mask in (('left', -0.4, 0.2, 1), ('right', 0.1, 0.8, 0)))
+    with empty_world() as world:
+        plank = world.spawn(sdf_model(f'<link name="l">{parts}</link>'), 'm',
+                            Pose((0.0, 0.0, 0.11)))
+        world.run(SECOND)
+        assert abs(plank.pose.orientation[1]) > 0.2

@@ -49,7 +49,8 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
       <surface><friction><ode><mu>1</mu><mu2>1</mu2><fdir1>1 0 0</fdir1><slip1>0</slip1>
       <slip2>0</slip2></ode></friction>
       <bounce><restitution_coefficient>0</restitution_coefficient><threshold>1</threshold></bounce>
-      <contact><ode><kp>1</kp><kd>1</kd></ode></contact></surface>
+      <contact><ode><kp>1</kp><kd>1</kd></ode><collide_bitmask>1</collide_bitmask>
+      <category_bitmask>1</category_bitmask></contact></surface>
       <laser_retro>1</laser_retro></collision><sensor name="s" type="ray">
       <pose>0 0 0 0 0 0</pose><update_rate>1</update_rate><always_on>1</always_on>
       <visualize>1</visualize><topic>t</topic><plugin name="p" filename="lib.so"/></sensor>
