@@ -22,6 +22,8 @@ from rosbots_description.sim.meshes.loader import check_mesh
 from rosbots_description.sim.physics.bullet.compiler import compile_model
 from rosbots_description.sim.resources.search_path import ModelSearch
 
+BUILT_IN = ROOT / 'src' / 'rosbots_description' / 'models'
+
 MAX_LENGTH = 2500  # characters of a sentence
 CASES = cases()
 
@@ -65,7 +67,7 @@ def read(case, folder):
 
 
 def may_be_opened(path, case, folder):
-    return path == case.opens or path.startswith((str(folder), str(FOLDER))) \
+    return path == case.opens or path.startswith((str(folder), str(FOLDER), str(BUILT_IN))) \
         or path.endswith('.pyc')  # a lazy import, of a codec for example
 
 
