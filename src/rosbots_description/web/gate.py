@@ -23,7 +23,9 @@ MOST_CLIENTS = 16
 FULL = 'This window has no room for another browser.'
 MAX_MESSAGE = 24_000_000  # [bytes], that of a large picture
 RATE, BURST = 1000.0, 5000.0  # messages of a browser in a second, and at once
-BACKLOG = 200  # commands that wait to be carried out
+BACKLOG = 200  # commands that wait to be carried out; further ones are not read meanwhile
+ROOM = 0.02  # [s, wall] between two looks for room
+HOPELESS = 10.0  # [s, wall] after which a command is refused for which there is none
 BUSY = 'The simulator is busy: some of what was done here is left out'
 PAUSE = 1.0  # [s, wall] between two notices of refusals
 
@@ -95,6 +97,7 @@ class Gate:
         if delay > 0.0:
             await asyncio.sleep(delay)
         try:
+            await self._wait_for_room()
             return self._check(visitor, read(raw))
         except RefusedError as error:
             self._notify(visitor, str(error))
@@ -102,6 +105,16 @@ class Gate:
             logger.warning('a browser is disconnected: %s', error)
             await connection.close(1008, str(error)[:100])
         return False
+
+    async def _wait_for_room(self) -> None:
+        """Wait until few commands wait, so that one browser's flood costs no other a command."""
+        assert self.site is not None
+        executor: Any = self.site._thread_executor  # viser's
+        end = time.monotonic() + HOPELESS
+        while executor._work_queue.qsize() > BACKLOG:
+            if time.monotonic() > end:
+                raise RefusedError(BUSY)
+            await asyncio.sleep(ROOM)
 
     def _check(self, visitor: Visitor, message: Any) -> bool:  # noqa: ANN401  a struct
         assert self.site is not None
@@ -114,9 +127,6 @@ class Gate:
             return False
         if kind in {'FileTransferPartAck', 'GetRenderResponseMessage'}:
             return True
-        executor: Any = self.site._thread_executor  # viser's
-        if executor._work_queue.qsize() > BACKLOG:
-            raise RefusedError(BUSY)
         if kind == 'GuiUpdateMessage':
             control = self.site.gui._gui_input_handle_from_uuid.get(message.uuid)
             if control is not None:

@@ -6,6 +6,7 @@ memory. After each attempt a browser with the token sees the page as before.
 
 import math
 import socket
+import threading
 import time
 from contextlib import suppress
 
@@ -17,7 +18,7 @@ from support.window import FakeSimulator
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from rosbots_description.sim.description import SceneChange
-from rosbots_description.web import Page, Site
+from rosbots_description.web import Page, Site, gate
 from rosbots_description.web.gate import MOST_CLIENTS
 from rosbots_description.web.uploads import MAX_BYTES, OF_ONE
 
@@ -354,6 +355,26 @@ def test_there_is_room_for_so_many_browsers(site):
     while site._gate._visitors:
         assert time.monotonic() < end
         time.sleep(0.01)
+
+
+def test_a_command_waits_while_many_others_do_and_is_not_lost(browser, site, served, monkeypatch):
+    monkeypatch.setattr(gate, 'BACKLOG', 0)
+    browser.wait_until(lambda: browser.control('Pause'))
+    executor, begun, released = site._thread_executor, threading.Semaphore(0), threading.Event()
+
+    def work():
+        begun.release()
+        released.wait()
+
+    for _ in range(executor._max_workers + 1):  # the last one waits
+        executor.submit(work)
+    for _ in range(executor._max_workers):
+        begun.acquire()
+    browser.click('Pause')
+    browser.read()
+    assert ('pause',) not in served[1].told
+    released.set()
+    browser.wait_until(lambda: ('pause',) in served[1].told)
 
 
 def test_a_flood_of_messages_is_slowed_down_and_the_page_answers_others(browser, site, served):
