@@ -12,6 +12,7 @@ from rosgraph.network import get_address_override
 from rospy.impl.registration import get_registration_listeners
 
 from .log_file import disable_log_file, log_file, tolerate_full_disk, write_error
+from .polling import close_pollers
 
 _POLL_PERIOD = 0.001  # between polls of the node's registration [s, wall]
 
@@ -28,6 +29,7 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     path = log_file(name, arguments)
     reason = write_error(path)
     _begin_at_once()
+    close_pollers()
     rospy.init_node(name, [name, *arguments, *(disable_log_file() if reason else ())], **options)
     _end_at_once()
     tolerate_full_disk()

@@ -16,6 +16,8 @@ from rospy.rostime import _set_rostime
 CALLED = {  # by us, or by rospy where we replace a function
     rospy.topics.QueuedConnection: 'connection queue_size',
     rospy.topics.QueuedConnection.write_data: 'self data',
+    rospy.topics._TopicImpl.close: 'self',
+    rospy.topics.Poller: '',
     tcpros_base.TCPServer.run: 'self',
     tcpros_base.recv_buff: 'sock b buff_size',
     tcpros_service.ServiceImpl.handle: 'self transport header',
@@ -48,7 +50,8 @@ HELD = {  # what makes an object, and the attributes that we read or set
                 'write_data',
     lambda: rospy.topics._PublisherImpl('/t', rospy.AnyMsg):
         'connections subscriber_listeners seq message_data_sent',
-    lambda: rospy.topics._SubscriberImpl('/t', rospy.AnyMsg): 'connections',
+    lambda: rospy.topics._SubscriberImpl('/t', rospy.AnyMsg): 'connections connection_poll',
+    rospy.topics.Poller: 'add_fd remove_fd error_iter',
     server: 'server_sock is_shutdown inbound_handler',
     registration.get_registration_listeners: 'listeners',
     registration.get_service_manager: 'get_services',
@@ -71,6 +74,7 @@ def test_attributes_that_we_use_exist(make, names):
 
 @pytest.mark.parametrize(('function', 'name'), [
     (rospy.topics._PublisherImpl.add_connection, 'QueuedConnection'),
+    (rospy.topics._TopicImpl.__init__, 'Poller'),
     (tcpros_base.TCPROSTransport.receive_once, 'recv_buff'),
     (rospy.impl.init.start_node, 'time'),
 ])
