@@ -6,11 +6,11 @@ import logging
 import os
 import sys
 import time
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 
 from .gzserver import split_remappings
-from .web_browser import opened
+from .web_browser import is_readable_by_others, opened, private_page
 
 logger = logging.getLogger(__name__)
 
@@ -74,8 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say('whoever has this address sees and controls the simulation, and the connection is '
              'not encrypted')
     page = Page(site, GazeboSimulator())
-    _say(f'the world is at {site.address}')
-    with opened(site.address) if options.open else nullcontext():
+    with (_told(site.address, site.token),
+          opened(site.address) if options.open else nullcontext()):
         while is_running():
             page.poll()
             time.sleep(PERIOD)
@@ -96,6 +96,19 @@ def given_token(path: str) -> str:
         if status.st_mode & 0o077 or status.st_uid != os.geteuid():
             raise PermissionError('others can read it; make it your own, and chmod 600')
         return file.read(1000).strip()
+
+
+@contextmanager
+def _told(address: str, token: str) -> Iterator[None]:
+    """Say where the world is; where others could read the token, where a page leads there."""
+    if not token or not is_readable_by_others(sys.stderr):
+        _say(f'the world is at {address}')
+        yield
+        return
+    with private_page(address) as page:
+        _say(f'the world is at {address.partition("?")[0]}; {page} opens it, with the token, which '
+             'others could read here')
+        yield
 
 
 def _fail(sentence: str) -> int:

@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 _TIMEOUT = 1.5  # [s] wall time for a clean end, within the 2 s that Ctrl-C may take
@@ -21,7 +22,8 @@ class Launched:
     def __init__(self, arguments: Sequence[str], log: Path, environment: Mapping[str, str]) -> None:
         """Start `roslaunch arguments…`, with its output in the file `log`."""
         self.log = log
-        with log.open('wb') as output:
+        # Its owner's alone: the address of the page, with the token, may be in it.
+        with open(log, 'wb', opener=partial(os.open, mode=0o600)) as output:
             # a new session: Ctrl-C reaches only this process, which ends the others in order
             self._process = subprocess.Popen(
                 ['/usr/bin/roslaunch', *arguments], stdin=subprocess.DEVNULL, stdout=output,

@@ -6,12 +6,14 @@ its owner can read, and which leads to the address.
 
 import os
 import shutil
+import stat
 import subprocess
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
 from pathlib import Path
+from typing import TextIO
 
 PAGE = ('<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer">'
         '<meta http-equiv="refresh" content="0;url={}"><title>gzweb</title>\n')
@@ -24,17 +26,33 @@ def opened(address: str) -> Iterator[bool]:
     if program is None or not (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
         yield False
         return
+    with private_page(address) as page:
+        # It ends at once, or when the browser does; in both cases it is not waited for.
+        subprocess.Popen([program, str(page)], stdin=subprocess.DEVNULL,
+                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                         start_new_session=True)
+        yield True
+
+
+@contextmanager
+def private_page(address: str) -> Iterator[Path]:
+    """Yield the path of a page that leads to an address and that only its owner can read."""
     # A folder of mode 700; that of the session, if there is one, is cleared at its end.
     with tempfile.TemporaryDirectory(
             prefix='gzweb-', dir=_own_folder(), ignore_cleanup_errors=True) as folder:
         page = Path(folder, 'window.html')
         page.touch(mode=0o600)
         page.write_text(PAGE.format(escape(address)), encoding='utf-8')
-        # It ends at once, or when the browser does; in both cases it is not waited for.
-        subprocess.Popen([program, str(page)], stdin=subprocess.DEVNULL,
-                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                         start_new_session=True)
-        yield True
+        yield page
+
+
+def is_readable_by_others(output: TextIO) -> bool:
+    """Tell whether an output is a file that other users may read, such as the log of a launch."""
+    try:
+        status = os.fstat(output.fileno())
+    except (OSError, ValueError):  # no file at all
+        return False
+    return stat.S_ISREG(status.st_mode) and bool(status.st_mode & 0o077)
 
 
 def _own_folder() -> str | None:

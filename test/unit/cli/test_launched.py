@@ -1,5 +1,6 @@
 """Processes that the demo starts."""
 
+import stat
 import subprocess
 import sys
 
@@ -21,6 +22,13 @@ def test_reported_error_is_the_last_one_without_colours(tmp_path, output, senten
         launched.wait(60.0)
     log.write_text(output)
     assert launched.error() == sentence.format(log=log)
+
+
+def test_log_is_its_owners_alone(tmp_path):
+    log = tmp_path / 'launch.log'
+    with Launched(['--version'], log, {'PATH': '/usr/bin'}) as launched:
+        launched.wait(60.0)
+    assert stat.S_IMODE(log.stat().st_mode) == 0o600
 
 
 def test_descendants_are_found_across_sessions():

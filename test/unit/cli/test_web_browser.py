@@ -1,13 +1,15 @@
 """How an address is handed to a browser: where its owner alone can read it."""
 
+import io
 import os
 import stat
+import sys
 import time
 
 import pytest
 
-from rosbots_description.cli.gzweb import VARIABLE, given_token
-from rosbots_description.cli.web_browser import opened
+from rosbots_description.cli.gzweb import VARIABLE, _told, given_token
+from rosbots_description.cli.web_browser import is_readable_by_others, opened
 
 ADDRESS = 'http://127.0.0.1:1/?token=secret&a=1'
 
@@ -79,3 +81,36 @@ def test_a_token_that_others_can_read_is_refused(tmp_path, mode):
     path.chmod(mode)
     with pytest.raises(PermissionError, match='chmod 600'):
         given_token(str(path))
+
+
+@pytest.mark.parametrize(('mode', 'readable'), [(0o644, True), (0o640, True), (0o600, False)])
+def test_a_log_that_others_may_read_is_noticed(tmp_path, mode, readable):
+    with open(tmp_path / 'log', 'w', encoding='utf-8') as log:
+        os.chmod(log.name, mode)
+        assert is_readable_by_others(log) == readable
+
+
+def test_pipes_and_terminals_are_no_log():
+    read, write = os.pipe()
+    with open(read, encoding='utf-8'), open(write, 'w', encoding='utf-8') as pipe:
+        assert not is_readable_by_others(pipe)
+    assert not is_readable_by_others(io.StringIO())
+
+
+@pytest.mark.parametrize('mode', [0o644, 0o600])
+def test_a_log_that_others_may_read_gets_no_token(tmp_path, monkeypatch, mode):
+    monkeypatch.setenv('XDG_RUNTIME_DIR', str(tmp_path))
+    with open(tmp_path / 'log', 'w+', encoding='utf-8') as log:
+        os.chmod(log.name, mode)
+        monkeypatch.setattr(sys, 'stderr', log)
+        with _told(ADDRESS, 'secret'):
+            log.flush()
+            said = (tmp_path / 'log').read_text(encoding='utf-8')
+            assert ('secret' in said) == (mode == 0o600)
+            assert 'http://127.0.0.1:1/' in said
+            (page,) = [*tmp_path.glob('gzweb-*/window.html')] or [None]
+            assert (page is None) == (mode == 0o600)
+            if page is not None:
+                assert str(page) in said
+                assert 'secret' in page.read_text(encoding='utf-8')
+                assert stat.S_IMODE(page.stat().st_mode) == 0o600
