@@ -85,16 +85,20 @@ def mutant(tree: ast.Module, number: int) -> ast.Module:
 
 
 def tests_of(path: Path) -> list[list[str]]:
-    """Return the tests that import a file: unit and engine tests of its folder, and all others.
+    """Return the tests that import a file, in an order in which most mutants are noticed early.
 
-    Its folder is the nearest one above that has tests.
+    Those that have its name, unit and engine tests of its folder, which is the nearest one above
+    that has tests, and all others.
     """
     found = [test.relative_to(ROOT) for test in test_files() if path in dependencies(test)]
     folders = [one.parts for one in path.relative_to(ROOT / PACKAGE).parents]
     near = next(one for one in folders if not one or one in {test.parts[2:-1] for test in found})
     own = [test for test in found if test.parts[2:-1] == near]
-    stages = [[test for test in own if test.parts[1] == level] for level in ('unit', 'engine')]
-    stages.append([test for test in found if test not in own])
+    named = [test for test in own if test.name == f'test_{path.name}']
+    rest = [test for test in own if test not in named]
+    others = [test for test in found if test not in own]
+    stages = [named, *([test for test in rest if test.parts[1] == level]
+                       for level in ('unit', 'engine')), others]
     return [list(map(str, stage)) for stage in stages]
 
 
@@ -165,7 +169,7 @@ def main() -> int:
             importlib.import_module(name)
     noticed = 0
     for path, number in chosen:
-        tests = tests_of(path)[:2 if arguments.own else None]
+        tests = tests_of(path)[:3 if arguments.own else None]
         if is_noticed(path, ast.fix_missing_locations(mutant(trees[path], number)), tests):
             noticed += 1
         else:

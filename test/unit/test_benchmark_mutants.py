@@ -43,7 +43,8 @@ def test_each_mutant_changes_one_place(module):
 
 def test_tests_of_the_files_own_folder_come_first(module):
     path = ROOT / module.PACKAGE / 'sim/physics/bullet/contact_stiffness.py'
-    unit, engine, others = module.tests_of(path)
+    named, unit, engine, others = module.tests_of(path)
+    assert named == ['test/unit/sim/physics/bullet/test_contact_stiffness.py']
     for level, own in (('unit', unit), ('engine', engine)):
         assert own
         assert all(Path(name).parts[1:-1] == (level, 'sim', 'physics', 'bullet') for name in own)
