@@ -8,6 +8,7 @@ from ..core import MIN_UPDATE_RATE, SimError, Vector
 MIN_STEP_SIZE, MAX_STEP_SIZE = 1e-9, 10.0  # [s]; the clock counts nanoseconds
 MAX_ITERATIONS = 10_000  # of the solver; more would only stall the simulation
 MAX_CONTACTS = 10_000_000
+MAX_GRAVITY = 1e6  # [m/s^2] where speeds of long steps stay finite
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,8 @@ def check_physics(physics: PhysicsSettings) -> None:
         if not least <= value <= most:
             words = f'from {least:g} to {most:g} {unit}'.rstrip()
             raise SimError(f'{name} is {value:g}; it must be {words}')
+    if max(map(abs, physics.gravity)) > MAX_GRAVITY:
+        raise SimError(f'gravity is {physics.gravity}; it must be at most {MAX_GRAVITY:g} [m/s^2]')
     if 0.0 < physics.max_update_rate < MIN_UPDATE_RATE:
         raise SimError(
             f'max_update_rate is {physics.max_update_rate:g}; it must be at least '

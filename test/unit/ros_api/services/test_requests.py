@@ -139,6 +139,7 @@ def test_real_time_factor_survives_a_reset():
         ({'max_update_rate': -1.0}, 'max_update_rate is -1; .* 0 is as fast as possible'),
         ({'max_update_rate': 1e-5}, 'at least 0.001'),
         ({'gravity': (0.0, math.nan, 0.0)}, 'gravity is .* finite'),
+        ({'gravity': (0.0, -1.1e6, 0.0)}, 'gravity is .* at most 1e[+]06'),
         ({'erp': math.inf}, 'erp is inf'),
         ({'sor_pgs_iters': 10_001}, 'sor_pgs_iters is 10001'),
         ({'sor_pgs_precon_iters': 10_001}, 'sor_pgs_precon_iters is 10001'),
@@ -152,6 +153,7 @@ def test_invalid_settings_are_rejected(changes, words):
 
 def test_unusual_settings_are_accepted():
     check_physics(PhysicsSettings())
+    check_physics(PhysicsSettings(gravity=(1e6, -1e6, 1e6)))
     check_physics(PhysicsSettings(step_size=10.0, max_update_rate=0.0, gravity=(0.0, 0.0, 0.0),
                                   sor_pgs_iters=0, max_contacts=0))
 

@@ -40,11 +40,10 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
     Raises:
         ModelError: a setting is not a number, or out of range.
     """
-    plain = PhysicsSettings()
     settings: dict[str, Any] = {}  # by field
     gravity = world.find('gravity')
     if gravity is not None and scalar(gravity):
-        settings['gravity'] = numbers_of(world, 'gravity', plain.gravity)
+        settings |= _setting(world, 'gravity', gravity, 'gravity')
     choices = world.findall('physics')
     if not choices:
         return PhysicsSettings(**settings)
