@@ -44,3 +44,17 @@ def test_friction_scale_is_between_a_minimum_and_one():
 def test_friction_is_full_without_compliance():
     _, ahead = held(touch(force=(4.0, 0.0, 0.0), velocity=(-0.5, 0.0, 0.0)))
     assert ahead == 1.0
+
+
+@pytest.mark.parametrize('axle', [AXLE, (0.0, 0.8, 0.6), (0.0, 0.6, -0.8)])  # upright or tilted
+def test_friction_is_the_force_of_the_slip_by_implicit_euler(axle):
+    contacts = touch(force=(4.0, -2.0, 0.0), velocity=(-0.02, 0.03, 0.0), load=4.9)
+    scales = slip_scales([contacts], axle, (0.01, 0.02), STEP, lambda _: 0.5)
+    gain = STEP * 9.8 / 4.9  # dt / m
+    most = LIMIT * 0.5
+    assert scales == pytest.approx((abs(-2.0 * gain - 0.03) / (0.01 + gain) / most,
+                                    abs(4.0 * gain + 0.02) / (0.02 + gain) / most))
+
+
+def test_least_scale_is_a_thousandth():
+    assert MIN_SCALE == 1e-3

@@ -57,6 +57,15 @@ def test_a_ramp_ends_at_the_target_when_one_wheel_is_near_it():
     assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
 
 
+@pytest.mark.parametrize('wheel', ['left', 'right'])
+def test_a_ramp_ends_when_either_wheel_turns_at_its_target_already(wheel):
+    plugin = make()
+    plugin.command(0.5, 0.0)
+    turn(plugin, **{wheel: 0.5 / (plugin.wheel_diameter / 2.0)})
+    run(plugin, PERIOD_STEPS + 1)
+    assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
+
+
 def test_ramp_of_both_wheels_ends_when_one_is_within_1_cm_per_s():
     plugin = make()
     plugin.command(0.55, 1.0)  # the left wheel stands, and its target is zero
@@ -116,8 +125,8 @@ def test_encoder_odometry_starts_at_zero_and_follows_the_wheels():
     run(plugin, 2000)
     pose, twist = odometry[-1]
     driven = (plugin.world.clock.steps - PERIOD_STEPS - 1) * STEP
-    assert twist.linear[0] == pytest.approx(0.5)
-    assert twist.angular[2] == pytest.approx(0.5)
+    assert twist.linear == pytest.approx((0.5, 0.0, 0.0))
+    assert twist.angular == pytest.approx((0.0, 0.0, 0.5))
     assert pose.position[0] == pytest.approx(math.sin(0.5 * driven), abs=2e-3)
     assert pose.position[1] == pytest.approx(1.0 - math.cos(0.5 * driven), abs=2e-3)
     assert pose.position[2] == 0.0
@@ -250,6 +259,16 @@ def test_tags_that_contradict_the_wheels_give_one_warning(caplog):
     assert '0.88 of the commanded speed' in lines[0].getMessage()
     assert 'or at 0.87 and 1.20 if it drags a caster' in lines[0].getMessage()
     assert lines[0].levelno == logging.WARNING
+
+
+@pytest.mark.parametrize('tags', [
+    {'wheelDiameter': '0.46', 'wheelSeparation': '1.0'},
+    {'wheelDiameter': '0.56', 'wheelSeparation': '0.8'},
+    {'wheelDiameter': '0.552', 'wheelSeparation': '0.96'},  # 1.2 times too large, both
+])
+def test_either_tag_that_contradicts_the_wheels_gives_a_warning(caplog, tags):
+    make(wheel_collisions=wheel_of(0.23), **tags)
+    assert 'contradict' in caplog.text
 
 
 def test_tags_that_fit_the_wheels_give_no_warning(caplog):

@@ -60,6 +60,19 @@ def test_twist_is_the_difference_of_two_poses():
     assert linear[1] == pytest.approx(0.1 / 0.051 * math.cos(0.02), rel=1e-3)
 
 
+def test_twist_is_in_the_models_own_axes():
+    plugin = make()
+    odometry = collect(plugin.odometry)
+    for x, y in ((0.0, 0.0), (0.1, 0.03)):
+        place(plugin, Pose((x, y, 0.0), from_rpy(0.0, 0.0, 0.7)))
+        run(plugin, 51)
+    cos, sin = math.cos(0.7), math.sin(0.7)
+    linear, angular = odometry[-1].twist
+    assert linear == pytest.approx(
+        ((0.1 * cos + 0.03 * sin) / 0.051, (0.03 * cos - 0.1 * sin) / 0.051, 0.0))
+    assert angular == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
 def test_odometry_of_a_too_fast_turn_is_the_command():
     plugin = make()
     odometry = collect(plugin.odometry)

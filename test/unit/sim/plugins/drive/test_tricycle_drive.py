@@ -100,7 +100,8 @@ def test_encoder_odometry_has_the_yaw_sign_and_twist_frame_of_upstream():
     turn(plugin, left_wheel_joint=-5.0, right_wheel_joint=-3.0)
     run(plugin, 1001)
     pose, twist = odometry[-1]
-    assert twist.angular[2] == pytest.approx(-(5.0 - 3.0) * 0.1 / 0.5, rel=1e-6)
+    assert twist.angular == pytest.approx((0.0, 0.0, -(5.0 - 3.0) * 0.1 / 0.5), rel=1e-6)
+    assert twist.linear[2] == 0.0
     yaw = 2.0 * math.asin(pose.orientation[2])
     assert yaw == pytest.approx(-0.4, rel=2e-2)
     assert twist.linear[:2] == pytest.approx(
