@@ -65,8 +65,11 @@ def mutate(node: ast.AST) -> bool:
 
 
 def places(tree: ast.Module) -> list[int]:
-    """Return the numbers of the nodes that can be changed."""
-    return [number for number, node in enumerate(ast.walk(tree)) if mutate(copy.copy(node))]
+    """Return the numbers of the nodes that can be changed; strict=True only asserts."""
+    asserted = {id(node.value) for node in ast.walk(tree)
+                if isinstance(node, ast.keyword) and node.arg == 'strict'}
+    return [number for number, node in enumerate(ast.walk(tree))
+            if id(node) not in asserted and mutate(copy.copy(node))]
 
 
 def changed_line(tree: ast.Module, number: int) -> tuple[str, str]:

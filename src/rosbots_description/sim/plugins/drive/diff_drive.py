@@ -107,8 +107,9 @@ class DiffDrive(WheeledDrive):
         if radius is None or radius_of(right) is None or not track:
             return
         forward = 2.0 * radius / self.wheel_diameter
-        turn = forward * self.wheel_separation / track
-        if abs(forward - 1.0) > TOLERATED or abs(turn / forward - 1.0) > TOLERATED:
+        wide = self.wheel_separation / track
+        turn = forward * wide
+        if abs(forward - 1.0) > TOLERATED or abs(wide - 1.0) > TOLERATED:
             logger.warning(
                 '%swheelDiameter %g m and wheelSeparation %g m contradict the collision geometry '
                 '(%.3g m and %.3g m): expect the robot to drive at %.2f of the commanded speed and '
