@@ -127,7 +127,7 @@ class Sensor(SensorLife):
     def count_readers(self) -> None:
         """Set the next due step, or NEVER without readers."""
         clock = self.world.clock
-        if self.readings.wanted:
+        if self.readings.wanted and self.measures:
             step = clock.first_step_after(self._times.after(clock.now_ns) - 1)
             self.due = max(clock.steps + 1, step)
         else:

@@ -134,12 +134,18 @@ class GazeboTags:
 
 
 def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
-    """Remove any text after the number of a numeric tag, in place; Gazebo ignores it.
+    """Remove empty numeric tags, and text after their number, in place; Gazebo ignores the latter.
 
     Examples are '0.5;' and '0.5 0.5'.
     """
-    for child in block:
+    for child in list(block):
         if child.tag not in _NUMBER_TAGS or parse_number(scalar(child)) is not None:
+            continue
+        if not scalar(child):
+            note(tags.notes, partial(
+                '{}: <{}> is empty and ignored; give it a number'.format,
+                location(child), child.tag))
+            block.remove(child)
             continue
         found = _LEADING_NUMBER.match(scalar(child))
         if found and not is_endless(child):

@@ -166,9 +166,9 @@ def test_bitmasks_hold_after_the_world_has_been_rebuilt():
 def test_collisions_of_one_link_have_their_own_bitmasks():
     # The left end is held up, the rest passes through the ground: the plank tips over.
     parts = ''.join(
-        f'<collision name="{name}"><pose>{x} 0 0 0 0 0</pose><geometry><box>'
-        f'<size>{long} 1 0.2</size></box></geometry><surface><contact>'
-        f'<collide_bitmask>{mask}</collide_bitmask></contact></surface></collision>'
+        f'<collision name="{name}"><pose>{x} 0 0 0 0 0</pose><geometry><box><size>{long} 1 0.2'
+        f'</size></box></geometry><surface><contact><collide_bitmask>{mask}</collide_bitmask></contact>'
+        '</surface></collision>'
         for name, x, long, mask in (('left', -0.4, 0.2, 1), ('right', 0.1, 0.8, 0)))
     with empty_world() as world:
         plank = world.spawn(sdf_model(f'<link name="l">{parts}</link>'), 'm',

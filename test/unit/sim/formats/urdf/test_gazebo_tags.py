@@ -203,11 +203,18 @@ def test_block_with_an_unknown_reference_is_reported_with_a_suggestion(caplog):
 
 
 @pytest.mark.parametrize(('tag', 'text'), [
-    ('mu1', 'abc'), ('kp', 'nan'), ('kd', '-1'), ('fdir1', '1 0'), ('dampingFactor', ''),
+    ('mu1', 'abc'), ('kp', 'nan'), ('kd', '-1'), ('fdir1', '1 0'), ('dampingFactor', 'x'),
 ])
 def test_malformed_number_in_a_block_is_an_error(tag, text):
     with pytest.raises(ModelError, match=rf"^s, line 2: <gazebo reference='c'>: <{tag}> is "):
         load(f'<gazebo reference="c"><{tag}>{text}</{tag}></gazebo>')
+
+
+def test_empty_numbers_in_a_block_are_ignored_with_a_warning(caplog):
+    spec = load('<gazebo reference="c"><mu1></mu1><kp/><mu2>0.25</mu2></gazebo>')
+    surface = spec.link('c').collisions[0].surface
+    assert (surface.mu, surface.mu2) == (1.0, 0.25)
+    assert '<mu1> is empty and ignored; give it a number' in caplog.text
 
 
 def test_springs_of_joints_are_read(caplog):
