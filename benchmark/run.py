@@ -27,7 +27,7 @@ FOLDER = Path(__file__).resolve().parent
 # Duration on two idle processors [s, wall].
 PARTS = {'fidelity': 45.0, 'physics': 330.0, 'veer': 260.0, 'speed': 280.0, 'real_time': 140.0,
          'sensors': 235.0, 'gym': 180.0, 'web': 130.0}
-LONG = {'batch': 240.0, 'soak': 630.0, 'mutants': 9000.0, 'fuzz': 1800.0}  # only by name
+LONG = {'batch': 240.0, 'soak': 1530.0, 'mutants': 9000.0, 'fuzz': 1800.0}  # only by name
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
 GRACE = 2.0  # [s, wall] for processes to end after a signal
 _BECOME_SUBREAPER = 36  # of prctl: orphaned descendants become our children
@@ -89,7 +89,7 @@ def duration(part: str, arguments: Sequence[str]) -> float:
     """Return the estimated duration of a part [s, wall]."""
     if part == 'soak' and arguments[:1] == ['--seconds'] and len(arguments) > 1:
         with contextlib.suppress(ValueError):
-            return float(arguments[1]) + 30.0
+            return 2.5 * float(arguments[1]) + 30.0
     return {**PARTS, **LONG}[part]
 
 

@@ -44,6 +44,7 @@ class Window:
         self._process = subprocess.Popen(
             ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0'], stderr=subprocess.PIPE, text=True)
         assert self._process.stderr is not None
+        self.process = self._process.pid  # rosrun has become the program
         self.address = self._process.stderr.readline().split()[-1]
 
     def __enter__(self) -> Window:

@@ -116,7 +116,7 @@ def test_error_about_an_unknown_part_lists_the_known_ones(run, capsys):
 
 
 def test_estimate_for_soak_follows_its_argument(run):
-    assert run.duration('soak', ['--seconds', '20']) == pytest.approx(50.0)
+    assert run.duration('soak', ['--seconds', '20']) == pytest.approx(80.0)
     assert run.duration('soak', []) > 600.0
 
 
