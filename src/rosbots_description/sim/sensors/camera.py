@@ -17,6 +17,9 @@ logger = logging.getLogger(__name__)
 
 MAX_IMAGE_SIZE = 8192  # [pixels] along an edge
 POLL = 4  # steps between two polls for a pending picture
+WINDOW = 5_000_000_000  # [ns] of simulated time over which the rate of pictures is judged
+FEWEST = 10  # pictures due in that time, else it is extended
+TOLERATED = 0.05  # share of the pictures due that may be left out without a warning
 _ENCODINGS = {
     'L8': 'mono8', 'L_INT8': 'mono8', 'L16': 'mono16', 'L_INT16': 'mono16',
     'R8G8B8': 'rgb8', 'RGB_INT8': 'rgb8', 'B8G8R8': 'bgr8', 'BGR_INT8': 'bgr8',
@@ -33,6 +36,37 @@ class SensedCamera(NamedTuple):
     pose: Pose
     lens: Lens
     encoding: str
+
+
+class PictureRate:
+    """Judges once whether pictures are taken at the rate at which they are due."""
+
+    def __init__(self) -> None:
+        self._told = False
+        self._begin(0)
+
+    def _begin(self, now_ns: int) -> None:
+        self._start, self._due, self._taken = now_ns, 0, 0
+
+    def count(self, now_ns: int, taken: bool) -> tuple[float, float] | None:
+        """Count a picture that is due at `now_ns` [ns].
+
+        Returns:
+            The rates at which pictures are taken and due [Hz], once, when too many are left out.
+        """
+        if not self._due or now_ns < self._start:  # the first one, or time has been reset
+            self._begin(now_ns)
+        self._due += 1
+        self._taken += taken
+        seconds = (now_ns - self._start) / 1e9
+        if now_ns - self._start < WINDOW or self._due < FEWEST:
+            return None
+        due, taken_of_due = self._due, self._taken
+        self._begin(now_ns)
+        if self._told or taken_of_due >= (1.0 - TOLERATED) * due:
+            return None
+        self._told = True
+        return taken_of_due / seconds, (due - 1) / seconds
 
 
 @register_sensor('camera')
@@ -58,6 +92,7 @@ class CameraSensor(Sensor):
         # Whether one picture is to be taken in the next step, None: pictures come at the rate.
         self.triggered: bool | None = None
         self._complaint = ''
+        self._rate = PictureRate()
 
     def _chosen(self, elements: list[Element]) -> list[Element]:
         return elements[:1]
@@ -123,6 +158,8 @@ class CameraSensor(Sensor):
         waits = not self.world.is_paced
         try:
             self._send_finished(waits)
+            if self._takes:
+                self._count_due()
             if self._takes and self._capture.is_free:
                 self.triggered = None if self.triggered is None else False
                 self._request(self._wants())
@@ -143,6 +180,15 @@ class CameraSensor(Sensor):
         self._picture_step = self.due
         if self.readings.wanted and self._capture.pending:
             self.due = min(self.due, self.world.clock.steps + POLL)
+
+    def _count_due(self) -> None:
+        """Count a picture that is due; log once that drawing does not keep up."""
+        reached = self._rate.count(self.world.clock.now_ns, self._capture.is_free)
+        if reached is not None:
+            logger.warning(
+                "model '%s', %s: pictures come at %.3g of %.3g Hz, as drawing them takes longer; "
+                'fewer pixels, a lower <update_rate> or a graphics card would help '
+                '(doc/rendering.md)', self.model.name, self.called, *reached)
 
     def _wants(self) -> Wants:
         wanted = list(self._wanted.values())
