@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Several simulators on one machine do not disturb each other."""
 
+import contextlib
 import os
 import sys
 import tempfile
 import unittest
+from pathlib import Path
 
 import rospy
 import rostest
@@ -14,6 +16,7 @@ from simulator import BOX, DEADLINE, pose, wait_until
 from std_srvs.srv import Empty
 
 GROUND = ['ground_plane']
+EIGHT = 8
 SHAPES = ['ground_plane', 'box', 'sphere', 'cylinder']
 
 
@@ -28,6 +31,14 @@ def models(server):
 
 def time_of(server):
     return service(server, 'get_world_properties', GetWorldProperties)().sim_time
+
+
+def is_running(pid):
+    """Tell whether a process runs; a zombie does not."""
+    try:
+        return Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] != 'Z'
+    except OSError:
+        return False
 
 
 class NeighboursTest(unittest.TestCase):
@@ -71,6 +82,38 @@ class NeighboursTest(unittest.TestCase):
             self.assertEqual(there.world()['model_names'], [*GROUND, 'rosbots'])
             self.assertEqual(there.end()[0], 0)
             self.assertEqual(os.listdir(folder), [])
+
+    def test_eight_as_learning_scripts_start_them(self):
+        # Own masters, GAZEBO_MASTER_URI of their own, the same user, home and temporary folder.
+        xml = rospy.get_param('robot_description')
+        with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+            shared = {'TMPDIR': folder, 'HOME': folder, 'ROS_HOME': f'{folder}/.ros'}
+            servers = []
+            for number in range(EIGHT):
+                address = stack.enter_context(MasterProcess())
+                servers.append(stack.enter_context(ServerProcess(
+                    master=address, GAZEBO_MASTER_URI=f'http://localhost:{11400 + number}',
+                    **shared)))
+            for server in servers:
+                server.wait_ready()
+            for number, server in enumerate(servers):
+                with ServerProcess('-urdf', '-stdin', '-model', f'robot_{number}',
+                                   program='spawn_model', master=server.master) as client:
+                    printed, _ = client.process.communicate(xml, timeout=DEADLINE)
+                self.assertEqual(client.process.returncode, 0, printed)
+            killed, *others = servers
+            families = [int(pid) for pid in killed.children()]
+            killed.process.kill()
+            killed.process.wait()
+            wait_until(lambda: not any(map(is_running, families)), 'the end of its processes')
+            for number, server in enumerate(others, 1):
+                self.assertEqual(server.world()['model_names'], [*GROUND, f'robot_{number}'])
+                before = server.world()['sim_time']
+                wait_until(lambda: server.world()['sim_time'] > before,  # noqa: B023 (called here)
+                           'advance of the others')
+                self.assertEqual(server.end()[0], 0)
+            left = [name for name in os.listdir(folder) if not name.startswith('.')]
+            self.assertEqual(left, [])
 
 
 if __name__ == '__main__':

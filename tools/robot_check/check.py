@@ -10,13 +10,17 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
+
+import rospkg
 
 SIMULATES = """<launch>
   <include file={file}>{arguments}</include>
@@ -25,6 +29,7 @@ SIMULATES = """<launch>
   </test>
 </launch>
 """
+ROOT = Path(__file__).resolve().parents[2]
 MANIFEST = """<package>
   <name>{package}</name> <version>0.0.0</version>
   <description>The test of the launch files.</description>
@@ -85,6 +90,8 @@ def check(
     source.mkdir()
     for number, package in enumerate(packages):
         (source / f'{number}_{package.name}').symlink_to(package)
+    for sentence in missing_packages(packages):
+        print(f'    {sentence}', flush=True)
     python = shutil.which('python3') or sys.executable
     print(f'==> building {len(packages)} package{"s"[:len(packages) > 1]}', flush=True)
     if subprocess.run(
@@ -99,6 +106,38 @@ def check(
     failed = sum(map(bool, codes))
     print(f'{len(codes) - failed} passed, {failed} failed')
     return 1 if failed or not codes else 0
+
+
+def missing_packages(packages: list[Path]) -> list[str]:
+    """Return a sentence about each ROS package that these need and that is not here."""
+    needed: dict[str, str] = {}  # with the first package that needs it
+    for folder in packages:
+        manifest = ElementTree.parse(folder / 'package.xml').getroot()
+        for element in manifest:
+            if element.tag in ('depend', 'exec_depend', 'run_depend', 'build_depend'):
+                needed.setdefault((element.text or '').strip(), folder.name)
+    found = rospkg.RosPack()
+    known = {*found.list(), *(manifest_name(folder) for folder in packages)}
+    sentences = []
+    for name in sorted(needed.keys() - known - {''}):
+        debian = optional_packages(name)
+        cure = f'install {" ".join(debian)} (requirements/optional.apt)' if debian else \
+            'if it is one of ROS, see "Other packages of ROS" in doc/gazebo_compatibility.md'
+        sentences.append(
+            f"{needed[name]} needs '{name}', which is not among the ROS packages here: {cure}")
+    return sentences
+
+
+def manifest_name(folder: Path) -> str:
+    """Return the name that a package's manifest gives."""
+    return (ElementTree.parse(folder / 'package.xml').findtext('name') or '').strip()
+
+
+def optional_packages(name: str) -> list[str]:
+    """Return Debian's packages of a ROS package, of those in requirements/optional.apt."""
+    listed = (ROOT / 'requirements' / 'optional.apt').read_text(encoding='utf-8').splitlines()
+    plain = re.escape(name.replace('_', '-'))
+    return [line for line in listed if re.fullmatch(rf'(lib|python3-|ros-)?{plain}(-dev)?', line)]
 
 
 def write_test(room: Path, launch: Path, given: list[str]) -> Path:
