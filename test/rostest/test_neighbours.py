@@ -103,6 +103,7 @@ class NeighboursTest(unittest.TestCase):
                 self.assertEqual(client.process.returncode, 0, printed)
             killed, *others = servers
             families = [int(pid) for pid in killed.children()]
+            self.assertGreater(len(families), 0)
             killed.process.kill()
             killed.process.wait()
             wait_until(lambda: not any(map(is_running, families)), 'the end of its processes')

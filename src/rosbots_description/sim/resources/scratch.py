@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import subprocess
 import tempfile
 import threading
 import weakref
@@ -18,6 +19,8 @@ class ScratchFolder:
 
     It is in the folder for temporary files (TMPDIR), or in memory if that is not writable. A full
     or read-only disk therefore matters only if a file is needed. Thread-safe.
+
+    A process of its own removes the folder if this one is killed.
     """
 
     def __init__(self, prefix: str) -> None:
@@ -25,6 +28,7 @@ class ScratchFolder:
         self._prefix = prefix
         # Several once a disk has filled up.
         self._folders: list[tempfile.TemporaryDirectory[str]] = []
+        self._watches: list[subprocess.Popen[bytes]] = []
         self._lock = threading.Lock()
 
     def write(self, name: str, content: bytes, source: str) -> Path:
@@ -46,6 +50,8 @@ class ScratchFolder:
         with self._lock:
             while self._folders:
                 self._folders.pop().cleanup()
+            while self._watches:
+                self._watches.pop().communicate()
 
     def _write_anew(self, name: str, content: bytes, source: str) -> Path:
         """Write into a new folder, in the first location that is writable."""
@@ -63,6 +69,8 @@ class ScratchFolder:
                 faults.append(f'{place} ({error.strerror})')
             else:
                 self._folders.append(folder)
+                with contextlib.suppress(OSError):  # without it a kill leaves the folder
+                    self._watches.append(_removal_at_death(folder.name))
                 return path
         raise ModelError(
             f"mesh file '{source}' cannot be made ready: nothing can be written in "
@@ -117,6 +125,16 @@ class SharedFiles:
                 del self._uses[name]
                 with contextlib.suppress(OSError):
                     os.unlink(path)
+
+
+def _removal_at_death(folder: str) -> subprocess.Popen[bytes]:
+    """Start a process that removes a folder when this process has ended, however it did.
+
+    It waits for the end of its input, which the system closes. Ctrl-C does not reach it.
+    """
+    return subprocess.Popen(
+        ['/bin/sh', '-c', 'read _; rm -rf -- "$0"', folder], stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, cwd='/')
 
 
 def _temporary_folder() -> str:

@@ -1,6 +1,7 @@
 """Scratch files: private, and written wherever there is space."""
 
 import os
+import signal
 import stat
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from support import ROOT
+from support.patience import wait_until
 from support.surroundings import unshare
 
 from rosbots_description.sim.core.errors import ModelError
@@ -142,3 +144,16 @@ def test_threads_share_a_folder(folder, places, monkeypatch):
         files = list(threads.map(write, range(8)))
     assert len({file.parent for file in files}) == 1
     assert all(file.is_file() for file in files)
+
+
+def test_the_folder_is_gone_after_the_process_was_killed(tmp_path):
+    program = (
+        'import os, signal\n'
+        'from rosbots_description.sim.resources.scratch import ScratchFolder\n'
+        'folder = ScratchFolder("killed_")\n'
+        'print(folder.write("m.obj", b"x", "m"), flush=True)\n'
+        'os.kill(os.getpid(), signal.SIGKILL)\n')
+    ended = run(sys.executable, '-c', program, TMPDIR=str(tmp_path))
+    assert ended.returncode == -signal.SIGKILL, ended.stderr
+    assert ended.stdout.startswith(f'{tmp_path}/killed_')
+    wait_until(lambda: not any(tmp_path.iterdir()))
