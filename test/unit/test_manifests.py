@@ -32,7 +32,7 @@ def imports(folder: Path) -> set[str]:
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
                 names.add(node.module.partition('.')[0])
     programs = [path for folder in ('benchmark', 'scripts', 'tools')  # which tests load
-                for path in ROOT.glob(f'{folder}/*.py')]
+                for path in ROOT.glob(f'{folder}/**/*.py')]
     own = {module.stem for module in [*modules, *programs]}
     own |= {inner.name for inner in folder.rglob('*/')}
     # setuptools brings distutils to a Python that has none
