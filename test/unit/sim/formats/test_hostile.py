@@ -8,6 +8,7 @@ import logging
 import os
 import sys
 from contextlib import closing
+from unittest.mock import Mock
 
 import pytest
 from support import ROOT, package_directory
@@ -20,6 +21,7 @@ from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.meshes.engine_files import EngineFiles
 from rosbots_description.sim.meshes.loader import check_mesh
 from rosbots_description.sim.physics.bullet.compiler import compile_model
+from rosbots_description.sim.resources import scratch
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 BUILT_IN = ROOT / 'src' / 'rosbots_description' / 'models'
@@ -74,6 +76,8 @@ def may_be_opened(path, case, folder):
 @pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)
 def test_outcome_is_that_of_the_table(case, tmp_path, opened, caplog, capfd, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
+    # the only process that reading may start: it removes the folder of files for the engine
+    monkeypatch.setattr(scratch, '_removal_at_death', Mock())
     rejection = ''
     opened.paths.clear()
     opened.listening = True
