@@ -44,7 +44,7 @@ from rosbots_description.cli.launched import descendants
 ROBOTS, CLIENTS = 20, 3
 GROWTH = 10.0  # [MB] allowed growth of the server's memory after the warm-up
 WARM_UP = 0.1, 15.0  # share of the duration, and minimum [s, wall]; all calls were made by then
-SLACK = 3  # sockets and threads that may remain beside those at the start
+SLACK = 3  # descriptors and threads that may remain beside those before
 SILENCE = 5.0  # [s, wall] longest time without /clock; pauses are much shorter
 PATIENCE = 30.0  # [s, wall] timeout for clients to end, and for their resources to be freed
 BACK_TO = 5.0  # [s, simulated] latest time at which a reset is noticed
@@ -323,10 +323,11 @@ def settled(process: int, folder: Path) -> Held:
 
 
 def grown(before: Held, after: Held, kinds: Sequence[str], pool: int = 0) -> Iterator[str]:
-    """Yield a sentence for each kind of which there is more, a pool of threads aside."""
+    """Yield a sentence for each kind of which there is more, a pool of threads and a few aside."""
     for kind in kinds:
         old, new = getattr(before, kind), getattr(after, kind)
-        if new > old * (1.0 + GROWN) + (pool if kind == 'threads' else 0):
+        spare = 0 if kind == 'memory' else SLACK + (pool if kind == 'threads' else 0)
+        if new > max(old * (1.0 + GROWN), old + spare):
             yield f'{kind} grew from {old:.4g} to {new:.4g}'
 
 
