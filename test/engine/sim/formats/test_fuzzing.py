@@ -14,7 +14,7 @@ BOX = f'<robot name="b">{box_urdf("1 1 1", 1.0)}</robot>'
 
 
 def hog():
-    np.ones(MEMORY // 8)
+    np.ones(2 * MEMORY // 8)  # more than it may, whatever was freed before
 
 
 def stranger():
