@@ -5,27 +5,43 @@ import pty
 import select
 import subprocess
 import termios
+import threading
 
 
 class Terminal:
-    """A pseudo-terminal with a program; collects the output."""
+    """A pseudo-terminal with a program; collects the output.
+
+    A thread reads it, for a program that nobody reads stands still once some kilobytes wait.
+    """
 
     def __init__(self, *command, **options):
         self._keyboard, self._screen = pty.openpty()
+        self._open, self._closing = os.pipe()
+        self._lock = threading.Lock()
         self.saved_mode = termios.tcgetattr(self._screen)
         self.process = subprocess.Popen(
             command, stdin=self._screen, stdout=self._screen, stderr=self._screen,
             start_new_session=True, **options)
         self._shown = b''
+        self._reader = threading.Thread(target=self._read_on, daemon=True)
+        self._reader.start()
+
+    def _read_on(self):
+        while self._open not in select.select([self._keyboard, self._open], [], [])[0]:
+            self._read()
+
+    def _read(self):
+        with self._lock:
+            while select.select([self._keyboard], [], [], 0.0)[0]:
+                self._shown += os.read(self._keyboard, 4096)
 
     def type(self, key):
         os.write(self._keyboard, key.encode())
 
     def shown(self):
         """Return the output so far."""
-        while select.select([self._keyboard], [], [], 0.0)[0]:
-            self._shown += os.read(self._keyboard, 4096)
-        return self._shown.decode()
+        self._read()
+        return self._shown.decode(errors='replace')
 
     def mode(self):
         """Return the terminal's settings."""
@@ -35,8 +51,10 @@ class Terminal:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
-        os.close(self._keyboard)
-        os.close(self._screen)
+        os.close(self._closing)
+        self._reader.join()
+        for handle in (self._open, self._keyboard, self._screen):
+            os.close(handle)
 
 
 def open_display():
