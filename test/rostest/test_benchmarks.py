@@ -32,7 +32,7 @@ class BenchmarksTest(unittest.TestCase):
             env=os.environ | {'PYTHONPATH': path}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             text=True)
         self.addCleanup(process.kill)
-        self.assertEqual(process.stdout.readline(), '== soak, about 10 min\n')
+        self.assertEqual(process.stdout.readline(), '== soak, about 26 min\n')
         wait_until(lambda: 'gzserver' in map(name_of, descendants(process.pid)), 'a simulator',
                    2 * DEADLINE)
         family = descendants(process.pid)

@@ -15,7 +15,8 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
 # Documented in the README as missing, or as part of further packages.
 NOT_THERE = {'rqt_graph'}
-OPTIONAL = {'image_view': ('ros-image-view', 'libimage-view-dev')}
+OPTIONAL = {'image_view': ('ros-image-view', 'libimage-view-dev'),
+            'topic_tools': ('topic-tools', 'libtopic-tools-dev')}
 
 
 def rosrun(*arguments, **options):
