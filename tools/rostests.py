@@ -25,7 +25,8 @@ from results import (
 FOLDER = ROOT / 'test' / 'rostest'
 LANES = max(2, os.cpu_count() or 1)
 # Begun first, the longest first, so that the lanes end together.
-LONGEST = ('simulator', 'own_package', 'never_down', 'chromium', 'hostile', 'frames')
+LONGEST = ('own_package', 'simulator', 'never_down', 'hostile_names', 'soak', 'chromium',
+           'neighbours', 'frames', 'hostile')
 # Independent of the caller's master and addresses, and of unbuffered output.
 NOT_OURS = ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED')
 
