@@ -77,10 +77,16 @@ def test_remappings_are_not_options():
         ['-u', 'a.world'], ['__name:=gazebo', 'a:=b'])
 
 
-def test_missing_world_is_one_error_line(capsys):
-    assert main(['worlds/mud.world']) == 1
+@pytest.mark.parametrize(('name', 'said'), [
+    ('worlds/mud.world', "'worlds/mud.world'"),
+    ('x' * 300, 'xxx'),  # longer than any name of a file
+    ('a\x1b]0;b\0', 'there is no world file'),
+])
+def test_missing_world_is_one_error_line(capsys, name, said):
+    assert main([name]) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert "'worlds/mud.world'" in line
+    assert said in line
+    assert line.isprintable()
 
 
 REQUIRED = [line.split(' ')[0] for line in REQUIREMENTS.read_text().splitlines()

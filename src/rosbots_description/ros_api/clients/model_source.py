@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from xml.etree import ElementTree
@@ -28,7 +29,7 @@ def read_file(name: str) -> bytes:
         SourceError: the file is unreadable or empty.
     """
     path = Path(name)
-    if not path.exists():
+    if not os.path.exists(path):  # False also for names that no file can have
         raise MissingFileError(f'Error: specified file {name} does not exist')
     if not path.is_file():
         raise MissingFileError(f'Error: specified file {name} is not a file')

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from ..core import AbsentError, NotFoundError, fault
+from ..core import AbsentError, NotFoundError, fault, shortened
 from .safe_io import read_file
 from .xml_parser import MAX_XML_BYTES, parse_xml
 
@@ -188,18 +188,18 @@ def find_world(name: str, directories: Iterable[str | os.PathLike[str]] = ()) ->
     """
     names = [name] if name.endswith(('.world', '.sdf')) else [name, f'{name}.world']
     for path in map(Path, names):
-        if path.is_file():
+        if os.path.isfile(path):  # False also for names that no file can have
             return path.absolute()
     searched = []
     for directory in directories:
         searched.append(os.fspath(directory))
         for candidate in names:
             for path in _places(Path(directory), candidate):
-                if path.is_file():
+                if os.path.isfile(path):
                     return path.absolute()
     shown = ', '.join(searched) or 'nowhere else'
     raise NotFoundError(
-        f"there is no world file '{name}' as given, nor in: {shown}; "
+        f"there is no world file '{shortened(name)}' as given, nor in: {shown}; "
         'check the name, or add its folder to GAZEBO_RESOURCE_PATH'
     )
 

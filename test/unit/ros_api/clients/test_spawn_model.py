@@ -111,5 +111,7 @@ def test_error_names_an_unreadable_file(tmp_path):
         read_file(str(empty))
     with pytest.raises(MissingFileError, match=r'specified file /nowhere.urdf does not exist$'):
         read_file('/nowhere.urdf')
+    with pytest.raises(MissingFileError, match=r'specified file x{300} does not exist$'):
+        read_file('x' * 300)
     with pytest.raises(MissingFileError, match=f'specified file {tmp_path} is not a file$'):
         read_file(str(tmp_path))
