@@ -11,12 +11,13 @@ import rosgraph
 import rospy
 from genpy import Message
 
-from ...sim.core import SimError
+from ...sim.core import SimError, printable
 from ..transport import NO_MASTER, has_service, init_node, is_master_running, require_address
 from .model_source import SourceError
 
 DONE, FAILED = 0, 1  # exit codes
 _STDOUT = 1  # the descriptor
+LAYOUT = '\n\t'  # all that names and texts of models may do to a terminal
 NODE = 'gazebo'  # the simulator, relative to this program's namespace
 START = 'start one with: roslaunch gazebo_ros empty_world.launch'
 
@@ -42,11 +43,11 @@ def run(
     try:
         _connect(node, ros_arguments)
         for line in act(_call):
-            sys.stdout.write(f'{line}\n')
+            sys.stdout.write(f'{printable(line, LAYOUT)}\n')
             if not _has_reader(_STDOUT):  # as of gz stats | head
                 break
     except (CommandError, SourceError, SimError) as error:
-        sys.stderr.write(f'{program}: {error}\n')
+        sys.stderr.write(f'{program}: {printable(str(error), LAYOUT)}\n')
         return FAILED
     except NO_MASTER:
         sys.stderr.write(f'{program}: the ROS master has ended\n')

@@ -9,6 +9,7 @@ from .errors import (
     ShapeError,
     SimError,
     one_line,
+    printable,
 )
 from .limits import MAX_COORDINATE, MAX_INERTIA, MAX_LENGTH, MAX_MASS, MIN_MASS, MIN_UPDATE_RATE
 from .messages import (
@@ -106,6 +107,7 @@ __all__ = [
     'parse_number',
     'parse_numbers',
     'plain_text',
+    'printable',
     'relative',
     'rotate',
     'shortened',

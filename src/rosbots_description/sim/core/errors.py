@@ -45,9 +45,15 @@ def one_line(text: str) -> str:
     """Return a text with unprintable characters escaped, and its middle cut out if it is long."""
     if len(text) > _HEAD + _TAIL:
         text = f'{text[:_HEAD]} … {text[-_TAIL:]}'
+    return printable(text)
+
+
+def printable(text: str, kept: str = '') -> str:
+    """Return a text with unprintable characters escaped, except those of `kept`."""
     if text.isprintable():
         return text
     return ''.join(
-        character if character.isprintable() else character.encode('unicode_escape').decode()
+        character if character.isprintable() or character in kept
+        else character.encode('unicode_escape').decode()
         for character in text
     )

@@ -159,3 +159,18 @@ def test_a_pipe_whose_other_end_is_closed_has_no_reader():
     os.close(read)
     assert not service_program._has_reader(write)
     os.close(write)
+
+
+@pytest.mark.parametrize('fails', [False, True])
+def test_names_of_models_do_nothing_to_the_terminal(monkeypatch, capsys, fails):
+    def act(_call):
+        if fails:
+            raise service_program.CommandError('\x1b]0;title\x07\x9b2J\u202e')
+        yield 'a\x1b]0;title\x07\x9b2J\u202e\n\tb'
+
+    monkeypatch.setattr(service_program, '_connect', lambda *_: None)
+    assert service_program.run('gz model', act, []) == int(fails)
+    printed, said = capsys.readouterr()
+    escaped = r'\x1b]0;title\x07\x9b2J\u202e'
+    assert (printed, said) == (('', f'gz model: {escaped}\n') if fails
+                               else (f'a{escaped}\n\tb\n', ''))
