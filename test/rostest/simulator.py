@@ -43,6 +43,10 @@ def pose(x=0.0, y=0.0, z=0.5):
     return Pose(Point(x, y, z), Quaternion(0.0, 0.0, 0.0, 1.0))
 
 
+# What it opens last when it starts; from then on its topics come and go with models.
+LAST_TOPICS = {'/gazebo/parameter_descriptions', '/gazebo/parameter_updates'}
+
+
 def topics_of(node='/gazebo'):
     """Return the topics that a node publishes or subscribes to."""
     published, subscribed, _ = rospy.get_master().getSystemState()[2]
@@ -78,6 +82,7 @@ class SimulatorTest(unittest.TestCase):
                 raise
 
     def setUp(self):
+        wait_until(lambda: topics_of() >= LAST_TOPICS, 'the last topics of the simulator')
         self.spawn_service = proxy('spawn_urdf_model', SpawnModel)
         self.delete = proxy('delete_model', DeleteModel)
         self.model_state = proxy('get_model_state', GetModelState)
