@@ -169,6 +169,7 @@ def test_names_of_models_do_nothing_to_the_terminal(monkeypatch, capsys, fails):
         yield 'a\x1b]0;title\x07\x9b2J\u202e\n\tb'
 
     monkeypatch.setattr(service_program, '_connect', lambda *_: None)
+    monkeypatch.setattr(service_program.rospy, 'signal_shutdown', lambda _: None)  # for good
     assert service_program.run('gz model', act, []) == int(fails)
     printed, said = capsys.readouterr()
     escaped = r'\x1b]0;title\x07\x9b2J\u202e'
