@@ -68,12 +68,17 @@ clone_into() {
   chroot "$bare" chown -R newcomer: "$1"
 }
 
+# With another root for a namespace of mounts: below a chroot, no program may make a sandbox.
+PIVOT='mount --rbind "$0" "$0" && cd "$0" && mkdir -p .old && pivot_root . .old && cd / &&
+umount -l /.old && exec "$@"'
+
 # inside USER COMMAND…: run in an empty environment, as on a machine that has never seen ROS.
 inside() {
   local user=$1 home=/root pip_variables
   shift
   if [[ $user != root ]]; then home=/home/$user; fi
   mapfile -t pip_variables < <(env | grep -E '^(PIP_|https?_proxy|no_proxy)' || true)
-  "${AROUND[@]}" chroot "$bare" runuser -u "$user" -- env -i HOME="$home" LANG=C \
+  "${AROUND[@]}" unshare --mount --propagation private sh -c "$PIVOT" "$bare" \
+    runuser -u "$user" -- env -i HOME="$home" LANG=C \
     PATH=/usr/sbin:/usr/bin:/sbin:/bin "${pip_variables[@]}" "$@"
 }
