@@ -85,7 +85,7 @@ class StrangersTest(unittest.TestCase):
     @unittest.skipUnless(os.geteuid() == 0, 'another user can only be tried by root')
     def test_1_another_user_of_the_machine_gets_no_socket(self):
         said = subprocess.run(
-            [sys.executable, '-I', '-c', KNOCK, str(urlsplit(self.address).port)], check=True,
+            ['/usr/bin/python3', '-I', '-c', KNOCK, str(urlsplit(self.address).port)], check=True,
             capture_output=True, text=True, user=NOBODY, cwd='/').stdout
         self.assertIn('403 Forbidden', said)
         self.assertIn('needs the token', said)

@@ -66,7 +66,7 @@ def test_a_mutant_is_noticed_by_a_test_that_fails_or_crashes_in_a_fork(module, c
     before = path.read_bytes()
     changed = ast.parse(change(path.read_text()))
     loaded = {name: sys.modules.pop(name) for name in list(sys.modules)
-              if name.partition('.')[0] in ('rosbots_description', 'rosbots_simulator')}
+              if name.partition('.')[0] in ('rosbots_description', 'rosbots_simulator', 'test')}
     try:
         assert module.is_noticed(path, changed, tests) == noticed
     finally:

@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import runpy
 import shutil
 import subprocess
@@ -53,7 +54,7 @@ def test_clone_without_set_up_is_told_the_command_and_left_as_it_is(clone):
     assert result.returncode == 1
     (base,) = [line for line in result.stdout.splitlines() if line.startswith('set base')]
     assert base.startswith('set base    missing: ')
-    assert '6 Python packages' in base
+    assert re.search(r' [1-9] Python packages', base)  # fewer where Debian has more
     assert base.endswith('; ./rosbots setup base')
     assert sorted(clone.rglob('*')) == before
 
