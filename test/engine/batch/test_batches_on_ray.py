@@ -148,7 +148,7 @@ def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
         printed, said = command.communicate(timeout=PATIENCE)
     finally:
         command.kill()
-    assert (command.returncode, printed) == (130, '')
+    assert (command.returncode, printed) == (130, ''), said
     rows = parquet.read_table(tmp_path / 'rows' / 'rows').num_rows
     assert said == (f'batch: interrupted; {rows} rows are in {tmp_path / "rows"}, and the same '
                     'command makes the others\n')
