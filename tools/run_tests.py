@@ -39,6 +39,7 @@ from rostests import choose, run_rostests
 
 SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
 AT_ONCE = ('lint', 'unit')  # phases
+PARALLEL = ['-n', 'auto', '--dist', 'loadfile']  # a process per processor; a file stays in one
 HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
 
@@ -120,8 +121,7 @@ def node_of(classname: str, name: str) -> str:
 
 def pytest_phase(phase: str) -> Callable[[str], Count]:
     """Return what runs test/<phase>, a process per processor."""
-    return lambda word: run_pytest(
-        phase, ['-n', 'auto', '--dist', 'loadfile', '-k', word, f'test/{phase}'])
+    return lambda word: run_pytest(phase, [*PARALLEL, '-k', word, f'test/{phase}'])
 
 
 PHASES: dict[str, Callable[[str], Count]] = {
@@ -147,7 +147,7 @@ def run_changed(took: dict[str, float]) -> Count:
     whole = ['lint'] + (['unit', 'engine'] if choice.cases is None else [])
     total = run_phases(whole, '', took)
     if choice.cases:
-        total += run_pytest('chosen', ['-n', 'auto', '--dist', 'loadfile', *choice.cases])
+        total += run_pytest('chosen', [*PARALLEL, *choice.cases])
     if choice.rostests is None:
         return total + run_phases(['rostest'], '', took)
     return total + run_rostests(choice.rostests) if choice.rostests else total
