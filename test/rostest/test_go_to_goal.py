@@ -14,11 +14,11 @@ import rospy
 import rostest
 from example_nodes import AT_REST, LIMIT, ExampleNodeTest
 from gazebo_msgs.srv import GetModelState
-from simulator import COMMANDS, DEADLINE, proxy, wait_until
+from simulator import COMMANDS, proxy, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'scripts'))
-from follow_policy import inputs, outputs  # noqa: E402
+from follow_policy import REACHED, inputs, outputs  # noqa: E402
 from ros_environment import RosGoToGoal  # noqa: E402
 
 GOAL = -1.5, 0.5  # [m], see the launch file
@@ -69,10 +69,15 @@ class GoToGoalTest(ExampleNodeTest):
         environment = RosGoToGoal()
         environment.reset(options=LEARNED)
         environment.close()
-        subprocess.run([ROOT / 'scripts' / 'follow_policy.py', f'_policy:={POLICY}', '_x:=1.5',
-                        '_y:=0.5', f'cmd_vel:={COMMANDS}'], check=True, timeout=DEADLINE)
+        self.track.clear()
+        ended = subprocess.run(
+            [ROOT / 'scripts' / 'follow_policy.py', f'_policy:={POLICY}', '_x:=1.5', '_y:=0.5',
+             f'cmd_vel:={COMMANDS}'], capture_output=True, text=True, timeout=LIMIT, check=False)
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         wait_until(lambda: self.speed < AT_REST, 'the robot stopping')
-        self.assertLess(self.distance(LEARNED['goal']), 0.5)
+        # Where it stops depends on how late the last command is; where it has been does not.
+        nearest = min(math.dist((x, y), LEARNED['goal']) for _, x, y, _ in self.track)
+        self.assertLess(nearest, REACHED)
 
 
 if __name__ == '__main__':
