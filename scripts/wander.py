@@ -45,7 +45,7 @@ class Wanderer:
             self.turning = 0.0
             return min(self.speed, way), 0.0  # [m/s]: what is left is enough for a second
         if not self.turning:  # to the side with more room, until the way is free
-            left, right = np.mean(ranges[angles > 0]), np.mean(ranges[angles < 0])
+            left, right = np.sum(ranges[y > 0]), np.sum(ranges[y < 0])  # 0 where it sees nothing
             self.turning = self.turn if left > right else -self.turn
         return 0.0, self.turning
 

@@ -148,10 +148,12 @@ def test_a_disc_touches_a_point_after_its_free_way(x, y, way):
     assert wander.free_way(np.array([x]), np.array([y]), 0.5) == pytest.approx(way)
 
 
+@pytest.mark.parametrize('begin', [-math.pi / 2, 0.0])  # half a turn ahead; a whole one from 0
 @pytest.mark.parametrize('yaw', [0.0, 1.0, 2.0, -2.5])
-def test_a_wandering_disc_goes_far_and_touches_nothing(yaw):
+def test_a_wandering_disc_goes_far_and_touches_nothing(yaw, begin):
     wanderer = wander.Wanderer(0.5, 0.2, 0.2, 0.5, 0.6)
-    pose, path, angles = (-2.0, 0.0, yaw), [], np.linspace(-math.pi / 2, math.pi / 2, 181)
+    angles = np.linspace(begin, begin + (math.pi if begin else 2 * math.pi), 181)
+    pose, path = (-2.0, 0.0, yaw), []
     for _ in range(round(60 / STEP)):
         x, y, yaw = pose
         ranges = scan(x + 0.2 * math.cos(yaw), y + 0.2 * math.sin(yaw), yaw + angles)
@@ -159,6 +161,14 @@ def test_a_wandering_disc_goes_far_and_touches_nothing(yaw):
         path.append(pose)
     assert min(clearance(x, y) for x, y, _ in path) > 0.5
     assert np.sum(np.hypot(*np.diff(np.array(path)[:, :2], axis=0).T)) > 10
+
+
+@pytest.mark.parametrize(('blocked', 'turn'), [(1.0, -0.6), (2 * math.pi - 1.0, 0.6)])
+def test_wandering_turns_to_the_free_side_of_a_scan_that_begins_ahead(blocked, turn):
+    angles = np.linspace(0.0, 2 * math.pi, 361)
+    ranges = np.where(np.abs(angles - blocked) < 1.0, 0.6, 3.0)
+    ranges[[0, -1]] = 0.4
+    assert wander.Wanderer(0.5, 0.2, 0.2, 0.5, 0.6).command(ranges, angles) == (0.0, turn)
 
 
 def test_the_map_of_a_room_has_its_walls_and_its_floor():
