@@ -34,7 +34,7 @@ SPAWNED = 'Spawn status: SpawnModel: Successfully spawned entity'
 ONCE, EACH_TERMINAL, ANY_ROBOT = readme.code_blocks('In your own catkin workspace')
 STEPS = readme.steps()
 LINK, ENTER, MAKE = ONCE.splitlines(keepends=True)
-MAKE_ONE = f'{MAKE.strip()} -DCATKIN_WHITELIST_PACKAGES=xacro\n'  # after cmake of all packages
+FEW = '-DCATKIN_WHITELIST_PACKAGES="xacro;rosbots_simulator"\n'  # cmake has seen all packages
 FIND = 'rospack find rosbots_description; roslaunch --files rosbots_description spawn.launch'
 LEFT_OUT = 'rosbots_description is yours, in {}; ours is left out'
 # A clone with installed dependencies, which it does not download again.
@@ -63,6 +63,8 @@ class Newcomer:
         self.environment = {
             'HOME': str(self.home), 'PATH': '/usr/local/bin:/usr/bin:/bin', 'LANG': 'C.UTF-8',
             'ROS_MASTER_URI': os.environ['ROS_MASTER_URI'], 'ROS_HOSTNAME': 'localhost',
+            # catkin_make's own -l makes a build wait while other tests keep the machine busy
+            'ROS_PARALLEL_JOBS': f'-j{os.cpu_count()}', 'ROS_LANG_DISABLE': 'geneus:genlisp',
             # the workspace of ./rosbots if the path of the clone is not plain
             'XDG_CACHE_HOME': os.environ.get('XDG_CACHE_HOME', os.path.expanduser('~/.cache')),
         }
@@ -272,7 +274,7 @@ class OwnPackageTest(unittest.TestCase):
         self.assertIn('Multiple packages found with the same name', refused)
         link = LINK.replace('~/rosbots', str(clone))
         self.assertIn(LEFT_OUT.format(package), newcomer.type(link, BUILD))
-        newcomer.type(make, BUILD)
+        newcomer.type(f'{make.strip()} {FEW}', BUILD)
         shown = newcomer.type_sourced(FIND)
         self.assertEqual(shown.split(), [str(package), f'{package}/launch/spawn.launch'])
         # the clone still finds ours
@@ -294,7 +296,7 @@ class OwnPackageTest(unittest.TestCase):
         shown_text = self.reader.type(EACH_TERMINAL + link, BUILD)
         self.assertIn(LEFT_OUT.format(self.package), shown_text)
         shown = self.reader.type(
-            f'{EACH_TERMINAL}cd ~/over_theirs\n{MAKE_ONE}source devel/setup.bash\n'
+            f'{EACH_TERMINAL}cd ~/over_theirs\n{MAKE.strip()} {FEW}source devel/setup.bash\n'
             f'{FIND}; rospack find xacro', BUILD)
         self.assertEqual(shown.split()[-3:], [
             str(self.package), f'{self.package}/launch/spawn.launch', str(over / 'src' / 'xacro')])

@@ -50,7 +50,8 @@ link_packages() {
 }
 
 # A clean environment, so that a workspace the caller has sourced is not built into ours, and
-# Debian's tools before those of pyenv and the like. Messages for Lisp are left out. The catkin of
+# Debian's tools before those of pyenv and the like. Messages for Lisp are left out. A build does not
+# wait for a busy machine, as catkin_make has it by default (-l). The catkin of
 # Debian 13 finds Python by another module of CMake, and so by another variable.
 build_workspace() {
   local cache=$WORKSPACE/build/CMakeCache.txt
@@ -60,7 +61,7 @@ build_workspace() {
   link_packages
   local python=$WORKSPACE/venv/bin/python
   env -u CMAKE_PREFIX_PATH -u ROS_PACKAGE_PATH -u PYTHONPATH PATH="/usr/bin:/bin:$PATH" \
-    ROS_LANG_DISABLE=genlisp \
+    ROS_LANG_DISABLE=genlisp ROS_PARALLEL_JOBS="-j$(nproc)" \
     /usr/bin/catkin_make -C "$WORKSPACE" "-DPYTHON_EXECUTABLE=$python" "-DPython_EXECUTABLE=$python" \
     -DCATKIN_ENABLE_TESTING=OFF
 }
