@@ -264,6 +264,12 @@ class PhysicsEngine(Protocol):
         Each contact is listed once, one within the model with its first link as `one`.
         """
 
+    def extent(self, body: EngineBody) -> float:
+        """Return the longest side of a model's bounding box, along the world's axes [m].
+
+        It is that of all collision shapes; infinite with a plane, 0 without shapes.
+        """
+
     def touching(self, body: EngineBody) -> Collection[EngineBody]:
         """Return the models that touched a model in the last step; not itself."""
 

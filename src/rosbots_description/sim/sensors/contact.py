@@ -3,18 +3,28 @@
 As in Gazebo, a reading has a state for each pair of collisions and each physics step since the
 previous reading. Forces and torques are in the axes of the first collision's link, positions and
 normals in world axes.
+
+Which collision of a pair comes first follows from ODE's hash space, in which Gazebo has a space for
+each model (`dxHashSpace::collide`). Its level is that of the cells of 2^n metres that hold its
+bounding box. A smaller model searches the cells of larger ones, so it comes first. What exceeds 2^8
+m, as a plane does, comes last. Models of one level come in the order of ODE's list: static ones in
+the order in which they were spawned, then moving ones from the newest on.
 """
 
 import logging
+import math
 from collections.abc import Mapping
+from functools import cache
 from typing import NamedTuple
 
 from ..core import Vector, add, conjugate, cross, rotate, subtract
 from ..plugin_registry import register_in_sensor, register_sensor
-from ..runtime import NEVER, CollisionFrame
+from ..runtime import NEVER, CollisionFrame, Model
 from .base import Sensor, SensorPlugin
 
 logger = logging.getLogger(__name__)
+
+_SMALLEST, _LARGEST = -2, 8  # levels of Gazebo's hash space
 
 
 class ContactPoint(NamedTuple):
@@ -82,14 +92,24 @@ class ContactSensor(Sensor):
     def measure(self) -> tuple[ContactPair, ...]:
         """Return the contacts of the last step."""
         pairs: dict[tuple[CollisionFrame, CollisionFrame], list[ContactPoint]] = {}
-        for contact in self.world.engine.contacts(self.model.body, self.link.name):
+        engine = self.world.engine
+        models = {model.body: model for model in self.world.models.values()}
+        places = {model: place for place, model in enumerate(models.values())}
+
+        @cache
+        def rank(model: Model) -> tuple[float, bool, int]:
+            place = places[model]
+            return _level(engine.extent(model.body)), not model.static, \
+                place if model.static else -place
+
+        for contact in engine.contacts(self.model.body, self.link.name):
             if contact.one.collision not in self._names:
                 continue
-            own, other = (self._collision(*name) for name in (contact.one, contact.other))
+            first, second = (models[body].links[link].collisions[collision]
+                             for body, link, collision in (contact.one, contact.other))
             normal, force = contact.normal, contact.force
-            first, second = own, other
-            if self._came_later(other):  # in Gazebo the newer body comes first
-                first, second = other, own
+            if rank(second.link.model) < rank(first.link.model):
+                first, second = second, first
                 normal, force = (subtract((0.0, 0.0, 0.0), v) for v in (normal, force))
             pairs.setdefault((first, second), []).append(
                 _point(first, contact.position, normal, force, contact.depth))
@@ -97,13 +117,12 @@ class ContactSensor(Sensor):
         return tuple(ContactPair(first.scoped_name, second.scoped_name, now_ns, tuple(points))
                      for (first, second), points in pairs.items())
 
-    def _collision(self, body: object, link: str, collision: str) -> CollisionFrame:
-        model = next(one for one in self.world.models.values() if one.body is body)
-        return model.links[link].collisions[collision]
 
-    def _came_later(self, other: CollisionFrame) -> bool:
-        models = list(self.world.models)
-        return models.index(other.link.model.name) > models.index(self.model.name)
+def _level(extent: float) -> float:
+    """Return the level of a model of that size [m] in Gazebo's hash space."""
+    if extent >= 2.0 ** _LARGEST:
+        return math.inf
+    return max(_SMALLEST, math.frexp(extent)[1])
 
 
 def _point(

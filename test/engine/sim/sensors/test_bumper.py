@@ -104,7 +104,7 @@ def test_force_of_a_wall_is_in_the_axes_of_the_link(world, yaw, push):
         assert point.normal == pytest.approx((-1.0, 0.0, 0.0), abs=1e-3)
 
 
-def test_later_body_is_the_first_of_a_pair(world):
+def test_lesser_body_is_the_first_of_a_pair(world):
     _, found = spawn(world)
     world.spawn(BOX, z=0.3)
     world.run(1000)
@@ -114,6 +114,77 @@ def test_later_body_is_the_first_of_a_pair(world):
     on_top = [touch for touch in touches if touch.first != OWN]
     assert total(on_top)[2] / len(on_top) == pytest.approx(2 * 9.8, rel=CLOSE)
     assert on_top[0].points[0].normal == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
+
+
+def cube(name, size, z, *, static=False):
+    """Return the text of a cube of that size [m], with a contact sensor, at a height [m]."""
+    return f"""<model name="{name}"><static>{static}</static><pose>0 0 {z} 0 0 0</pose>
+      <link name="link"><inertial><mass>10</mass></inertial>
+        <collision name="c"><geometry><box><size>{size} {size} {size}</size></box></geometry>
+        </collision>
+        <sensor name="{name}" type="contact"><update_rate>2</update_rate>
+          <contact><collision>c</collision></contact>
+          <plugin name="bumper" filename="libgazebo_ros_bumper.so"/></sensor></link></model>"""
+
+
+@pytest.mark.parametrize(('below', 'above', 'first'), [
+    (('lower', 0.9, 0.45), ('upper', 0.6, 1.2), 'upper'),  # of one level: the newer one
+    (('lower', 0.9, 0.45), ('upper', 1.1, 1.45), 'lower'),
+    (('lower', 1.1, 0.55), ('upper', 0.9, 1.55), 'upper'),
+    (('lower', 0.2, 0.1), ('upper', 0.1, 0.25), 'upper'),  # 0.25 m is the least level
+])
+@pytest.mark.parametrize('reverse', [False, True])
+def test_order_of_a_pair_follows_from_sizes_and_age(tmp_path, below, above, first, reverse):
+    cubes = [cube(*below), cube(*above)]
+    if reverse:
+        cubes.reverse()
+        if first == 'upper' and below[1] // 1 == above[1] // 1:
+            first = 'lower'
+    file = tmp_path / 'two.world'
+    file.write_text('<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
+                    f'</include>{"".join(cubes)}</world></sdf>')
+    with closing(World.from_file(file)) as world:
+        found = []
+        world.models['upper'].plugin('bumper').outputs['contacts'].connect(found.append)
+        world.run(1000)
+    second = {'upper': 'lower', 'lower': 'upper'}[first]
+    touches = found[-1]
+    assert {(touch.first, touch.second) for touch in touches} == {
+        (f'{first}::link::c', f'{second}::link::c')}
+    sign = 1 if first == 'upper' else -1
+    assert total([touches[-1]])[2] == pytest.approx(sign * 98.0, abs=0.1)
+
+
+def test_static_body_is_the_first_of_a_pair_of_equal_size(tmp_path):
+    file = tmp_path / 'on_static.world'
+    file.write_text('<sdf version="1.6"><world name="w">'
+                    f'{cube("upper", 0.8, 1.3)}{cube("lower", 0.9, 0.45, static=True)}'
+                    '</world></sdf>')
+    with closing(World.from_file(file)) as world:
+        found = []
+        world.models['upper'].plugin('bumper').outputs['contacts'].connect(found.append)
+        world.run(1000)
+    assert {(touch.first, touch.second) for touch in found[-1]} == {
+        ('lower::link::c', 'upper::link::c')}
+    assert total([found[-1][-1]])[2] == pytest.approx(-98.0, abs=0.1)
+
+
+def test_ground_is_the_second_of_a_pair_though_it_is_newer(tmp_path):
+    """The promise of upstream's test_bumper: the box of a world bears its weight, upwards."""
+    file = tmp_path / 'box_first.world'
+    file.write_text('<sdf version="1.6"><world name="w"><gravity>0 0 -9.81</gravity>'
+                    f'{cube("box", 1.0, 0.5)}<include><uri>model://ground_plane</uri></include>'
+                    '</world></sdf>')
+    with closing(World.from_file(file)) as world:
+        world.run(100)  # Bullet's contacts bear no load before they are 10 µm deep
+        found = []
+        world.models['box'].plugin('bumper').outputs['contacts'].connect(found.append)
+        world.run(11_000)
+    messages = [contacts_message(reading) for reading in found]
+    assert {message.states[0].collision1_name for message in messages} == {'box::link::c'}
+    forces = [message.states[0].total_wrench.force.z for message in messages]
+    assert len(forces) > 20
+    assert np.mean(forces) == pytest.approx(98.1, abs=0.01)
 
 
 def test_other_collision_of_a_reduced_link_is_distinguished(world):

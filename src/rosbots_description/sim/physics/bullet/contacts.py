@@ -76,6 +76,17 @@ class ContactQueries:
                 self._name(one, on_a), self._name(other, on_b), on_a, normal, -distance, force))
         return found
 
+    def extent(self, body: Body) -> float:
+        """Return the longest side of a model's bounding box [m]; see `PhysicsEngine.extent`."""
+        if any(isinstance(one.geometry, Plane) for shapes in body.shapes.values()
+               for one in shapes):
+            return math.inf
+        corners = np.array([pybullet.getAABB(*place, self._client)
+                            for place, shapes in body.shapes.items() if shapes])
+        if not len(corners):
+            return 0.0
+        return float((corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)).max())
+
     def touching(self, body: Body) -> set[Body]:
         """Return the bodies that touched a body in the last step; not itself."""
         return {self._owners[Place(point[2], point[4])][0]

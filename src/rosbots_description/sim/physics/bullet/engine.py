@@ -264,6 +264,10 @@ class Engine(BodyStates):
         """Return all contacts, those of a model, or of one link, in the last step."""
         return self._queries.contacts(body, link)
 
+    def extent(self, body: Body) -> float:
+        """Return the longest side of a model's bounding box, along the world's axes [m]."""
+        return self._queries.extent(body)
+
     def touching(self, body: Body) -> set[Body]:
         """Return the models that touched a model in the last step; not itself."""
         return self._queries.touching(body)
