@@ -2,6 +2,7 @@
 """Topics of cameras: names, types, frames, stamps, latching, and settings by clients."""
 
 import io
+import re
 import sys
 
 import numpy as np
@@ -54,6 +55,26 @@ class CameraTest(SimulatorTest):
         # On a busy machine, late images are left out.
         self.assertLessEqual(min(spacing(images)), 34)
         self.assertAlmostEqual(infos[-1].P[3], -13.347686, 5)
+
+    def test_readers_that_keep_up_get_each_picture(self):
+        """rospy numbers the messages that are published; the engine's tests count the pictures."""
+        text = re.sub('<width>.*?</height>', '<width>800</width><height>800</height>',
+                      (ROBOTS / 'camera_320.urdf').read_text(encoding='utf-8'), flags=re.DOTALL)
+        self.assertTrue(self.spawn('bot', text, pose(z=0.0)).success)
+        client = Client('/camera1', timeout=DEADLINE)
+        client.update_configuration({'imager_rate': 5.0})  # any machine keeps up with it
+        client.close()
+        images = self.collect('/camera1/image_raw', Image)
+        compressed = self.read('/camera1/image_raw/compressed', CompressedImage, 15)
+        wait_until(lambda: len(images) >= 15, 'pictures')
+        self.assertEqual((images[0].width, images[0].height), (800, 800))
+        for messages in (images[:], compressed[:]):
+            numbers = [message.header.seq for message in messages]
+            self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))))
+        stamps = [[message.header.stamp for message in found] for found in (images, compressed)]
+        both = max(found[0] for found in stamps), min(found[-1] for found in stamps)
+        self.assertEqual(*([stamp for stamp in found if both[0] <= stamp <= both[1]]
+                           for found in stamps))
 
     def test_compressed_image_is_the_image(self):
         self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})

@@ -29,6 +29,7 @@ from sensor_msgs.srv import SetCameraInfo, SetCameraInfoRequest, SetCameraInfoRe
 from std_msgs.msg import Empty, Header
 
 from ...sim.sensors import (
+    MAX_BURST,
     CameraInfo,
     CameraPlugin,
     Cloud,
@@ -46,7 +47,7 @@ from .adapter import Adapter
 from .declarations import Offers, Publishes, Subscribes
 from .registry import connects
 
-QUEUE = 2
+QUEUE = MAX_BURST + 1  # a burst, and the picture before; Gazebo's is 2
 _FIELDS = [PointField(name, offset, PointField.FLOAT32, 1)
            for name, offset in (('x', 0), ('y', 4), ('z', 8), ('rgb', 16))]
 

@@ -4,12 +4,13 @@ from .camera import EYE, OVERVIEW, TARGET, look_at
 from .gl import BYTES, Lens, Wants
 from .gltf import Look, visual_gltf
 from .image_capture import ImageCapture, Picture
-from .render_process import NoRendererError, RenderError
+from .render_process import MAX_PENDING, NoRendererError, RenderError
 from .sunlit_meshes import SunlitMeshes
 
 __all__ = [
     'BYTES',
     'EYE',
+    'MAX_PENDING',
     'OVERVIEW',
     'TARGET',
     'ImageCapture',

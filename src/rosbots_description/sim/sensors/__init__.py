@@ -2,6 +2,7 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
+from .camera import MAX_BURST
 from .camera_outputs import CameraInfo, Cloud, CompressedImage, Image, StampedInfo
 from .camera_plugins import (
     CameraPlugin,
@@ -22,6 +23,7 @@ from .ray import Scan
 from .velodyne import RingCloud, VelodynePlugin
 
 __all__ = [
+    'MAX_BURST',
     'BlockLaserPlugin',
     'BumperPlugin',
     'CameraInfo',

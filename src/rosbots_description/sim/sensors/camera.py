@@ -7,7 +7,15 @@ from typing import NamedTuple
 from ..core import PluginError, Pose, compose, from_rpy, parse_numbers
 from ..description import Element
 from ..plugin_registry import register_sensor
-from ..rendering import ImageCapture, Lens, NoRendererError, Picture, RenderError, Wants
+from ..rendering import (
+    MAX_PENDING,
+    ImageCapture,
+    Lens,
+    NoRendererError,
+    Picture,
+    RenderError,
+    Wants,
+)
 from ..runtime import NEVER
 from .base import DueTimes, Sensor
 from .noise import read_noise
@@ -15,6 +23,7 @@ from .numbers import child_at, count, number
 
 logger = logging.getLogger(__name__)
 
+MAX_BURST = MAX_PENDING  # pictures of one camera that are sent in one step
 MAX_IMAGE_SIZE = 8192  # [pixels] along an edge
 POLL = 4  # steps between two polls for a pending picture
 WINDOW = 5_000_000_000  # [ns] of simulated time over which the rate of pictures is judged

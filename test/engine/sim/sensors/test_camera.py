@@ -1,5 +1,6 @@
 """Images of cameras agree with Gazebo's, are rendered on time, and survive render failures."""
 
+import contextlib
 import io
 import logging
 import math
@@ -376,6 +377,27 @@ def test_paced_simulation_does_not_wait_for_images(scene):
     stamp, now = taken[0]
     assert stamp == 34_000_000  # when it was taken
     assert now > stamp
+
+
+def test_pictures_left_out_are_reported_once_and_all_others_are_sent(scene, caplog, monkeypatch):
+    _, camera = spawn_robot(scene, 'camera_320')
+    camera.read()
+    taken, requested = stamps(camera), []
+    request = camera._capture.request
+    monkeypatch.setattr(camera._capture, 'request', lambda *arguments: (
+        requested.append(scene.clock.now_ns), request(*arguments)))
+    scene.is_paced = True
+    for _ in range(2):
+        drawing = process_of(scene)
+        os.kill(drawing, signal.SIGSTOP)
+        scene.run(seconds=12.0)  # two windows, each of at least 5 s
+        with contextlib.suppress(ProcessLookupError):  # it may have been replaced
+            os.kill(drawing, signal.SIGCONT)
+        wait_until(lambda: scene.run(steps=1) and [stamp for stamp, _ in taken] == requested,
+                   'all pictures that were requested')
+    (report,) = [r.message for r in caplog.records if 'pictures come at' in r.message]
+    # The three that may be pending, in 5 s.
+    assert 'pictures come at 0.6 of 30 Hz, as drawing them takes longer' in report
 
 
 def test_dead_render_process_is_restarted(scene, caplog):

@@ -7,7 +7,9 @@ from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
 from support.patience import PATIENCE, wait_until
 
+from rosbots_description.ros_api.adapters import cameras
 from rosbots_description.ros_api.transport.sending import BatchedConnection, BatchedPublishing
+from rosbots_description.sim.sensors import MAX_BURST
 
 SIZE = 1000  # of a message [bytes]; it repeats one byte
 
@@ -74,6 +76,36 @@ def test_stopped_subscriber_blocks_nobody_and_loses_only_whole_messages(wire, qu
     assert numbers == sorted(set(numbers))
     assert (len(numbers) == 200) == (queue == 0)
     _wait_until_drained(outlet, theirs, 200)
+
+
+@pytest.fixture
+def picture_wire():
+    """Yield the outlets of a process and both ends of a connection, as rospy makes it."""
+    listener = socket.create_server(('localhost', 0))
+    theirs = socket.create_connection(listener.getsockname(), PATIENCE)
+    ours, _ = listener.accept()
+    listener.close()
+    transport = TCPROSTransport(TCPROSTransportProtocol('t', None), 't')
+    transport.set_socket(ours, 'reader')
+    yield BatchedPublishing(), transport, theirs
+    transport.close()
+    theirs.close()
+
+
+@pytest.mark.parametrize('size', [800 * 800 * 3, 1920 * 1080 * 3, 60_000])  # the last one a JPEG
+def test_a_reader_that_keeps_up_loses_no_picture(picture_wire, size):
+    """It has read all before the next burst, of as many pictures as may be drawn at a time."""
+    outlets, transport, theirs = picture_wire
+    outlet = BatchedConnection(outlets, transport, cameras.QUEUE)
+    numbers = iter(range(256))
+    with theirs.makefile('rb') as stream:
+        for burst in [1, 2, MAX_BURST, 1, MAX_BURST] * 4:
+            sent = [bytes([next(numbers)]) * size for _ in range(1 + burst)]
+            outlet.write_data(sent[0])  # it is being sent while the others are drawn
+            with outlets.batched():
+                for picture in sent[1:]:
+                    outlet.write_data(picture)
+            assert [stream.read(size) for _ in sent] == sent
 
 
 def _wait_until_drained(outlet, theirs, number):
