@@ -57,7 +57,7 @@ class CameraTest(SimulatorTest):
         self.assertAlmostEqual(infos[-1].P[3], -13.347686, 5)
 
     def test_readers_that_keep_up_get_each_picture(self):
-        """rospy numbers the messages that are published; the engine's tests count the pictures."""
+        """Rospy numbers the messages that are published; the engine's tests count the pictures."""
         text = re.sub('<width>.*?</height>', '<width>800</width><height>800</height>',
                       (ROBOTS / 'camera_320.urdf').read_text(encoding='utf-8'), flags=re.DOTALL)
         self.assertTrue(self.spawn('bot', text, pose(z=0.0)).success)
