@@ -470,6 +470,75 @@ def test_four_wheels_turn_a_robot_as_in_gazebo(kp, turning):
         assert turned(model, world, 4000) / 4.0 == pytest.approx(0.684 * turning, rel=0.05)
 
 
+# A skid steer that is longer than broad, as public ones are: wheels at x = +-0.1 m, y = +-0.0875 m.
+HALF_LENGTH, HALF_TRACK, WHEEL_WIDTH, SEPARATION = 0.1, 0.0875, 0.045, 0.172  # [m]
+
+
+def long_skid_steer(mu):
+    """Return a robot of 4.4 kg on four wheels that are further apart along x than along y."""
+    body = box('base', (0.13, 0.12, 0.1), 2.37)
+    for side, y in (('left', HALF_TRACK), ('right', -HALF_TRACK)):
+        for end, x in (('Front', HALF_LENGTH), ('Rear', -HALF_LENGTH)):
+            name = f'{side}{end}'
+            body += wheel(name, f'{name}Joint', 0.045, WHEEL_WIDTH, 0.5, f'{x} {y} -0.1')
+            body += surface(name, mu)
+    joints = ''.join(f'<{name}Joint>{name}Joint</{name}Joint>'
+                     for name in ('leftFront', 'rightFront', 'leftRear', 'rightRear'))
+    return urdf_spec(
+        f'{body}<gazebo><plugin name="drive" filename="libgazebo_ros_skid_steer_drive.so">{joints}'
+        f'<wheelSeparation>{SEPARATION}</wheelSeparation><wheelDiameter>0.09</wheelDiameter>'
+        '<torque>50</torque><updateRate>100</updateRate></plugin></gazebo>')
+
+
+def turning_by_a_pyramid(heading):
+    """Return the quasi-static rate of `long_skid_steer` on the spot at a heading, as commanded: 1.
+
+    Each of three points of a wheel bears the same load and slides at s = (-w y - u, w x) in the
+    robot's axes, u being the rim speed. Friction is mu N, against the sign of each component of s
+    along the world's axes. The sum of its moments decreases with w; the rate is where it vanishes.
+    """
+    c, s = math.cos(heading), math.sin(heading)
+    points = [(x, y + across) for x in (HALF_LENGTH, -HALF_LENGTH)
+              for y in (HALF_TRACK, -HALF_TRACK)
+              for across in (-WHEEL_WIDTH / 2.0, 0.0, WHEEL_WIDTH / 2.0)]
+    low, high = 0.0, 1.0
+    while high - low > 1e-6:
+        rate = (low + high) / 2.0
+        moment = 0.0
+        for x, y in points:
+            sliding = -rate * y + math.copysign(SEPARATION / 2.0, y), rate * x
+            along_x = math.copysign(1.0, c * sliding[0] - s * sliding[1])
+            along_y = math.copysign(1.0, s * sliding[0] + c * sliding[1])
+            moment += y * (c * along_x + s * along_y) - x * (c * along_y - s * along_x)
+        low, high = (rate, high) if moment > 0.0 else (low, rate)
+    return low
+
+
+@pytest.mark.parametrize('degrees', [0, 10, 20, 30, 45, 60, 75, 105, -60])
+@pytest.mark.parametrize('turning', [1.0, -0.5])
+def test_long_skid_steer_turns_as_the_friction_pyramid_lets_it(degrees, turning):
+    with empty_world() as world:
+        model = placed(world, long_skid_steer(0.3), yaw=math.radians(degrees))
+        command(model, 0.0, turning)
+        world.run(300)
+        heading = yaw_of(model.pose.orientation)
+        expected = heading
+        for _ in range(100):
+            share = turning_by_a_pyramid(math.copysign(expected, expected * turning))
+            expected += turning * share / 100.0
+        assert turned(model, world, 1000) == pytest.approx(expected - heading, rel=0.05, abs=0.01)
+
+
+@pytest.mark.parametrize('mu', [3.0, 10.0])
+def test_long_skid_steer_with_much_grip_rattles_and_turns_no_faster(mu):
+    """Above mu of about 1 the wheels leave the ground in turn; a friction cone would give 0.42."""
+    with empty_world() as world:
+        model = placed(world, long_skid_steer(mu))
+        command(model, 0.0, 1.0)
+        world.run(300)
+        assert 0.25 < turned(model, world, 4000) / 4.0 < 0.444  # the pyramid's most, at 45 degrees
+
+
 def test_four_wheels_drive_an_arc_as_in_gazebo():
     with empty_world() as world:
         model = world.spawn(skid_steer(1e6), 'robot', Pose((0.0, 0.0, 0.131)))
