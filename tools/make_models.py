@@ -132,27 +132,31 @@ def _practice_barrier(colour: Rgb, name: str = '') -> Model:
 
 
 def _person(walking: bool) -> Model:
-    """Return a person of 1.8 m; walking along x or standing."""
-    swing = 0.3 if walking else 0.0
+    """Return a person in the box whose inertia the documented one has, facing -y.
+
+    It measures 0.5 x 0.35 x 1.9 m standing, 0.1 m ahead of the origin, and 0.35 x 0.75 x 1.9 m
+    walking.
+    """
+    swing, arm, leg, ahead = (0.216, 0.125, 0.08, 0.0) if walking else (0.0, 0.2, 0.1, 0.1)
     limbs = []
-    for side in (-1.0, 1.0):
+    for side in (-1.0, 1.0):  # as if it faced x
         lean = (0.0, side * swing, 0.0)
-        foot = -side * 0.86 * math.sin(swing) / 2.0
+        foot = -side * 0.91 * math.sin(swing) / 2.0
         limbs += [
-            cylinder(0.075, 0.86, (foot, side * 0.1, 0.45), JEANS, lean),
-            box((0.26, 0.1, 0.08), (2.0 * foot + 0.05, side * 0.1, 0.04), DARK),
-            cylinder(0.045, 0.6, (-foot / 2.0, side * 0.24, 1.15), SHIRT,
+            cylinder(0.075, 0.91, (foot, side * leg, 0.475), JEANS, lean),
+            box((0.26, 0.1, 0.08), (2.0 * foot + 0.05, side * leg, 0.04), DARK),
+            cylinder(0.045, 0.63, (-foot / 2.0, side * arm, 1.22), SHIRT,
                      (0.0, -side * swing * 0.7, 0.0)),
-            ball(0.05, (-foot, side * 0.24, 0.84), SKIN)]
-    body = [box((0.2, 0.4, 0.6), (0.0, 0.0, 1.15), SHIRT), cylinder(0.055, 0.1, (0, 0, 1.5), SKIN),
-            ball(0.12, (0.0, 0.0, 1.66), SKIN), ball(0.121, (-0.01, 0.0, 1.675), DARK_WOOD, False)]
-    parts = [*limbs, *body]
-    if not walking:  # it looks along -y, 0.1 m ahead of the origin
-        parts = [replace(part, at=(part.at[1], -part.at[0] - 0.1, part.at[2]),
-                         turn=(0.0, 0.0, -math.pi / 2.0)) for part in parts]
-    base = box((0.35, 0.75, 0.02), (0.0, 0.0, 0.01), None) if walking else \
-        box((0.5, 0.35, 0.02), (0.0, -0.1, 0.01), None)
-    return Model([base, *parts], mass=80.0, size=(0.4, 0.4, 1.8), centre=0.95)
+            ball(0.05, (-foot, side * arm, 0.89), SKIN)]
+    body = [box((0.2, 1.6 * arm, 0.64), (0.0, 0.0, 1.22), SHIRT),
+            cylinder(0.055, 0.1, (0, 0, 1.58), SKIN), ball(0.125, (0.0, 0.0, 1.775), SKIN),
+            ball(0.125, (-0.01, 0.0, 1.785), DARK_WOOD, False)]
+    parts = [replace(part, at=(part.at[1], -part.at[0] - ahead, part.at[2]),
+                     turn=(0.0, 0.0, -math.pi / 2.0) if not any(part.turn) else
+                     (part.turn[1], 0.0, 0.0)) for part in [*limbs, *body]]
+    size = (0.35, 0.75, 1.9) if walking else (0.5, 0.35, 1.9)
+    base = box((*size[:2], 0.02), (0.0, -ahead, 0.01), None)
+    return Model([base, *parts], mass=80.0, size=size, centre=0.95)
 
 
 def _shelves(planks: Sequence[tuple[Point, Point]], link: str = 'link') -> Model:
