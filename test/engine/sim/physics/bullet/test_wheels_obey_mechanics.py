@@ -531,7 +531,7 @@ def test_long_skid_steer_turns_as_the_friction_pyramid_lets_it(degrees, turning)
 
 @pytest.mark.parametrize('mu', [3.0, 10.0])
 def test_long_skid_steer_with_much_grip_rattles_and_turns_no_faster(mu):
-    """Above mu of about 1 the wheels leave the ground in turn; a friction cone would give 0.42."""
+    """Above a mu of 1 the wheels leave the ground by turns; a friction cone would give 0.42."""
     with empty_world() as world:
         model = placed(world, long_skid_steer(mu))
         command(model, 0.0, 1.0)
