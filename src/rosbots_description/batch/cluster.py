@@ -113,7 +113,7 @@ def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
             yield ray
         return
     with own_folder() as place, private_environment(), _session(
-            ray, num_cpus=workers, include_dashboard=False, _temp_dir=place,
+            ray, num_cpus=workers, include_dashboard=False, _temp_dir=f'{place}/r',
             object_store_memory=STORE_BYTES, address='local'):
         yield ray
 

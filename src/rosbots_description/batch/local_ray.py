@@ -14,7 +14,7 @@ from typing import IO, Any
 from ..sim import SimError
 
 _PREFIX, _LOCK = 'rb', 'rosbots.lock'  # of the folder of a Ray that is started here
-_MAX_PLACE = 30  # characters of a folder in which Ray's sockets have names that Linux takes
+_MAX_PLACE = 28  # characters of a folder in which Ray's sockets have names that Linux takes
 # For Ray on this machine alone: only the loopback interface (the switch is named after the systems
 # where it is off by default), only processes that have the token, and no statistics sent.
 _PRIVATE = {'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0', 'RAY_AUTH_MODE': 'token',
@@ -58,6 +58,9 @@ def _read_environment() -> None:
 @contextlib.contextmanager
 def own_folder() -> Iterator[str]:
     """Yield a folder for Ray's files; remove it, and those of programs that were killed.
+
+    No other user can reach what is in it. Ray lets everybody write in the folder that it is given,
+    so that is to be one within it.
 
     Raises:
         ClusterError: it cannot be made, as on a full disk.

@@ -1,6 +1,5 @@
 """Batches on Ray: the same rows whatever the workers, and nothing lost with those that die."""
 
-import contextlib
 import os
 import signal
 import subprocess
@@ -13,12 +12,13 @@ import pytest
 import yaml
 from pyarrow import parquet
 from support.batches import pushed_ball
+from support.listening import listening
 
 from rosbots_description.batch import ClusterError, cluster, local_ray, run
 from rosbots_description.cli.launched import descendants
 
 pytest.importorskip('ray')
-LISTEN, LOOPBACK = '0A', '0100007F'  # in /proc/net/tcp; ::ffff:127.0.0.1 ends so, too
+LOOPBACK = '0100007F'  # in /proc/net/tcp; ::ffff:127.0.0.1 ends so, too
 PATIENCE = 300.0  # [s, wall] for what takes a few; only ends a hopeless wait
 # Ends processes at a defined moment: in the middle of a run, at the first attempt or at each.
 MORTAL = """
@@ -62,7 +62,7 @@ def test_lost_workers_lose_no_run_but_those_that_always_end_them(tmp_path, capfd
 
     def look(done, _total, _repeated):
         if done == 1:
-            addresses.update(listening(descendants(ours)))
+            addresses.update(address for address, _ in listening(descendants(ours)))
 
     made = run(scenario(tmp_path, once=[3, 7], always=[12]), workers=2, progress=look)
     rows = made.table.to_pylist()
@@ -90,20 +90,6 @@ def test_messages_of_ray_stay_off_the_console_from_connecting_to_the_end(monkeyp
     assert capfd.readouterr() == ('', '')
     report()
     assert 'a worker died' in capfd.readouterr().out
-
-
-def listening(processes):
-    """Return the addresses at which processes listen, in hexadecimal."""
-    addresses, sockets = {}, set()
-    for version in ('tcp', 'tcp6'):
-        for line in Path(f'/proc/net/{version}').read_text().splitlines()[1:]:
-            _, local, _, state, *_, inode = line.split()[:10]
-            if state == LISTEN:
-                addresses[f'socket:[{inode}]'] = local.partition(':')[0]
-    for process in processes:
-        with contextlib.suppress(FileNotFoundError):  # it ends meanwhile
-            sockets |= {os.readlink(file) for file in Path(f'/proc/{process}/fd').iterdir()}
-    return {address for inode, address in addresses.items() if inode in sockets}
 
 
 def test_a_lost_machine_of_several_loses_no_run(tmp_path, monkeypatch):
