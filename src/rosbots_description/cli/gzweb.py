@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 
 from .gzserver import split_remappings
+from .heap import use_one_heap
 from .web_browser import is_readable_by_others, opened, private_page
 
 logger = logging.getLogger(__name__)
@@ -46,6 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if importlib.util.find_spec('viser') is None:
         return _fail('no window: the Python package viser is not installed; '
                      './rosbots setup web or pip install viser==1.1.1 does that')
+    use_one_heap()
     from ..ros_api.transport import (
         AddressError,
         Registrar,

@@ -23,7 +23,6 @@ from .inspector import Inspector
 from .interpolation import Interpolation
 from .joints import JointPanel, Joints
 from .joystick import Joystick
-from .memory import return_memory
 from .models import Models
 from .outline import Outline
 from .panel import Panel
@@ -216,7 +215,6 @@ class Page:
                 self._motions.close()
                 for panel in self._panels:
                     panel.close()
-                return_memory()
 
     def _change(self, change: SceneChange) -> None:
         with self._lock:
