@@ -7,19 +7,26 @@ Subscribes:
 from collections.abc import Collection
 
 import rospy
-import tf2_ros
-import yaml
+from geometry_msgs.msg import Transform
+from tf2_msgs.msg import TFMessage
 
-from ...sim.core import IDENTITY, Pose
+from ...sim.core import IDENTITY, Pose, compose
 from ..messages import read_transform
+
+TOPICS = '/tf', '/tf_static'
 
 
 class FrameFinder:
-    """Finds the link that a frame is fixed to; the simulator merges links on fixed joints."""
+    """Finds the link that a frame is fixed to; the simulator merges links on fixed joints.
+
+    It keeps the newest transform of each frame, which is enough for frames that are fixed. tf2's
+    buffer keeps those of the last ten seconds, and is never freed in Python (tf2_py has no
+    destructor for it).
+    """
 
     def __init__(self) -> None:
-        self._buffer = tf2_ros.Buffer(debug=False)
-        self._listener: tf2_ros.TransformListener | None = None
+        self._parents: dict[str, tuple[str, Transform]] = {}  # and where a frame is in it
+        self._subscribers: list[rospy.Subscriber] = []
         self._found: dict[str, tuple[str, Pose]] = {}
         self._missing: set[str] = set()
 
@@ -34,7 +41,7 @@ class FrameFinder:
             found = self._look(frame, links)
             if found is None:
                 self._missing.add(frame)
-                self._listener = self._listener or tf2_ros.TransformListener(self._buffer)
+                self._listen()
                 return None
             self._found[frame] = found
         self._missing.discard(frame)
@@ -47,32 +54,35 @@ class FrameFinder:
         self._rest()
         self._missing.clear()
         self._found.clear()
-        self._buffer = tf2_ros.Buffer(debug=False)
+        self._parents = {}  # a message that is still being read goes to the old ones
+
+    def _listen(self) -> None:
+        if not self._subscribers:
+            self._subscribers = [rospy.Subscriber(topic, TFMessage, self._hear, self._parents)
+                                 for topic in TOPICS]
 
     def _rest(self) -> None:
-        if self._listener is not None:
-            self._listener.unregister()
-            self._listener = None
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+        self._subscribers = []
+
+    @staticmethod
+    def _hear(message: TFMessage, parents: dict[str, tuple[str, Transform]]) -> None:
+        for one in message.transforms:
+            parents[one.child_frame_id.lstrip('/')] = (
+                one.header.frame_id.lstrip('/'), one.transform)
 
     def _look(self, frame: str, links: Collection[str]) -> tuple[str, Pose] | None:
-        # Up to 15 times a second, and of all robots: the parser in C takes a sixth of the time.
-        parents = yaml.load(self._buffer.all_frames_as_yaml(), yaml.CSafeLoader) or {}
-        above, seen = frame.lstrip('/'), set[str]()
+        above, pose, seen = frame.lstrip('/'), IDENTITY, set[str]()
         while above not in seen:
             link = next((name for name in (above, above.rpartition('/')[2]) if name in links), None)
             if link is not None:
-                pose = self._pose(above, frame.lstrip('/'))
-                return None if pose is None else (link, pose)
+                return link, pose
             seen.add(above)
-            above = parents.get(above, {}).get('parent', above)
+            if above in self._parents:
+                above, transform = self._parents[above]
+                try:
+                    pose = compose(read_transform(transform), pose)
+                except ValueError:  # it is no pose
+                    return None
         return None
-
-    def _pose(self, above: str, frame: str) -> Pose | None:
-        """Return the pose of a frame in one above it; None if TF does not connect them now."""
-        if above == frame:
-            return IDENTITY
-        try:
-            newest = self._buffer.lookup_transform(above, frame, rospy.Time(0))
-            return read_transform(newest.transform)
-        except (tf2_ros.TransformException, ValueError):
-            return None
