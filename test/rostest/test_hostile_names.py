@@ -264,6 +264,7 @@ class HostileNamesTest(unittest.TestCase):
 
     def wait_offered(self, label, names):
         """Wait until a list has all names, and that they are shown when it is open."""
+        names = [plain(name) for name in names]
         self.wait(lambda: set(names) <= set(self.options(label)), f'the list of {label}')
         fields = []
         self.wait(lambda: fields.extend(
@@ -311,8 +312,8 @@ class HostileNamesTest(unittest.TestCase):
     def test_joints_that_are_moved(self):
         self.open_tab('Drive')
         for name, texts in self.arms.items():
-            self.wait(lambda name=name: name in self.options('Of'), name)
-            self.hand.choose('Of', name)
+            self.wait(lambda name=name: plain(name) in self.options('Of'), name)
+            self.hand.choose('Of', plain(name))
             self.wait_shown(*(f'{text} [rad]' for text in texts))
 
     def test_topics_that_are_commanded(self):

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import viser
 
 from .camera_keys import CameraKeys
+from .choice import Choice
 from .panel import Panel
 
 HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a second
@@ -54,7 +55,7 @@ class DrivePanel(Panel):
         self._topics: Sequence[str] = ()
         self._folder = gui.add_folder('Drive', visible=False)
         with self._folder:
-            self._topic = gui.add_dropdown('Topic', [''])
+            self._topic = Choice(gui, 'Topic', [''])
             self._speed = gui.add_slider('Speed [m/s]', 0.05, 3.0, 0.05, 0.5)
             self._turn = gui.add_slider('Turn [rad/s]', 0.1, 4.0, 0.1, 1.0)
             self._keys = gui.add_checkbox('W A S D and arrows drive', initial_value=True,
@@ -80,7 +81,7 @@ class DrivePanel(Panel):
             self._topics = topics
             self._folder.visible = bool(topics)
             if topics:
-                self._topic.options = topics
+                self._topic.offer(topics)
             self._bind()
 
     def steer(self, ahead: float, left: float) -> None:

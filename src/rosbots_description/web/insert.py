@@ -9,6 +9,7 @@ import viser
 
 from ..sim.core import Pose, SimError, Vector
 from ..sim.description import LightSpec, ModelSpec, ModelText, SceneChange
+from .choice import Choice
 from .hands import Hands
 from .history import History
 from .panel import Panel, attempt
@@ -70,12 +71,12 @@ class InsertPanel(Panel):
             static = gui.add_checkbox('Static', False, hint='it never moves by itself')
             add_shape = gui.add_button('Insert shape', icon=viser.Icon.PLUS)
             add_lamp = gui.add_button('Insert lamp', icon=viser.Icon.BULB, hint='of that colour')
-            self._light = gui.add_dropdown('Light', [NONE])
+            self._light = Choice(gui, 'Light', [NONE])
             remove_light = gui.add_button('Delete light', icon=viser.Icon.BULB_OFF)
         with gui.add_folder('Model'):
-            self._models = gui.add_dropdown('Model path', [NONE])
+            self._models = Choice(gui, 'Model path', [NONE])
             add_model = gui.add_button('Insert model', icon=viser.Icon.PLUS)
-            self._parameters = gui.add_dropdown('Parameter', [NONE], hint='holds a URDF')
+            self._parameters = Choice(gui, 'Parameter', [NONE], hint='holds a URDF')
             add_parameter = gui.add_button('Insert robot', icon=viser.Icon.PLUS)
             upload = gui.add_upload_button('Upload URDF, xacro or SDF', icon=viser.Icon.UPLOAD)
         site.on_client_disconnect(self._places.forget)
@@ -143,13 +144,11 @@ class InsertPanel(Panel):
             self._library.light(light)))
 
 
-def _offer(dropdown: viser.GuiDropdownHandle[str], names: Sequence[str]) -> None:
-    options = tuple(dict.fromkeys(names[:MOST])) or (NONE,)
-    if tuple(dropdown.options) != options:
-        dropdown.options = options
+def _offer(choice: Choice, names: Sequence[str]) -> None:
+    choice.offer(names[:MOST] or (NONE,))
 
 
 def _chosen(name: str, what: str) -> str:
-    if name == NONE:
+    if name in ('', NONE):
         raise SimError(f'there is no {what}')
     return name

@@ -10,6 +10,7 @@ import viser
 
 from ..sim.core import SimError
 from ..sim.description import PRISMATIC, JointSpec
+from .choice import Choice
 from .models import Models
 from .panel import Panel, attempt
 from .text import plain
@@ -56,7 +57,7 @@ class JointPanel(Panel):
         self._sliders: list[viser.GuiSliderHandle[float]] = []
         self._folder = gui.add_folder('Joints', visible=False)
         with self._folder:
-            self._of = gui.add_dropdown('Of', [NOTHING], hint='a model, or topics of controllers')
+            self._of = Choice(gui, 'Of', [NOTHING], hint='a model, or topics of controllers')
             self._what = gui.add_dropdown('Sliders set', [POSITION, VELOCITY, EFFORT])
             self._range = gui.add_number('Range', 10.0, min=0.001, step=0.001, hint=(
                 'of velocities [rad/s, m/s], efforts [N m, N] without a limit, and topics'))
@@ -64,7 +65,8 @@ class JointPanel(Panel):
                 'a velocity is kept with at most this effort [N m, N]'))
             self._release = gui.add_button(
                 'Release', hint='switches motors off and ends efforts of these joints')
-        for control in (self._of, self._what, self._range):
+        self._of.on_update(self._build)
+        for control in (self._what, self._range):
             control.on_update(lambda _: self._build())
         self._release.on_click(lambda _: self._let_go())
 
@@ -75,8 +77,8 @@ class JointPanel(Panel):
             self._topics = topics
             names = [model.name for model in tuple(self._models.all.values()) if model.joints]
             options = (NOTHING, *names, *((TOPICS,) if self._topics else ()))
-            if options != self._of.options:
-                self._of.options = options
+            if options != self._of.names:
+                self._of.offer(options)
                 self._folder.visible = len(options) > 1
             wanted = tuple(joint.name for joint in self._specs()) or (
                 self._topics if self._of.value == TOPICS else ())

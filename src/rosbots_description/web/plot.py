@@ -14,6 +14,7 @@ from viser import uplot
 from ..sim.core import SimError
 from ..sim.description import ShownMotion
 from .chart import WINDOW, Chart
+from .choice import Choice
 from .panel import fill
 from .reading import ReadingPanel
 from .text import plain
@@ -59,15 +60,15 @@ class PlotPanel(ReadingPanel):
         self._chart = Chart()
         self._topics: Mapping[str, Sequence[str]] = {}
         self._clock: deque[tuple[float, float]] = deque(maxlen=MOTIONS)
-        self._topic = gui.add_dropdown('Topic', [''])
-        self._field = gui.add_dropdown('Field', [''])
+        self._topic = Choice(gui, 'Topic', [''])
+        self._field = Choice(gui, 'Field', [''])
         self._curve = gui.add_text('Curve', '', hint='topic and field, as of rqt_plot')
         self._add = gui.add_button('Add curve', icon=viser.Icon.CHART_LINE)
         self._folder = gui.add_folder(f'Last {WINDOW:.0f} s', visible=False)
         self._boxes: dict[str, viser.GuiCheckboxHandle] = {}
         self._plot: viser.GuiUplotHandle | None = None
-        self._topic.on_update(lambda _: self._choose_topic())
-        self._field.on_update(lambda _: self._choose_field())
+        self._topic.on_update(self._choose_topic)
+        self._field.on_update(self._choose_field)
         self._add.on_click(lambda _: self._add_curve(self._curve.value.strip()))
 
     def move(self, motion: ShownMotion) -> None:
@@ -83,12 +84,12 @@ class PlotPanel(ReadingPanel):
         topics = self._signals.signal_topics()
         with self._lock:
             if topics.keys() != self._topics.keys():
-                self._topic.options = ('', *islice(topics, MOST_TOPICS))
+                self._topic.offer(('', *islice(topics, MOST_TOPICS)))
             self._topics = topics
             self._read_chosen()
 
     def _choose_topic(self) -> None:
-        self._field.options = ('', *self._topics.get(self._topic.value, ()))
+        self._field.offer(('', *self._topics.get(self._topic.value, ())))
 
     def _choose_field(self) -> None:
         if self._field.value:

@@ -77,6 +77,12 @@ def test_long_text_is_cut_off():
     assert plain('x' * 500) == 'x' * (MOST - 1) + '\u2026'
 
 
+def test_names_of_strangers_are_offered_in_one_place():
+    offered = {path.name for path in FOLDER.glob('*.py')
+               if re.search(r'\w\.options = (?!{)', path.read_text(encoding='utf-8'))}
+    assert offered == {'choice.py'}  # other lists are the page's own, and stay as they are
+
+
 def test_html_is_made_in_one_place_and_markdown_nowhere():
     made = {path.name for path in FOLDER.glob('*.py')
             if re.search(r'add_html\(|\.content = ', path.read_text(encoding='utf-8'))}
