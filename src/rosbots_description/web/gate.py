@@ -14,7 +14,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
 from .client_messages import MalformedError, RefusedError, check_value, read
-from .text import plain
+from .notices import left_out, show
 from .uploads import Upload, Uploads, content
 
 logger = logging.getLogger(__name__)
@@ -40,6 +40,7 @@ class Visitor:
     allowed: float = BURST  # messages at once
     counted: float = field(default_factory=time.monotonic)
     next_notice: float = 0.0  # [s, monotonic]
+    left_out: int = 0  # notices since the last one
 
     def delay(self) -> float:
         """Count a message; return how long to wait before the next one is read [s]."""
@@ -96,6 +97,8 @@ class Gate:
         delay = visitor.delay()
         if delay > 0.0:
             await asyncio.sleep(delay)
+        if self._client(visitor) is None:
+            await asyncio.sleep(0)  # viser has yet to take in the first camera message
         try:
             await self._wait_for_room()
             return self._check(visitor, read(raw))
@@ -136,6 +139,8 @@ class Gate:
     def _start(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
         if message.source_component_uuid not in self._receivers:
             raise MalformedError('This is no button for files.')
+        if self._client(visitor) is None:
+            raise MalformedError('A page says where it looks before it sends a file.')
         try:
             whole = self._uploads.start(visitor, message)
         except RefusedError:
@@ -174,11 +179,25 @@ class Gate:
                             content(upload)).add_done_callback(_log_failure)
 
     def _notify(self, visitor: Visitor, sentence: str) -> None:
-        """Tell a browser what is refused, unless it was told of something just now."""
-        client, now = self._client(visitor), time.monotonic()
-        if client is not None and now >= visitor.next_notice:
-            visitor.next_notice = now + PAUSE
-            client.add_notification(plain(sentence), '', auto_close_seconds=8.0)
+        """Tell a browser what is refused; of many at once the first, and how many others."""
+        now = time.monotonic()
+        if now >= visitor.next_notice:
+            self._show(visitor, sentence)
+        else:
+            if not visitor.left_out:
+                asyncio.get_running_loop().call_later(
+                    visitor.next_notice - now, self._tell_left_out, visitor)
+            visitor.left_out += 1
+
+    def _tell_left_out(self, visitor: Visitor) -> None:
+        count, visitor.left_out = visitor.left_out, 0
+        self._show(visitor, left_out(count))
+
+    def _show(self, visitor: Visitor, sentence: str) -> None:
+        visitor.next_notice = time.monotonic() + PAUSE
+        client = self._client(visitor)
+        if client is not None:
+            show(client, sentence)
 
     def _client(self, visitor: Visitor) -> viser.ClientHandle | None:
         """Return viser's handle of a connection; None before its first camera message."""

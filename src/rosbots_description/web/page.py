@@ -24,6 +24,7 @@ from .interpolation import Interpolation
 from .joints import JointPanel, Joints
 from .joystick import Joystick
 from .models import Models
+from .notices import Notices
 from .outline import Outline
 from .panel import Panel
 from .plot import PlotPanel, Signals
@@ -34,7 +35,6 @@ from .show import ShowPanel
 from .site import Site
 from .start_view import StartView
 from .take_away import TakeAwayPanel, Worlds
-from .text import plain
 from .tree import ModelTree
 
 logger = logging.getLogger(__name__)
@@ -42,8 +42,6 @@ logger = logging.getLogger(__name__)
 SILENCE = 2.0  # [s, wall] without a motion after which the simulator has gone
 GONE = 'The simulator does not answer. This page shows its last state.'
 BACK = 'The simulator is there again.'
-MOST = 1000  # characters of a notice
-NOTICES, NOTICE_RATE = 20.0, 2.0  # notices at once, and in a second
 
 
 class View(Protocol):
@@ -116,7 +114,8 @@ class Page:
         self._is_open = self._is_complete = False  # the view, and what it has shown
         self._heard = 0.0  # when the last motion came [s, monotonic]
         self._lost = False
-        self._notices, self._noticed = NOTICES, time.monotonic()
+        notices = Notices(site)
+        self._notify = notices.tell
         site.gui.configure_theme(show_logo=False, show_share_button=False)
         site.gui.set_panel_label('gzweb')
         models = Models()
@@ -129,7 +128,7 @@ class Page:
         history = History(site.gui, self._notify)
         self._panels: list[Panel] = [
             models, self._start, scene, self.selection,
-            Outline(site.scene, models, self.selection), self._bar, history]
+            Outline(site.scene, models, self.selection), self._bar, history, notices]
         self._add_tabs(simulator, models, scene, history)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
@@ -247,14 +246,3 @@ class Page:
     def _move(self, motion: ShownMotion) -> None:
         for panel in self._panels:
             panel.move(motion)
-
-    def _notify(self, sentence: str) -> None:
-        """Show a sentence in all browsers, unless there are too many to be read."""
-        now = time.monotonic()
-        self._notices = min(NOTICES, self._notices + NOTICE_RATE * (now - self._noticed))
-        self._noticed = now
-        if self._notices < 1.0:
-            return
-        self._notices -= 1.0
-        for client in self._site.get_clients().values():
-            client.add_notification(plain(sentence, MOST), '', auto_close_seconds=8.0)

@@ -3,6 +3,7 @@
 import viser
 
 from ..sim.core import Vector
+from .notices import show
 
 FAR = 100.0  # [m] from the eye, up to which a click chooses a place
 MARK = '/place'
@@ -22,7 +23,7 @@ class Places:
             if not self._choosing:
                 self._scene.on_click()(self._click)
             self._choosing.add(client.client_id)
-            _tell(client, 'Click on the ground where the next model is to appear.')
+            show(client, 'Click on the ground where the next model is to appear.')
 
     def take(self, client: viser.ClientHandle | None) -> Vector:
         """Return the place of a browser [m]; one that was clicked on serves once."""
@@ -46,7 +47,7 @@ class Places:
             return
         place = on_ground(event.ray_origin, event.ray_direction)
         if place is None:
-            _tell(event.client, 'That is not on the ground; click again, lower.')
+            show(event.client, 'That is not on the ground; click again, lower.')
             return
         self._stop(event.client_id)
         self._chosen[event.client_id] = place
@@ -68,7 +69,3 @@ def on_ground(eye: Vector, direction: Vector) -> Vector | None:
     if way > FAR:
         return None
     return (eye[0] + way * direction[0], eye[1] + way * direction[1], 0.0)
-
-
-def _tell(client: viser.ClientHandle, sentence: str) -> None:
-    client.add_notification(sentence, '', auto_close_seconds=8.0)

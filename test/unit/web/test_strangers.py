@@ -5,6 +5,7 @@ memory. After each attempt a browser with the token sees the page as before.
 """
 
 import math
+import re
 import socket
 import threading
 import time
@@ -241,6 +242,20 @@ def test_a_camera_that_looks_nowhere_is_ignored(browser, site, change):
     browser.wait_until(lambda: list(client.camera.look_at) == [1.0, 2.0, 3.0])
 
 
+def test_of_many_refusals_the_first_is_told_and_the_number_of_others(browser):
+    for _ in range(50):
+        browser.send({**CAMERA, 'fov': 0.0})
+    told = re.compile(r'(\d+) more notices? (is|are) left out')
+
+    def counted():
+        notes = browser.notes()
+        return (sum('of this browser' in note for note in notes)
+                + sum(int(count[1]) for note in notes if (count := told.fullmatch(note))))
+
+    browser.wait_until(lambda: counted() == 50)
+    assert any(map(told.fullmatch, browser.notes()))
+
+
 VALUES = [
     ('Steps', math.nan), ('Steps', math.inf), ('Steps', 0), ('Steps', -5), ('Steps', 10**9),
     ('Size [m]', [math.nan, 1.0, 1.0]), ('Size [m]', [1.0, math.inf, 1.0]),
@@ -384,3 +399,42 @@ def test_a_flood_of_messages_is_slowed_down_and_the_page_answers_others(browser,
         other.wait_until(lambda: other.control('Pause'))
         other.click('Pause')
         other.wait_until(lambda: ('pause',) in served[1].told)
+
+
+class Reconnected(Browser):
+    """A browser that knows the page, and sends nothing before it is let."""
+
+    def __init__(self, site, page):
+        self.held = []
+        super().__init__(site.address)
+        self.controls = page.controls
+
+    def send(self, message):
+        self.held.append(message)
+
+    def let(self):
+        for message in self.held:
+            super().send(message)
+
+
+def test_what_is_done_in_the_first_moment_of_a_connection_is_not_lost(browser, site, served):
+    released = threading.Event()
+    with Reconnected(site, browser) as early:
+        early.upload(UPLOAD, 'early', b'x')
+        early.send({'type': 'GuiUpdateMessage', 'uuid': browser.control('Speed'),
+                    'updates': {'value': '10x'}})
+        # The server reads all of it at once.
+        site._websock_server._background_event_loop.call_soon_threadsafe(released.wait)
+        early.let()
+        released.set()
+        early.wait_until(lambda: {'insert', 'set_speed'} <= {what for what, *_ in served[1].told})
+
+
+def test_a_file_before_the_page_says_where_it_looks_ends_the_connection(browser, site):
+    with Reconnected(site, browser) as early:
+        early.held.clear()  # of the camera
+        early.upload(UPLOAD, 'early', b'x')
+        early.let()
+        with pytest.raises(ConnectionClosed) as closed:
+            early.wait_until(lambda: False)
+    assert closed.value.rcvd.reason == 'A page says where it looks before it sends a file.'
