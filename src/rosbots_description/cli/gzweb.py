@@ -1,6 +1,7 @@
 """Front end of the executable gzweb: the simulated world in a browser."""
 
 import argparse
+import gc
 import importlib.util
 import logging
 import os
@@ -76,6 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say('whoever has this address sees and controls the simulation, and the connection is '
              'not encrypted')
     page = Page(site, GazeboSimulator())
+    gc.freeze()  # otherwise each full collection, as after a visit, scans all modules
+    gc.collect()
     with (_told(site.address, site.token),
           opened(site.address) if options.open else nullcontext()):
         while is_running():

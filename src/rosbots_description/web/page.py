@@ -1,10 +1,12 @@
 """The page: its scene and its controls, while somebody looks."""
 
+import gc
 import logging
 import threading
 import time
 from collections.abc import Callable
 from typing import Protocol
+from weakref import WeakSet
 
 import viser
 
@@ -111,6 +113,7 @@ class Page:
         self._lock = threading.RLock()
         self._motions = Interpolation(self._lock, self._move)
         self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
+        self._gone: WeakSet[viser.ClientHandle] = WeakSet()
         self._is_open = self._is_complete = False  # the view, and what it has shown
         self._heard = 0.0  # when the last motion came [s, monotonic]
         self._lost = False
@@ -184,6 +187,8 @@ class Page:
         if self._is_open:
             for panel in self._panels:
                 panel.refresh()
+        elif self._gone:
+            gc.collect()  # what viser had for each is a cycle, with megabytes for compression
         with self._lock:
             if self._is_open and not self._lost and time.monotonic() - self._heard > SILENCE:
                 self._lost = True
@@ -208,6 +213,7 @@ class Page:
         with self._lock:
             if client in self._new:
                 self._new.remove(client)
+            self._gone.add(client)
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
                 self._view.close()
