@@ -22,6 +22,7 @@ from .text import plain
 PERIOD = 0.2  # [s, wall] between two pictures of the plot
 COLOURS = ('#1f77b4', '#d62728', '#2ca02c', '#ff7f0e', '#9467bd', '#8c564b', '#17becf')
 HEIGHT, PADDING = 260, (12, 24, 0, 0)  # [pixels]; from the top clockwise
+FIRST = 0.0  # place of the plot among what is in its folder
 MOST = 20  # curves
 MOST_TOPICS = 1000  # that are offered
 MOTIONS = 90  # clocks kept, to tell the simulated time of an arrival
@@ -132,12 +133,17 @@ class PlotPanel(ReadingPanel):
         self._signals.close(name)
 
     def _show(self) -> None:
-        """Show the curves' boxes and an empty plot."""
+        """Show an empty plot of the curves, and a box for each; boxes that remain are kept.
+
+        A click on a box that is made anew just then would be lost.
+        """
         curves = self._chart.curves
-        for part in (*self._boxes.values(), *((self._plot,) if self._plot else ())):
-            part.remove()
-        self._boxes, self._plot = {}, None
         self._folder.visible = bool(curves)
+        for curve in self._boxes.keys() - set(curves):
+            self._boxes.pop(curve).remove()
+        if self._plot is not None:
+            self._plot.remove()
+            self._plot = None
         with self._folder:
             if curves:
                 self._plot = self._gui.add_uplot(
@@ -145,12 +151,12 @@ class PlotPanel(ReadingPanel):
                     (uplot.Series(label='simulated time [s]'), *(
                         uplot.Series(label=plain(curve), stroke=colour, width=1.5)
                         for curve, colour in zip(curves, cycle(COLOURS), strict=False))),
-                    scales={'x': {'time': False}}, height=HEIGHT, padding=PADDING)
+                    scales={'x': {'time': False}}, height=HEIGHT, padding=PADDING, order=FIRST)
             for curve in curves:
-                box = self._gui.add_checkbox(plain(curve), initial_value=True,
-                                             hint='uncheck to remove')
-                box.on_update(partial(self._uncheck, curve))
-                self._boxes[curve] = box
+                if curve not in self._boxes:
+                    self._boxes[curve] = box = self._gui.add_checkbox(
+                        plain(curve), initial_value=True, hint='uncheck to remove')
+                    box.on_update(partial(self._uncheck, curve))
 
     def _uncheck(self, curve: str, _event: object) -> None:
         self._remove_curve(curve)

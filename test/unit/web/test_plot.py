@@ -80,6 +80,17 @@ def test_curves_are_drawn_until_they_are_unchecked(browser, signals, panel):
     browser.wait_until(lambda: signals.open_curves == set() and not plots(browser))
 
 
+def test_the_box_of_a_curve_stays_while_others_come_and_go(browser, signals):
+    add(browser, signals, SPEED)
+    box = browser.control(SPEED)
+    add(browser, signals, TRUTH)
+    browser.choose(TRUTH, False)
+    browser.wait_until(lambda: signals.open_curves == {SPEED} and not browser.control(TRUTH))
+    assert browser.control(SPEED) == box  # a click on it was not lost
+    assert all(message['props']['order'] < browser.controls[box][1]['order']
+               for message in browser.messages if message['type'] == 'GuiUplotMessage')
+
+
 def test_a_curve_is_added_once(browser, signals):
     add(browser, signals, SPEED)
     browser.click('Add curve')
