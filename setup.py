@@ -30,7 +30,7 @@ setup(
     python_requires='>=3.11',
     packages=find_packages('src'),
     package_dir={'': 'src'},
-    package_data={'': ['config/*', 'models/*/*', 'models/*/*', 'worlds/*', 'py.typed']},
+    package_data={'': ['config/*', 'models/*/*.sdf', 'models/*/meshes/*', 'worlds/*', 'py.typed']},
     # The robot, where its package:// addresses lead; catkin installs it there, too.
     data_files=[
         (f'share/{told("name")}/{folder}', files) for folder in ('', 'meshes', 'urdf')

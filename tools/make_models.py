@@ -2,8 +2,9 @@
 """Make the built-in models: `tools/make_models.py [folder]` (default: the package's models folder).
 
 They have the names, sizes, masses and frames of the models of Gazebo's database that public worlds
-include most, and plain shapes of our own. Lengths in metres, angles in radians, z up, in the
-model's link.
+include most, and plain shapes of our own. Their mesh files have the names, units and frames of the
+database's, as worlds that Gazebo saved name these. Lengths in metres, angles in radians, z up, in
+the model's link.
 """
 
 import math
@@ -18,6 +19,7 @@ from mesh_shapes import (
     Surface,
     along_first_axis,
     at_height,
+    block,
     cap,
     circle,
     loft,
@@ -36,13 +38,18 @@ WHITE, CONCRETE, CARDBOARD = (0.92,) * 3, (0.61, 0.61, 0.59), (0.67, 0.54, 0.31)
 ORANGE, RED, YELLOW = (0.9, 0.32, 0.04), (0.62, 0.02, 0.02), (0.95, 0.85, 0.15)
 GREEN, BLUE = (0.13, 0.25, 0.17), (0.2, 0.3, 0.6)
 SKIN, JEANS, SHIRT = (0.78, 0.58, 0.46), (0.2, 0.26, 0.4), (0.55, 0.2, 0.2)
+SIDES = 16  # of a circle
 
 
 @dataclass(frozen=True)
 class Part:
-    """A shape: its element in <geometry>, where it is, its colour; None: it is not visible."""
+    """A shape: its element in <geometry>, where it is, its colour; None: it is not visible.
+
+    `surface` is the shape in triangles, about the origin.
+    """
 
     geometry: str
+    surface: Surface
     at: Point
     turn: Point = (0.0, 0.0, 0.0)
     colour: Rgb | None = GREY
@@ -55,7 +62,7 @@ class Model:
 
     Attributes:
         heights: of the model above where it is included, and of its link above the model.
-        mesh: coloured surfaces that are visible besides the parts.
+        mesh: coloured surfaces that are visible besides the parts, in the model's mesh file.
         size: extents of the box, with its centre, whose inertia it has.
     """
 
@@ -69,6 +76,16 @@ class Model:
     link: str = 'link'
 
 
+@dataclass(frozen=True)
+class MeshFile:
+    """The mesh file that a model of the database is shown by, and how its <visual> places it."""
+
+    name: str
+    scale: Point = (1.0, 1.0, 1.0)
+    at: Point = (0.0, 0.0, 0.0)
+    turn: Point = (0.0, 0.0, 0.0)
+
+
 def _text(numbers: Sequence[float]) -> str:
     return ' '.join(f'{round(number, 6) + 0.0:.6g}' for number in numbers)
 
@@ -76,29 +93,42 @@ def _text(numbers: Sequence[float]) -> str:
 def box(size: Point, at: Point, colour: Rgb | None = GREY, turn: Point = (0.0, 0.0, 0.0),
         solid: bool = True) -> Part:
     """Return a box, `at` its centre."""
-    return Part(f'<box><size>{_text(size)}</size></box>', at, turn, colour, solid)
+    surface = block([-side / 2.0 for side in size], [side / 2.0 for side in size])
+    return Part(f'<box><size>{_text(size)}</size></box>', surface, at, turn, colour, solid)
 
 
 def cylinder(radius: float, length: float, at: Point, colour: Rgb | None = GREY,
              turn: Point = (0.0, 0.0, 0.0), solid: bool = True) -> Part:
     """Return a cylinder about z before it is turned, `at` its centre."""
     return Part(f'<cylinder><radius>{_text([radius])}</radius><length>{_text([length])}</length>'
-                '</cylinder>', at, turn, colour, solid)
+                '</cylinder>', prism(circle(radius, SIDES), -length / 2.0, length / 2.0), at, turn,
+                colour, solid)
 
 
 def ball(radius: float, at: Point, colour: Rgb, solid: bool = True) -> Part:
     """Return a sphere."""
-    return Part(f'<sphere><radius>{_text([radius])}</radius></sphere>', at, (0.0, 0.0, 0.0),
-                colour, solid)
+    loops = [at_height(circle(radius * math.cos(angle), SIDES), radius * math.sin(angle))
+             for angle in np.radians([-80.0, -50.0, -17.0, 17.0, 50.0, 80.0])]
+    return Part(f'<sphere><radius>{_text([radius])}</radius></sphere>', loft(loops), at,
+                (0.0, 0.0, 0.0), colour, solid)
 
 
-def cone(bands: Sequence[tuple[float, float, Rgb]], top: tuple[float, float], sides: int = 16
+def cone(bands: Sequence[tuple[float, float, Rgb]], top: tuple[float, float]
          ) -> list[tuple[Rgb, Surface]]:
     """Return frustums, one on the other: (radius, height) of each lower rim with its colour."""
     rims = [*((radius, height) for radius, height, _ in bands), top]
-    return [(colour, loft([at_height(circle(*low[:1], sides), low[1]),
-                           at_height(circle(*high[:1], sides), high[1])]))
+    return [(colour, loft([at_height(circle(*low[:1], SIDES), low[1]),
+                           at_height(circle(*high[:1], SIDES), high[1])]))
             for (_, _, colour), low, high in zip(bands, rims, rims[1:], strict=False)]
+
+
+def rotation(turn: Point) -> np.ndarray:
+    """Return the matrix of roll, pitch and yaw."""
+    (a, b, c), (d, e, f) = np.cos(turn), np.sin(turn)
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, a, -d], [0.0, d, a]])
+    about_y = np.array([[b, 0.0, e], [0.0, 1.0, 0.0], [-e, 0.0, b]])
+    about_z = np.array([[c, -f, 0.0], [f, c, 0.0], [0.0, 0.0, 1.0]])
+    return about_z @ about_y @ about_x
 
 
 def barrier(length: float, profile: Sequence[tuple[float, float]]) -> Surface:
@@ -190,16 +220,10 @@ def _checkers() -> list[tuple[Rgb, Surface]]:
 
 def _stop_sign() -> Model:
     face = turned(along_first_axis(prism(circle(0.3215, 8), 0.001, 0.009)), math.pi / 2.0)
-    face = _rolled(face, math.pi / 8.0)
+    face = face @ rotation((0.0, math.pi / 8.0, 0.0)).T
     return Model([box((0.594, 0.012, 0.594), (0.0, -0.005, 1.521), None),
                   box((0.06, 0.02, 1.5), (0.0, 0.001, 0.75), STEEL)],
                  name='Stop Sign', mesh=[(RED, moved(_flat(face), (0.0, 0.0, 1.521)))])
-
-
-def _rolled(surface: Surface, angle: float) -> Surface:
-    """Return a surface rotated about y."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return surface @ np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
 
 
 def _flat(surface: Surface) -> Surface:
@@ -320,6 +344,35 @@ MODELS = {
         heights=(0.648, 0.0)),
 }
 
+# Without an entry, Gazebo's model consists of plain shapes.
+MESH_FILES = {
+    'brick_box_3x1x3': MeshFile('simple_box', (3.0, 1.0, 3.0)),
+    'cafe_table': MeshFile('cafe_table'),
+    'cardboard_box': MeshFile('cardboard_box', (1.25931896, 1.007455168, 0.755591376),
+                              (0.0, 0.0, -0.15)),
+    'checkerboard_plane': MeshFile('checkerboard_plane'),
+    'cinder_block': MeshFile('cinder_block'),
+    'coke_can': MeshFile('coke_can', at=(0.003937, 0.0047244, -0.18)),
+    'construction_barrel': MeshFile('construction_barrel'),
+    'construction_cone': MeshFile('construction_cone', (10.0, 10.0, 10.0)),
+    'drc_practice_blue_cylinder': MeshFile('cylinder'),
+    'drc_practice_orange_jersey_barrier': MeshFile('jersey_barrier'),
+    'drc_practice_white_jersey_barrier': MeshFile('jersey_barrier'),
+    'drc_practice_yellow_parking_block': MeshFile('block'),
+    'dumpster': MeshFile('dumpster', (1.5, 1.5, 1.5)),
+    'fire_hydrant': MeshFile('fire_hydrant'),
+    'first_2015_trash_can': MeshFile('trash_can'),
+    'gas_station': MeshFile('gas_station'),
+    'jersey_barrier': MeshFile('jersey_barrier'),
+    'lamp_post': MeshFile('lamp_post', (3.0, 3.0, 3.0)),
+    'mailbox': MeshFile('mailbox'),
+    'person_standing': MeshFile('standing', at=(0.0, 0.0, 0.02), turn=(0.04, 0.0, 0.0)),
+    'person_walking': MeshFile('walking', at=(0.0, 0.0, -0.02)),
+    'postbox': MeshFile('postbox'),
+    'stop_sign': MeshFile('stop_sign'),
+    'table_marble': MeshFile('table_lightmap', (0.25, 0.25, 0.25)),
+}
+
 
 def sdf(name: str, model: Model) -> str:
     """Return the text of the model's SDF."""
@@ -327,10 +380,14 @@ def sdf(name: str, model: Model) -> str:
         f'    <pose>0 0 {_text([height])} 0 0 0</pose>\n' if height else ''
         for height in model.heights)
     static = '    <static>true</static>\n' if model.mass == 0.0 else ''
-    shapes = [line for number, part in enumerate(model.parts) for line in _shapes(number, part)]
-    if model.mesh:
-        shapes.append(f'      <visual name="mesh"><geometry><mesh><uri>model://{name}/{name}.dae'
-                      '</uri></mesh></geometry></visual>\n')
+    mesh = MESH_FILES.get(name)
+    shapes = [line for number, part in enumerate(model.parts)
+              for line in _shapes(number, part if mesh is None else replace(part, colour=None))]
+    if mesh is not None:
+        shapes.append(
+            f'      <visual name="visual"><pose>{_text([*mesh.at, *mesh.turn])}</pose><geometry>'
+            f'<mesh><uri>model://{name}/meshes/{mesh.name}.dae</uri>'
+            f'<scale>{" ".join(map(repr, mesh.scale))}</scale></mesh></geometry></visual>\n')
     return (f'<?xml version="1.0"?>\n<!-- Made by tools/make_models.py. -->\n<sdf version="1.6">\n'
             f'  <model name="{model.name or name}">\n{model_pose}{static}'
             f'    <link name="{model.link}">\n{link_pose}{_inertial(model)}{"".join(shapes)}'
@@ -358,6 +415,15 @@ def _inertial(model: Model) -> str:
             f'<mass>{_text([model.mass])}</mass><inertia>{moments}</inertia></inertial>\n')
 
 
+def _mesh(model: Model, mesh: MeshFile) -> list[tuple[Colour, Surface]]:
+    """Return all that is visible of a model, in the unit and frame of its mesh file."""
+    shown = [(part.colour, part.surface @ rotation(part.turn).T + part.at)
+             for part in model.parts if part.colour is not None]
+    return [(Colour(f'c{"_".join(_text([c]).replace(".", "") for c in rgb)}', rgb),
+             (surface - mesh.at) @ rotation(mesh.turn) / mesh.scale)
+            for rgb, surface in (*shown, *model.mesh)]
+
+
 def main(arguments: list[str]) -> int:
     """Write every model to the folder named by the first argument; return the exit code."""
     folder = Path(arguments[0]) if arguments else \
@@ -366,11 +432,12 @@ def main(arguments: list[str]) -> int:
         place = folder / name
         place.mkdir(parents=True, exist_ok=True)
         (place / 'model.sdf').write_text(sdf(name, model), encoding='utf-8')
-        if model.mesh:
-            coloured = [(Colour(f'c{"_".join(_text([c]).replace(".", "") for c in rgb)}', rgb),
-                         surface) for rgb, surface in model.mesh]
-            (place / f'{name}.dae').write_text(
-                collada(name, coloured, tool='tools/make_models.py'), encoding='utf-8')
+        if name in MESH_FILES:
+            mesh = MESH_FILES[name]
+            (place / 'meshes').mkdir(exist_ok=True)
+            (place / 'meshes' / f'{mesh.name}.dae').write_text(
+                collada(mesh.name, _mesh(model, mesh), tool='tools/make_models.py'),
+                encoding='utf-8')
     return 0
 
 

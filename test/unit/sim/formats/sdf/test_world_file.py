@@ -251,7 +251,7 @@ def test_invalid_element_is_left_out_of_the_world(body, logged, without, caplog)
 
 def test_model_of_many_links_is_kept_without_its_missing_mesh(caplog):
     wall = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
-    mailbox = ('<{0} name="{0}"><geometry><mesh><uri>model://mailbox/meshes/mailbox.dae</uri>'
+    mailbox = ('<{0} name="{0}"><geometry><mesh><uri>model://letters/meshes/letters.dae</uri>'
                '</mesh></geometry></{0}>')
     house = (f'<model name="house"><static>1</static><link name="wall">{wall}</link>'
              f'<link name="mailbox">{mailbox.format("collision")}{mailbox.format("visual")}</link>'
@@ -260,7 +260,7 @@ def test_model_of_many_links_is_kept_without_its_missing_mesh(caplog):
     assert [model.name for model, _ in world.models] == ['ground_plane', 'house']
     spec = world.models[1][0]
     assert [len(link.collisions) for link in spec.links] == [1, 0]
-    assert spec.left_out == ("mesh 'model://mailbox/meshes/mailbox.dae'",)
+    assert spec.left_out == ("mesh 'model://letters/meshes/letters.dae'",)
     assert world.faults == ()
     (logged,) = caplog.messages
     assert logged.endswith("; left out: collision of link 'mailbox' (line 1), "
