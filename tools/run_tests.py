@@ -2,7 +2,7 @@
 """Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
 
 Phases: lint (ruff, mypy, catkin_lint, launch files) beside unit (pytest, no ROS master), engine
-(pytest, PyBullet without a window), each with a process per processor, and rostest (each
+(pytest, PyBullet without a window), each with processes side by side, and rostest (each
 test/rostest/*.test with its own master, several side by side). A phase without any test counts as
 failed. What failed is listed at the end with the command that repeats it.
 """
@@ -39,7 +39,8 @@ from rostests import choose, run_rostests
 
 SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
 AT_ONCE = ('lint', 'unit')  # phases
-PARALLEL = ['-n', 'auto', '--dist', 'loadfile']  # a process per processor; a file stays in one
+# A file stays in one process. There is one more than processors, as some tests wait.
+PARALLEL = ['-n', str(1 + (os.cpu_count() or 1)), '--dist', 'loadfile']
 HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
 
@@ -120,7 +121,7 @@ def node_of(classname: str, name: str) -> str:
 
 
 def pytest_phase(phase: str) -> Callable[[str], Count]:
-    """Return what runs test/<phase>, a process per processor."""
+    """Return what runs test/<phase>, its files side by side."""
     return lambda word: run_pytest(phase, [*PARALLEL, '-k', word, f'test/{phase}'])
 
 
