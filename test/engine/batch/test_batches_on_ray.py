@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ import yaml
 from pyarrow import parquet
 from support.batches import pushed_ball
 from support.listening import listening
+from support.patience import wait_until
 
 from rosbots_description.batch import ClusterError, cluster, local_ray, run
 from rosbots_description.cli.launched import descendants
@@ -115,54 +116,44 @@ def test_a_lost_machine_of_several_loses_no_run(tmp_path, monkeypatch):
     assert made.table.equals(expected)
 
 
-def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
-    endless = scenario(tmp_path) | {'repeat': 5000}
-    path = tmp_path / 'endless.yaml'
-    path.write_text(yaml.safe_dump(endless))
+@contextmanager
+def endless_command(folder):
+    """Start a command that makes runs for ever; yield its process when there are rows."""
+    path = folder / 'endless.yaml'
+    path.write_text(yaml.safe_dump(scenario(folder) | {'repeat': 5000}))
     command = subprocess.Popen(
         [sys.executable, '-m', 'rosbots_description.cli.batch', str(path), '--workers', '1',
-         '--output', str(tmp_path / 'rows')], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+         '--output', str(folder / 'rows')], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True, env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
     try:
-        end = time.monotonic() + PATIENCE
-        while not list(tmp_path.glob('rows/rows/*.parquet')):
-            assert time.monotonic() < end, 'no row yet'
-            time.sleep(0.05)
+        wait_until(lambda: list(folder.glob('rows/rows/*.parquet')), 'rows', PATIENCE)
+        yield command
+    finally:
+        command.kill()
+
+
+def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
+    with endless_command(tmp_path) as command:
         processes = descendants(command.pid)
         assert processes
         command.send_signal(signal.SIGTERM)
         printed, said = command.communicate(timeout=PATIENCE)
-    finally:
-        command.kill()
     assert (command.returncode, printed) == (130, ''), said
     rows = parquet.read_table(tmp_path / 'rows' / 'rows').num_rows
     assert said == (f'batch: interrupted; {rows} rows are in {tmp_path / "rows"}, and the same '
                     'command makes the others\n')
-    end = time.monotonic() + PATIENCE
-    while (left := [one for one in processes if Path(f'/proc/{one}').exists()]):
-        assert time.monotonic() < end, left
-        time.sleep(0.05)
+    wait_until(lambda: not any(Path(f'/proc/{one}').exists() for one in processes),
+               'the end of its processes', PATIENCE)
 
 
 def test_a_batch_whose_ray_is_killed_ends_with_one_sentence(tmp_path):
-    path = tmp_path / 'endless.yaml'
-    path.write_text(yaml.safe_dump(scenario(tmp_path) | {'repeat': 5000}))
-    command = subprocess.Popen(
-        [sys.executable, '-m', 'rosbots_description.cli.batch', str(path), '--workers', '1',
-         '--output', str(tmp_path / 'rows')], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
-    try:
-        end = time.monotonic() + 2 * PATIENCE
-        while not list(tmp_path.glob('rows/rows/*.parquet')) and time.monotonic() < end:
-            time.sleep(0.05)
+    with endless_command(tmp_path) as command:
         victims = [one for one in descendants(command.pid)
                    if 'raylet/raylet' in Path(f'/proc/{one}/cmdline').read_text()]
         assert victims
         for victim in victims:
             os.kill(victim, signal.SIGKILL)
-        printed, said = command.communicate(timeout=2 * PATIENCE)
-    finally:
-        command.kill()
+        printed, said = command.communicate(timeout=PATIENCE)
     assert command.returncode != 0
     assert (printed, said) == ('', (
         'batch: ended by Ray, of which a process has died, or by a signal; the rows so far are '

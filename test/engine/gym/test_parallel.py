@@ -4,18 +4,16 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
+from support.patience import wait_until
 
 import rosbots_description.gym  # noqa: F401  registers the tasks
 from rosbots_description.gym import ParallelEnv, SimEnv, make_parallel
 from rosbots_description.sim import NotFoundError, SimError
-
-DEADLINE = 60.0  # [s, wall] for processes to end
 
 
 class Mortal(SimEnv):
@@ -207,7 +205,4 @@ def test_no_worker_outlives_a_parent_that_is_killed(mode):
         assert len(pids) == 3
         assert all(map(is_running, pids))
         parent.kill()
-    end = time.monotonic() + DEADLINE
-    while any(map(is_running, pids)) and time.monotonic() < end:
-        time.sleep(0.02)
-    assert not any(map(is_running, pids))
+    wait_until(lambda: not any(map(is_running, pids)), 'the end of the workers')

@@ -8,11 +8,11 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 from support.browser import Browser
+from support.patience import PATIENCE, wait_until
 
 from rosbots_description.gym import SimEnv, window
 from rosbots_description.sim import SimError
 
-DEADLINE = 60.0  # [s, wall] only ends a hopeless wait
 DRIVE = np.array([0.5, 0.2])
 
 
@@ -44,7 +44,7 @@ def test_browser_is_shown_the_robot_and_pauses_the_program(env):
     assert env.render().startswith('http://127.0.0.1:')
     env.reset(seed=0)
     with Browser(env.render()) as browser:
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + PATIENCE
         while '/models/rosbots' not in browser.nodes and time.monotonic() < end:
             env.step(DRIVE)
             browser.read()
@@ -52,9 +52,7 @@ def test_browser_is_shown_the_robot_and_pauses_the_program(env):
         assert env._window.view.is_open
         browser.click('Pause')
         browser.wait_until(lambda: env._window.time.paused)
-    end = time.monotonic() + DEADLINE
-    while env._window.view.is_open and time.monotonic() < end:
-        time.sleep(0.01)
+    wait_until(lambda: not env._window.view.is_open, 'the view closing')
     env.step(DRIVE)
 
 
@@ -102,14 +100,12 @@ def test_pause_and_steps_hold_the_environment_and_do_not_change_it(env):
         target=lambda: found.extend(env.step(DRIVE)[0]['odometry'].tobytes() for _ in range(2)))
     thread.start()
     controls.step(30)
-    end = time.monotonic() + DEADLINE
-    while (not viewer.motions or viewer.motions[-1].time < 0.23) and time.monotonic() < end:
-        time.sleep(0.01)
+    wait_until(lambda: viewer.motions and viewer.motions[-1].time >= 0.23, 'the steps')
     assert viewer.motions[-1].time == pytest.approx(0.23)
     assert viewer.motions[-1].paused
     assert found == []
     env._window.view.close()  # who leaves lets it go on
-    thread.join(DEADLINE)
+    thread.join(PATIENCE)
     assert found == expected
 
 

@@ -4,9 +4,9 @@ import io
 import os
 import stat
 import sys
-import time
 
 import pytest
+from support.patience import wait_until
 
 from rosbots_description.cli.gzweb import VARIABLE, _told, given_token
 from rosbots_description.cli.web_browser import is_readable_by_others, opened
@@ -29,10 +29,7 @@ def display(tmp_path, monkeypatch):
 
 
 def given(folder):
-    end = time.monotonic() + 60.0
-    while not (folder / 'given').exists():
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    wait_until((folder / 'given').exists)
     return (folder / 'given').read_text().strip()
 
 

@@ -1,11 +1,11 @@
 """Motions are shown halfway too; nothing is lost or smeared, and a slow page gets no more work."""
 
 import threading
-import time
 from itertools import count
 from types import SimpleNamespace
 
 import pytest
+from support.patience import wait_until
 from support.window import clock
 
 from rosbots_description.sim.core import Pose, from_rpy
@@ -22,10 +22,7 @@ class Shown(list):
         self.by = Interpolation(self.lock, self.append)
 
     def wait(self, number):
-        end = time.monotonic() + 60.0
-        while len(self) < number:
-            assert time.monotonic() < end, f'{len(self)} of {number} motions'
-            time.sleep(0.001)
+        wait_until(lambda: len(self) >= number, f'{number} motions')
 
 
 @pytest.fixture

@@ -8,13 +8,12 @@ import math
 import re
 import socket
 import threading
-import time
 from contextlib import suppress
 
 import msgspec
 import pytest
 from support.browser import CAMERA, Browser
-from support.patience import PATIENCE
+from support.patience import PATIENCE, wait_until
 from support.window import FakeSimulator
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
@@ -306,10 +305,7 @@ def test_unfinished_files_are_few_and_go_with_their_browser(browser, site):
     browser.wait_until(lambda: any('at once' in note for note in browser.notes()))
     assert len(site._gate._uploads) <= OF_ONE
     browser._connection.close()
-    end = time.monotonic() + PATIENCE
-    while len(site._gate._uploads):
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    wait_until(lambda: not len(site._gate._uploads), 'the end of the uploads')
 
 
 @pytest.mark.parametrize(('count', 'size'), [(-1, 10), (10**9, 10), (2, -1), (1, 2**60)])
@@ -366,10 +362,7 @@ def test_there_is_room_for_so_many_browsers(site):
     finally:
         for browser in browsers:
             browser._connection.close()
-    end = time.monotonic() + PATIENCE
-    while site._gate._visitors:
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    wait_until(lambda: not site._gate._visitors, 'the end of the connections')
 
 
 def test_a_command_waits_while_many_others_do_and_is_not_lost(browser, site, served, monkeypatch):

@@ -3,9 +3,9 @@
 import os
 import socket
 import threading
-import time
 
 import pytest
+from support.patience import wait_until
 
 from rosbots_description.ros_api.window import xacro_sandbox
 from rosbots_description.ros_api.window.library import RosLibrary
@@ -124,10 +124,7 @@ def test_what_it_leaves_behind_is_ended_with_it(monkeypatch):
     monkeypatch.setattr(xacro_sandbox, 'PATIENCE', 3.0)
     before = threading.active_count()
     told(f'<link name="{escape("sleep 987 &amp; setsid sleep 987 &amp; echo x")}"/>')
-    end = time.monotonic() + 60.0
-    while any('987' in one for one in command_lines()):
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    wait_until(lambda: not any('987' in one for one in command_lines()), 'its end')
     assert threading.active_count() == before
 
 
