@@ -13,6 +13,7 @@ from viser._messages import FileTransferPartAck
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
+from .allowance import Allowance
 from .client_messages import MalformedError, RefusedError, check_value, read
 from .notices import left_out, show
 from .uploads import Upload, Uploads, content
@@ -37,17 +38,9 @@ class Visitor:
     """A connection, and what is known of it."""
 
     connection: ServerConnection
-    allowed: float = BURST  # messages at once
-    counted: float = field(default_factory=time.monotonic)
+    messages: Allowance = field(default_factory=lambda: Allowance(BURST, RATE))
     next_notice: float = 0.0  # [s, monotonic]
     left_out: int = 0  # notices since the last one
-
-    def delay(self) -> float:
-        """Count a message; return how long to wait before the next one is read [s]."""
-        now = time.monotonic()
-        self.allowed = min(BURST, self.allowed + RATE * (now - self.counted)) - 1.0
-        self.counted = now
-        return max(0.0, -self.allowed / RATE)
 
 
 class Gate:
@@ -94,7 +87,7 @@ class Gate:
     async def _admits(self, connection: ServerConnection, raw: object) -> bool:
         """Return whether viser is to read a message; a malformed one ends its connection."""
         visitor = self._visitors[id(connection)]
-        delay = visitor.delay()
+        delay = visitor.messages.take()
         if delay > 0.0:
             await asyncio.sleep(delay)
         if self._client(visitor) is None:

@@ -1,10 +1,10 @@
 """Sentences to all who look at the page."""
 
 import threading
-import time
 
 import viser
 
+from .allowance import Allowance
 from .panel import Panel
 from .text import plain
 
@@ -18,13 +18,13 @@ class Notices(Panel):
     def __init__(self, site: viser.ViserServer) -> None:
         self._site = site
         self._lock = threading.Lock()
-        self._allowed, self._counted = AT_ONCE, time.monotonic()
+        self._allowance = Allowance(AT_ONCE, RATE)
         self._left_out = 0
 
     def tell(self, sentence: str) -> None:
         """Show a sentence, or count it."""
         with self._lock:
-            if self._may_show():
+            if self._allowance.has_one():
                 self._show(sentence)
             else:
                 self._left_out += 1
@@ -32,20 +32,12 @@ class Notices(Panel):
     def refresh(self) -> None:
         """Say how many are left out."""
         with self._lock:
-            if self._left_out and self._may_show():
+            if self._left_out and self._allowance.has_one():
                 count, self._left_out = self._left_out, 0
                 self._show(left_out(count))
 
-    def _may_show(self) -> bool:
-        now = time.monotonic()
-        self._allowed = min(AT_ONCE, self._allowed + RATE * (now - self._counted))
-        self._counted = now
-        if self._allowed < 1.0:
-            return False
-        self._allowed -= 1.0
-        return True
-
     def _show(self, sentence: str) -> None:
+        self._allowance.take()
         for client in self._site.get_clients().values():
             show(client, sentence)
 
