@@ -93,6 +93,10 @@ class ContactSensor(Sensor):
         """Return the contacts of the last step."""
         pairs: dict[tuple[CollisionFrame, CollisionFrame], list[ContactPoint]] = {}
         engine = self.world.engine
+        contacts = [contact for contact in engine.contacts(self.model.body, self.link.name)
+                    if contact.one.collision in self._names]
+        if not contacts:
+            return ()
         models = {model.body: model for model in self.world.models.values()}
         places = {model: place for place, model in enumerate(models.values())}
 
@@ -102,9 +106,7 @@ class ContactSensor(Sensor):
             return _level(engine.extent(model.body)), not model.static, \
                 place if model.static else -place
 
-        for contact in engine.contacts(self.model.body, self.link.name):
-            if contact.one.collision not in self._names:
-                continue
+        for contact in contacts:
             first, second = (models[body].links[link].collisions[collision]
                              for body, link, collision in (contact.one, contact.other))
             normal, force = contact.normal, contact.force

@@ -81,11 +81,12 @@ class ContactQueries:
         if any(isinstance(one.geometry, Plane) for shapes in body.shapes.values()
                for one in shapes):
             return math.inf
-        corners = np.array([pybullet.getAABB(*place, self._client)
-                            for place, shapes in body.shapes.items() if shapes])
-        if not len(corners):
+        boxes = [pybullet.getAABB(*place, self._client)
+                 for place, shapes in body.shapes.items() if shapes]
+        if not boxes:
             return 0.0
-        return float((corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)).max())
+        return float(max(max(high[axis] for _, high in boxes) - min(low[axis] for low, _ in boxes)
+                         for axis in range(3)))
 
     def touching(self, body: Body) -> set[Body]:
         """Return the bodies that touched a body in the last step; not itself."""
