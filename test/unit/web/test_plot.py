@@ -40,10 +40,10 @@ def browser(site, panel):
 
 
 def add(browser, signals, *curves):
-    for number, curve in enumerate(curves, 1):
+    for curve in curves:
         browser.choose('Curve', curve)
         browser.click('Add curve')
-        browser.wait_until(lambda number=number: len(signals.open_curves) == number)
+        browser.wait_until(lambda curve=curve: curve in signals.open_curves)
         browser.wait_until(lambda curve=curve: browser.control(curve))
 
 
