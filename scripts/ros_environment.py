@@ -44,6 +44,7 @@ PERIOD, STEPS = 0.1, 100  # of control [s], simulated; in steps of 1 ms
 REACHED, BUMPED = 0.4, -1.0  # distance to the goal [m]; reward for touching something
 SPEED, TURN = 0.8, 0.8  # what an action of 1 means [m/s], [rad/s]
 AT_REST = -0.12  # height of base_footprint [m]
+STILL, STOPPING = 0.01, 20  # speed [m/s] or [rad/s]; control periods, twice what it takes at most
 START, GOAL = (0.8, 0.6), (2.0, 0.4)  # where nothing stands: x and y, from -most to most [m]
 PATIENCE = 10.0  # [s, wall] for what is under way
 TOPICS = {  # with their periods [s], simulated
@@ -90,14 +91,17 @@ class RosGoToGoal(gymnasium.Env):
             self._arrived.notify()
 
     def reset(self, *, seed=None, options=None):
-        """Stop the robot and start an episode; each takes a control period, for a scan at rest."""
+        """Stop the robot and start an episode; that takes a control period, for a scan at rest."""
         super().reset(seed=seed)
         draw, options = self.np_random.uniform, options or {}
         x, y, yaw = options.get('start', draw(-1.0, 1.0, 3) * (*START, math.pi))
         self._goal = np.array(options.get('goal', draw(-1.0, 1.0, 2) * GOAL))
         self._pause()
         self._commands.publish(Twist())
-        self._advance()  # the command has arrived for sure
+        for _ in range(STOPPING):  # reset_world leaves the wheels their speed
+            moving, _ = self._advance()
+            if np.abs(moving['odometry'][3:]).max() < STILL:
+                break
         self._reset_world()
         done(self._place(ModelState(self._model, Pose(Point(x, y, AT_REST), Quaternion(
             0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))), Twist(), 'world')))

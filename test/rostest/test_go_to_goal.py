@@ -68,6 +68,9 @@ class GoToGoalTest(ExampleNodeTest):
         self.limit_rate(1000)  # of real time, so that commands are as late as for a reader
         environment = RosGoToGoal()
         environment.reset(options=LEARNED)
+        environment.step((1.0, 1.0))
+        _, info = environment.reset(options=LEARNED)  # of a robot that drives
+        self.assertLess(np.abs(info['pose'] - LEARNED['start']).max(), 0.005)
         environment.close()
         self.track.clear()
         ended = subprocess.run(
