@@ -20,15 +20,16 @@ class FollowPanel(Panel):
 
     def __init__(self, site: viser.ViserServer, models: Models, selection: Selection) -> None:
         self._site, self._models, self._selection = site, models, selection
+        self._followed: str | None = None
         self._at = np.full(3, np.inf)  # where the cameras look [m]
         self._box = site.gui.add_checkbox('Follow', False, hint='with the camera')
-        self._box.on_update(lambda _: self._begin())
-        selection.on_change(self._begin)
 
     def move(self, _motion: ShownMotion) -> None:
         """Move the cameras along."""
-        model = self._selection.model
-        if not self._box.value or model is None:
+        model = self._selection.model if self._box.value else None
+        if model != self._followed:
+            self._followed, self._at = model, np.full(3, np.inf)
+        if model is None:
             return
         at = np.array(self._models.pose(model).position)
         if np.linalg.norm(at - self._at) > MOVED:
@@ -39,6 +40,3 @@ class FollowPanel(Panel):
                     camera = client.camera
                     camera.position = at + camera.position - camera.look_at
                     camera.look_at = at
-
-    def _begin(self) -> None:
-        self._at = np.full(3, np.inf)
