@@ -5,7 +5,6 @@ import math
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
 from ..sim.core import Pose, normalise
 from ..sim.description import ShownMotion
@@ -48,9 +47,7 @@ class Interpolation:
     def take(self, motion: ShownMotion) -> None:
         """Take in a motion."""
         with self._changed:
-            late = self._next
-            self._next = motion if late is None else replace(
-                motion, poses={**late.poses, **motion.poses})
+            self._next = motion if self._next is None else motion.after(self._next)
             self._changed.notify_all()
 
     def forget(self) -> None:

@@ -1,7 +1,7 @@
 """What a window on a world has to show, as plain values."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..core import IDENTITY, Pose, Vector
 from .model_spec import Collision, Inertial, JointSpec, Visual
@@ -84,3 +84,7 @@ class ShownMotion:
     iterations: int
     paused: bool
     poses: Mapping[int, Pose] = field(default_factory=dict)
+
+    def after(self, earlier: 'ShownMotion') -> 'ShownMotion':
+        """Return this motion with those of an earlier one that has not been shown."""
+        return replace(self, poses={**earlier.poses, **self.poses})
