@@ -8,12 +8,13 @@ from typing import Protocol
 import viser
 
 from ..sim.core import Pose, SimError, Vector
-from ..sim.description import LightSpec, ModelSpec, ModelText, SceneChange
+from ..sim.description import GROUND_PLANE, LightSpec, ModelSpec, ModelText, SceneChange
 from .choice import Choice
 from .hands import Hands
 from .history import History
 from .panel import Panel, attempt
 from .place import Places
+from .selection import Selection
 from .shapes import KINDS, lamp, shape
 from .site import Site
 
@@ -51,9 +52,9 @@ class Library(Protocol):
 class InsertPanel(Panel):
     """Controls that insert where the camera looks, or at a place that was clicked on."""
 
-    def __init__(self, site: Site, library: Library, hands: Hands, history: History,
-                 complain: Callable[[str], None]) -> None:
-        self._library, self._hands = library, hands
+    def __init__(self, site: Site, library: Library, hands: Hands, selection: Selection,
+                 history: History, complain: Callable[[str], None]) -> None:
+        self._library, self._hands, self._selection = library, hands, selection
         self._history, self._complain = history, complain
         self._lights: Mapping[str, LightSpec] = {}
         self._refreshes = 0
@@ -115,7 +116,8 @@ class InsertPanel(Panel):
         self._refreshes += 1
 
     def _look_around(self) -> None:
-        _offer(self._models, self._library.models())
+        _offer(self._models, [
+            name for name in self._library.models() if name != GROUND_PLANE.name])
         _offer(self._parameters, self._library.parameters())
 
     def _insert(self, client: viser.ClientHandle | None,
@@ -125,6 +127,7 @@ class InsertPanel(Panel):
             place = self._places.take(client)
             text = replace(read(place), pose=Pose(place))
             name = self._hands.insert(text, on_ground=True, beside=True)
+            self._selection.expect(name)
             self._history.add(f"insert '{name}'", lambda: self._hands.delete(name))
             missing = self._hands.omissions(name)
             if missing:

@@ -163,7 +163,8 @@ class Page:
                     site.gui, models, self.selection, simulator.hands, history, self._notify)
                 if simulator.library is not None:
                     self._panels.append(InsertPanel(
-                        site, simulator.library, simulator.hands, history, self._notify))
+                        site, simulator.library, simulator.hands, self.selection, history,
+                        self._notify))
             self._panels.append(Gizmo(
                 site.scene, models, self.selection, simulator.hands, history, self._notify))
         with tabs.add_tab('Show', viser.Icon.EYE):

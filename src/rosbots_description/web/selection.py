@@ -18,6 +18,7 @@ class Selection(Panel):
     def __init__(self, models: Models, lock: threading.RLock) -> None:
         self._models, self._lock = models, lock
         self._chosen: tuple[str | None, str | None] = (None, None)
+        self._expected: str | None = None  # a model that is to be selected when it comes
         self._callbacks: list[Callable[[], None]] = []
 
     @property
@@ -33,6 +34,7 @@ class Selection(Panel):
     def choose(self, model: str | None, link: str | None = None) -> None:
         """Select a model, one of its links, or nothing; what does not exist counts as nothing."""
         with self._lock:
+            self._expected = None
             if model not in self._models.all:
                 model = None
             if model is None or link is None or self._models.link(model, link) is None:
@@ -41,6 +43,14 @@ class Selection(Panel):
                 self._chosen = model, link
                 for callback in self._callbacks:
                     callback()
+
+    def expect(self, model: str) -> None:
+        """Select a model as soon as the simulator shows it, unless something else is chosen."""
+        with self._lock:
+            if model in self._models.all:
+                self.choose(model)
+            else:
+                self._expected = model
 
     def click(self, model: str, link: str) -> None:
         """Select what was clicked on: the model first, then the link."""
@@ -51,5 +61,8 @@ class Selection(Panel):
         self._callbacks.append(callback)
 
     def apply(self, _change: SceneChange) -> None:
-        """End with the model, or fall back to it when the link goes."""
+        """End with the model, or fall back to it when the link goes; select what is expected."""
+        expected = self._expected
         self.choose(*self._chosen)
+        if expected is not None:
+            self.expect(expected)

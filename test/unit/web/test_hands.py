@@ -37,10 +37,12 @@ def test_delete_and_undo_spawn_it_as_it_was(chosen, simulator):
         ('describe', 'a'), ('delete', 'a'), ('insert', TEXT, False, False)]
 
 
-def test_duplicate_is_beside_it(chosen, simulator):
+def test_duplicate_is_beside_it_and_selected(chosen, simulator, page):
     chosen.press('D')
     chosen.wait_until(lambda: chosen.control("Undo: duplicate 'a'"))
     assert simulator.told == [('describe', 'a'), ('insert', TEXT, False, True)]
+    simulator.change(SceneChange(models=(model('new a', 9),)))
+    assert page.selection.model == 'new a'
     chosen.click("Undo: duplicate 'a'")
     chosen.wait_until(lambda: simulator.told[-1] == ('delete', 'new a'))
 

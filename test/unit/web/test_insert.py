@@ -2,6 +2,7 @@
 
 import pytest
 from support.browser import Browser
+from support.window import model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Box, Cylinder, SceneChange, Sphere
@@ -70,7 +71,7 @@ def test_light_is_deleted_and_comes_back(ready, simulator):
 def test_models_of_the_model_path_are_offered(ready, simulator, page):
     ready.click('Insert model')
     ready.wait_until(lambda: 'there is no model on the model path' in ready.notes())
-    simulator.names = ['table', 'chair']
+    simulator.names = ['table', 'ground_plane', 'chair']
     for _ in range(insert.LOOKS):
         page.poll()
     ready.wait_until(lambda: any(props.get('options') == ['table', 'chair']
@@ -81,9 +82,11 @@ def test_models_of_the_model_path_are_offered(ready, simulator, page):
     assert inserted(simulator)[0].xml == 'model chair'
 
 
-def test_file_is_uploaded(ready, simulator):
+def test_file_is_uploaded_and_what_it_becomes_is_selected(ready, simulator, page):
     ready.upload(UPLOAD, '../../a.urdf', 1500 * b'x')
-    ready.wait_until(lambda: inserted(simulator))
+    ready.wait_until(lambda: ready.control("Undo: insert 'new '"))
+    simulator.change(SceneChange(True, (model('new ', 1),)))
+    assert page.selection.model == 'new '
     assert inserted(simulator)[0].xml == '../../a.urdf: ' + 1500 * 'x'
 
 

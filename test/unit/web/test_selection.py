@@ -92,3 +92,24 @@ def test_models_know_where_they_are():
     assert models.link('a', 'x') is models.link('x', 'link') is None
     models.apply(SceneChange(removed=('a',)))
     assert models.all == {}
+
+
+def test_what_is_expected_is_selected_when_it_comes(simulator, page, browser):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    page.selection.choose('a')
+    page.selection.expect('b')
+    assert page.selection.model == 'a'
+    simulator.change(SceneChange(models=(model('c', 2),)))
+    assert page.selection.model == 'a'
+    simulator.change(SceneChange(models=(model('b', 3),)))
+    assert page.selection.model == 'b'
+    page.selection.expect('c')
+    assert page.selection.model == 'c'
+
+
+def test_another_choice_ends_the_expectation(simulator, page, browser):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    page.selection.expect('b')
+    page.selection.choose('a')
+    simulator.change(SceneChange(models=(model('b', 2),)))
+    assert page.selection.model == 'a'
