@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Self
+from typing import Self, SupportsIndex
 
 from .. import plugins, runtime, sensors  # noqa: F401  two register what descriptions load
 from ..core import (
@@ -113,6 +113,10 @@ class World(runtime.World):
         """Return the world."""
         return self
 
+    def __repr__(self) -> str:
+        """Return its time and models."""
+        return f'<World at {self.clock.now} s with {", ".join(self.models) or "no model"}>'
+
     def __exit__(self, *_exception: object) -> None:
         """Close the world."""
         self.close()
@@ -219,7 +223,8 @@ class World(runtime.World):
             the number of steps made: all, or fewer where time ends after 136 years.
 
         Raises:
-            ValueError: a number is negative or not finite, or not exactly one of both is given.
+            ValueError: a number is negative or not finite, `steps` is a fraction, or not exactly
+                one of both is given.
         """
         self._require_open()
         if seconds is not None and steps is None:
@@ -227,6 +232,9 @@ class World(runtime.World):
             steps = round(seconds * NANOSECONDS / self.clock.step_ns)
         elif steps is None or seconds is not None:
             raise ValueError('run takes either a number of steps or seconds=')
+        elif not isinstance(steps, SupportsIndex):
+            raise ValueError(f'run takes a whole number of steps, not {steps}; '
+                             f'for a time give seconds={steps}')
         if steps < 0:
             raise ValueError(f'time goes forward only; {steps} steps cannot be made')
         return super().run(steps)

@@ -37,6 +37,10 @@ class Link:
         self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
         self.collisions = {c.name: CollisionFrame(self, c) for c in spec.collisions}
 
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.scoped_name}>'
+
     @property
     def pose(self) -> Pose:
         """Return the pose of the link's frame in the world."""
@@ -118,6 +122,10 @@ class Joint:
         self.name = spec.name
         self.scoped_name = f'{model.name}::{spec.name}'
 
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.scoped_name}>'
+
     @property
     def position(self) -> float:
         """Return the position [rad or m]."""
@@ -193,6 +201,10 @@ class Model:
         self.left_out = list(spec.left_out)  # parts that were left out, each in a few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)
+
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.name}>'
 
     @property
     def pose(self) -> Pose:

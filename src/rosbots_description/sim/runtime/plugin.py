@@ -11,6 +11,10 @@ class Plugin(ModelPart):
 
     spec: PluginSpec
 
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.spec.name}>'
+
     def shared(self) -> Iterable[object]:
         """Return the description."""
         return (self.spec,)

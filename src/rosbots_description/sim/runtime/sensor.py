@@ -13,3 +13,7 @@ class SensorLife(ModelPart):
     measures: bool  # False: its type is not simulated
     count = 0  # of readings sent
     last_ns = 0  # time of the last reading [ns]
+
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.scoped_name}>'

@@ -115,6 +115,7 @@ def test_error_of_a_spawn_is_one_sentence(world, spawn, message):
     lambda world: world.spawn(CRATE, pose=Pose(), z=1.0),
     lambda world: world.run(),
     lambda world: world.run(3, seconds=0.1),
+    lambda world: world.run(1.0),
     lambda world: world.run(seconds=-1.0),
     lambda world: world.run(seconds=math.inf),
     lambda world: world.step(-1),
@@ -126,6 +127,16 @@ def test_error_of_a_spawn_is_one_sentence(world, spawn, message):
 def test_invalid_number_is_a_value_error(world, call):
     with pytest.raises(ValueError, match=r'\w+ (takes|goes|is|got)'):
         call(world)
+
+
+def test_parts_print_as_their_kind_and_name(world):
+    robot = world.spawn(XACRO, 'robot')
+    world.run(3)
+    assert repr(world) == '<World at 0.003 s with ground_plane, robot>'
+    assert repr(robot) == '<Model robot>'
+    assert repr([*robot.links.values()][:1]) == '[<Link robot::base_footprint>]'
+    assert repr(robot.joint('wheel_left_joint')) == '<Joint robot::wheel_left_joint>'
+    assert repr(robot.plugins) == '[<DiffDrive differential_drive_controller>]'
 
 
 def test_time_advances_by_steps_and_by_seconds():
