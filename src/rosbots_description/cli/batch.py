@@ -86,8 +86,9 @@ def _report(result: Result, output: Path) -> int:
     first = {(row['outcome'], row['reason']): row['run'] for row in reversed(rows)}
     for key, count in reasons.most_common(REASONS):
         print(f'  {key[0]} {count} x, as run {first[key]}: {key[1]}')
-    if len(reasons) > REASONS:
-        print(f'  and {len(reasons) - REASONS} other reasons')
+    others = len(reasons) - REASONS
+    if others > 0:
+        print(f'  and {others} other reason{"s" if others > 1 else ""}')
     if result.unwritten:
         return _fail(f'{result.unwritten}; make room and repeat the command', NOT_PASSED)
     print(f'rows: {output / "rows.parquet"}')
