@@ -14,6 +14,7 @@ import json
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -194,6 +195,8 @@ def main(argv: list[str] | None = None) -> int:
     """Run what the command line names, by default all phases; return the exit code."""
     arguments = parse(argv)
     os.environ['PYTHONHASHSEED'] = str(arguments.seed)
+    # A shell lets what runs in its background ignore Ctrl-C, and all tests would inherit that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     shutil.rmtree(REPORTS, ignore_errors=True)
     REPORTS.mkdir(parents=True)
     start, took = time.monotonic(), dict[str, float]()

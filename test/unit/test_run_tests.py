@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -154,3 +155,13 @@ def test_a_run_that_ends_early_is_a_failure(repeat_tests, monkeypatch, tmp_path)
     monkeypatch.setattr(repeat_tests, 'ROOT', tmp_path)
     monkeypatch.setattr(repeat_tests, 'SUMMARY', tmp_path / 'summary.json')
     assert repeat_tests.run([])['failures'] == ['./rosbots test ended with exit code 3']
+
+
+def test_ctrl_c_reaches_tests_that_run_in_the_background_of_a_shell(modules, monkeypatch):
+    _, _, run_tests = modules
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        ignored = '__import__("signal").getsignal(2) == __import__("signal").SIG_IGN'
+        assert run_with(run_tests, monkeypatch, ignored) == 0
+    finally:
+        signal.signal(signal.SIGINT, before)
