@@ -81,6 +81,19 @@ class GzTest(SimulatorTest):
             with open(f'{folder}/a.world', encoding='utf-8') as file:
                 self.assertEqual(file.read(), answer.sdf)
 
+    def test_the_world_is_mapped_without_slam(self):
+        self.pause()
+        gz('model', '-s', '-m', 'crate', '-z', '0.5', '-x', '0.5', '-y', '0.5', input=MODEL)
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(
+                ['rosrun', 'rosbots_simulator', 'save_map', 'crate', '--resolution', '0.5',
+                 '--margin', '0.5', '--height', '0.3'], cwd=folder, check=True,
+                timeout=3 * DEADLINE)
+            self.assertEqual(sorted(os.listdir(folder)), ['crate.pgm', 'crate.yaml'])
+            with open(f'{folder}/crate.pgm', 'rb') as file:
+                free, full = bytes([254] * 4), bytes([254, 0, 0, 254])
+                self.assertEqual(file.read(), b'P5\n4 4\n255\n' + free + full + full + free)
+
 
 if __name__ == '__main__':
     rospy.init_node('test_gz', disable_rostime=True)

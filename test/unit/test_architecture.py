@@ -42,12 +42,13 @@ ARROWS = {
     'sim/rendering':
         'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
     'sim/rendering/gl': '',
+    'sim/mapping': 'sim/core sim/description sim/meshes sim/resources sim/runtime',
     'sim/sensors':
         'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
         'sim/rendering',
     'sim/public':
-        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/plugins '
-        'sim/sensors',
+        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
+        'sim/plugins sim/sensors',
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',

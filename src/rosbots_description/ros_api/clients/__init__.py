@@ -2,5 +2,5 @@
 
 __all__ = [
     'demo', 'gazebo_interface', 'gz', 'joint_follower', 'joint_sliders', 'planar_sample',
-    'save_world', 'scenario_run', 'server_watch', 'spawn_model', 'velocity_publisher',
+    'save_map', 'save_world', 'scenario_run', 'server_watch', 'spawn_model', 'velocity_publisher',
 ]

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Self, SupportsIndex
@@ -19,6 +19,7 @@ from ..core import (
 )
 from ..description import ModelSpec, PhysicsSettings
 from ..formats import open_world, sdf_of_world
+from ..mapping import OccupancyGrid, occupancy_grid, write_map
 from ..physics import CompiledModel
 from ..resources import find_world, path_directories, write_world
 from ..runtime import Joint, Link, Model, add_empty_world, describe, populate
@@ -197,6 +198,42 @@ class World(runtime.World):
         spec = describe(self)
         write_world(os.path.abspath(path), sdf_of_world(spec), overwrite)
         return spec.faults
+
+    def occupancy_grid(self, height: float, resolution: float = 0.05, *,
+                       without: Collection[str] = (), margin: float = 1.0) -> OccupancyGrid:
+        """Return the map of a horizontal section through the world; see `sim.mapping`.
+
+        Args:
+            height: of the section, z in the world [m].
+            resolution: edge of a cell [m].
+            without: models to leave out besides those with joints, as robots are.
+            margin: free space around everything [m].
+        Raises:
+            NotFoundError: there is no model of a name in `without`.
+            SimError: the map would be too large, or a mesh cannot be read.
+            ValueError: a number is out of range.
+        """
+        self._require_open()
+        return occupancy_grid(self, height, resolution, without=without, margin=margin)
+
+    def save_map(self, path: str | os.PathLike[str], height: float, resolution: float = 0.05, *,
+                 without: Collection[str] = (), margin: float = 1.0,
+                 overwrite: bool = False) -> OccupancyGrid:
+        """Write that map as NAME.pgm and NAME.yaml, for map_server; return it.
+
+        Args:
+            path: NAME or NAME.yaml.
+            height: see `occupancy_grid`, as for all but the last.
+            resolution: [m]
+            without: names of models.
+            margin: [m]
+            overwrite: whether there may be files already.
+        Raises:
+            SimError: a file exists or cannot be written; or as `occupancy_grid`.
+        """
+        grid = self.occupancy_grid(height, resolution, without=without, margin=margin)
+        write_map(grid, os.fspath(path), overwrite)
+        return grid
 
     def model(self, name: str) -> Model:
         """Return the model of that name.

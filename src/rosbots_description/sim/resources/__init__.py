@@ -1,7 +1,7 @@
 """Resolve the addresses of files, open them safely, and write world files."""
 
 from .addresses import Addresses
-from .new_file import require_world_path, write_world
+from .new_file import require_world_path, write_file, write_world
 from .packages import PackageSearch
 from .safe_io import read_file, regular_state, within
 from .scratch import SharedFile, SharedFiles
@@ -55,5 +55,6 @@ __all__ = [
     'substitute_in_tree',
     'substitute_packages',
     'within',
+    'write_file',
     'write_world',
 ]

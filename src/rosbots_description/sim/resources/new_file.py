@@ -1,4 +1,4 @@
-"""Write world files where a user says: whole or not at all, and over no other file unasked."""
+"""Write files where a user says: whole or not at all, and over no other file unasked."""
 
 import contextlib
 import os
@@ -30,10 +30,19 @@ def write_world(path: str, text: str, overwrite: bool = False) -> None:
             nothing has changed.
     """
     require_world_path(path)
+    write_file(path, text.encode(), overwrite)
+
+
+def write_file(path: str, content: bytes, overwrite: bool = False) -> None:
+    """Write a file.
+
+    Raises:
+        SimError: there is a file already, or it cannot be written; then nothing has changed.
+    """
     try:
         if os.path.lexists(path) and not (overwrite and os.path.isfile(path)):
             raise FileExistsError(0, 'it exists already; overwrite a file only, and on purpose')
-        _write(path, text.encode(), overwrite)
+        _write(path, content, overwrite)
     except (OSError, ValueError) as error:
         reason = getattr(error, 'strerror', None) or error
         raise SimError(f"'{path}' cannot be written: {reason}") from error
