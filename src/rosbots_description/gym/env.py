@@ -96,7 +96,9 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         parts = {one.name: one.space for one in self._stage.observed}
         self.observation_space = spaces.Dict({**parts, **(more or {})})
         self.action_space = self._stage.actions.space
-        self.metadata = {**self.metadata, 'render_fps': max(1, round(1.0 / period))}
+        modes = [mode for mode in self.metadata['render_modes'] if mode != 'web' or has_window()]
+        self.metadata = {**self.metadata, 'render_modes': modes,
+                         'render_fps': max(1, round(1.0 / period))}
         self._ready = False
 
     def _require_mode(self, render_mode: str | None) -> None:
@@ -233,13 +235,18 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             self._window = None
 
 
+def has_window() -> bool:
+    """Tell whether what a page needs is installed."""
+    return importlib.util.find_spec('viser') is not None
+
+
 def open_window(world: World, port: int) -> 'Window':
     """Return a page that shows a world.
 
     Raises:
         SimError: viser is not installed, or the port is in use.
     """
-    if importlib.util.find_spec('viser') is None:
+    if not has_window():
         raise SimError("render_mode 'web' needs the Python package viser; "
                        "pip install 'rosbots_description[web]' installs it")
     from .window import Window

@@ -1,5 +1,6 @@
 """An environment in the browser: its own world, its own pace, and nothing while nobody looks."""
 
+import contextlib
 import threading
 import time
 from types import SimpleNamespace
@@ -113,6 +114,13 @@ def test_reset_is_up_to_the_program(env):
     for refused in (env._window.time.reset_world, env._window.time.reset_simulation):
         with pytest.raises(SimError, match='the program'):
             refused()
+
+
+def test_the_page_is_offered_where_viser_is_there(env, monkeypatch):
+    assert env.metadata['render_modes'] == ['rgb_array', 'web']
+    monkeypatch.setattr('importlib.util.find_spec', lambda _name: None)
+    with contextlib.closing(Drive(settle=0.1)) as without:
+        assert without.metadata['render_modes'] == ['rgb_array']
 
 
 def test_port_in_use_and_missing_viser_are_named(env, monkeypatch):
