@@ -38,6 +38,7 @@ from .site import Site
 from .start_view import StartView
 from .take_away import TakeAwayPanel, Worlds
 from .tree import ModelTree
+from .views import ViewPanel, look
 
 logger = logging.getLogger(__name__)
 
@@ -168,6 +169,7 @@ class Page:
             self._panels.append(Gizmo(
                 site.scene, models, self.selection, simulator.hands, history, self._notify))
         with tabs.add_tab('Show', viser.Icon.EYE):
+            ViewPanel(site.gui, models, self.selection, self._start)
             self._panels += [
                 FollowPanel(site, models, self.selection),
                 ShowPanel(site, scene, models, self.selection, self._lock)]
@@ -238,7 +240,7 @@ class Page:
         camera = self._site.initial_camera
         camera.position, camera.look_at = eye, target
         for client in self._new:
-            client.camera.position, client.camera.look_at = eye, target
+            look(client.camera, eye, target)
         self._new.clear()
 
     def _hear(self, motion: ShownMotion) -> None:

@@ -1,0 +1,83 @@
+"""Buttons and keys that turn the camera of a browser to everything, or to what is selected."""
+
+import math
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import viser
+
+from ..sim.core import Pose, Vector, as_vector, compose
+from ..sim.description import ShownLink
+from .bounds import corners
+from .descriptions import chosen_links
+from .models import Models
+from .panel import Panel
+from .selection import Selection
+from .start_view import StartView
+
+ROOM = 1.1  # around what is looked at
+SMALLEST = 0.2  # radius of what is looked at [m]: nearer, nobody knows where one is
+STEEP = 1e-3  # of a view from the top: straight down, no direction of the picture would be up
+TOP, FRONT = (-STEEP, 0.0, 1.0), (1.0, 0.0, 0.25)  # from what is looked at to the eye
+
+
+class ViewPanel(Panel):
+    """The view of a browser: as at first, from the top, from ahead, or as it is, but nearer."""
+
+    def __init__(self, gui: viser.GuiApi, models: Models, selection: Selection,
+                 start: StartView) -> None:
+        self._models, self._selection = models, selection
+        buttons = gui.add_button_group('View', ('Home', 'Top', 'Front', 'Fit all', 'Go to'), hint=(
+            'keys H, T, F, E; G goes to what is selected'))
+        looks: dict[str, tuple[str, Callable[[viser.CameraHandle], None]]] = {
+            'Home': ('H', lambda camera: look(camera, *start.choose())),
+            'Top': ('T', lambda camera: self._fit(camera, self._everything(), TOP)),
+            'Front': ('F', lambda camera: self._fit(camera, self._everything(), FRONT)),
+            'Fit all': ('E', lambda camera: self._fit(camera, self._everything())),
+            'Go to': ('G', lambda camera: self._fit(camera, self._chosen())),
+        }
+        buttons.on_click(lambda event: _turn(looks[buttons.value][1], event))
+        for name, (key, turn) in looks.items():
+            label = 'Go to what is selected' if name == 'Go to' else f'View: {name}'
+            command = gui.add_command(label, hotkey=key)  # type: ignore[arg-type]  # any letter
+            command.on_trigger(partial(_turn, turn))
+
+    def _everything(self) -> list[Vector]:
+        return self._corners(link for model in self._models.all.values() for link in model.links)
+
+    def _chosen(self) -> list[Vector]:
+        model = self._models.all.get(self._selection.model or '')
+        return self._corners(chosen_links(model, self._selection.link)) if model else []
+
+    def _corners(self, links: Iterable[ShownLink]) -> list[Vector]:
+        return [compose(self._models.link_pose(link), Pose(corner)).position
+                for link in links for corner in corners(link.visuals)]
+
+    @staticmethod
+    def _fit(camera: viser.CameraHandle, points: list[Vector],
+             direction: Vector | None = None) -> None:
+        """Look at points from a direction, by default the present one; not at nothing."""
+        if not points:
+            return
+        low, high = np.min(points, axis=0), np.max(points, axis=0)
+        middle = (low + high) / 2.0
+        radius = max(float(np.linalg.norm(high - low)) / 2.0, SMALLEST)
+        way = np.asarray(direction or camera.position - camera.look_at)
+        narrow = min(math.tan(camera.fov / 2.0), math.tan(camera.fov / 2.0) * camera.aspect)
+        far = ROOM * radius / math.sin(math.atan(narrow))
+        look(camera, as_vector(middle + far * way / max(float(np.linalg.norm(way)), 1e-9)),
+             as_vector(middle))
+
+
+def look(camera: viser.CameraHandle, eye: Vector, target: Vector) -> None:
+    """Move a camera to a point, and turn it to another."""
+    camera.position, camera.look_at = eye, target  # viser moves the second along with the first
+
+
+def _turn(turn: Callable[[viser.CameraHandle], None],
+          event: viser.GuiEvent[Any] | viser.CommandEvent) -> None:
+    if event.client is not None:
+        with event.client.atomic():
+            turn(event.client.camera)

@@ -1,0 +1,98 @@
+"""Views of a browser: by buttons and keys, and by no other browser's."""
+
+import math
+
+import numpy as np
+import pytest
+from support.browser import CAMERA, Browser
+from support.window import clock, model
+
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import Plane, SceneChange
+
+
+@pytest.fixture
+def looking(browser, simulator, page):
+    """A browser that looks at boxes of 1 m from above."""
+    simulator.change(SceneChange(True, (
+        model('a', 1), model('b', 2), model('ground', 3, Plane()))))
+    simulator.motion(clock(_1=Pose((0.0, 0.0, 0.0)), _2=Pose((10.0, 0.0, 0.0))))
+    browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
+    browser.wait_until(lambda: '/models/b/link' in browser.nodes
+                       and browser.nodes['/models/b/link'][1] == [10.0, 0.0, 0.0])
+    browser.send(CAMERA | {'position': [0.0, 0.0, 50.0], 'look_at': [0.0, 0.0, 0.0]})
+    browser.wait_until(lambda: browser.control('View'))
+    catch_up(browser, page, 'begin')
+    return browser
+
+
+def catch_up(browser, page, word):
+    """Read all that the page has told a browser until now."""
+    page._notify(word)
+    browser.wait_until(lambda: word in browser.notes())
+
+
+def told(browser):
+    """Return eye and target that the page has told a browser last."""
+    return tuple(next(np.array(message[key]) for message in reversed(browser.messages)
+                      if message['type'] == kind)
+                 for key, kind in (('position', 'SetCameraPositionMessage'),
+                                   ('look_at', 'SetCameraLookAtMessage')))
+
+
+def turned(browser, page, act):
+    """Return eye and target after an act."""
+    browser.messages.clear()
+    act()
+    browser.wait_until(lambda: any(m['type'] == 'SetCameraLookAtMessage' for m in browser.messages))
+    catch_up(browser, page, 'turned')
+    return told(browser)
+
+
+def test_the_top_view_shows_everything_but_planes(looking, page):
+    eye, target = turned(looking, page, lambda: looking.press('T'))
+    assert target[:2] == pytest.approx([5.0, 0.0], abs=0.05)
+    assert eye - target == pytest.approx([0.0, 0.0, eye[2] - target[2]], abs=0.1)
+    radius = 5.5
+    assert radius < (eye[2] - target[2]) * math.tan(CAMERA['fov'] / 2.0) < 2.0 * radius
+
+
+def test_a_view_from_the_front_is_ahead(looking, page):
+    eye, target = turned(looking, page, lambda: looking.choose('View', 'Front'))
+    assert eye[0] > 15.0
+    assert eye[1] == pytest.approx(target[1])
+    assert eye[2] > target[2]
+
+
+def test_what_is_selected_is_gone_to_from_where_one_is(looking, page):
+    page.selection.choose('b')
+    looking.send(CAMERA | {'position': [0.0, -20.0, 0.0], 'look_at': [0.0, 0.0, 0.0]})
+    looking.wait_until(lambda: tuple(
+        next(iter(page._site.get_clients().values())).camera.position) == (0.0, -20.0, 0.0))
+    eye, target = turned(looking, page, lambda: looking.press('G'))
+    assert target[:2] == pytest.approx([10.0, 0.0], abs=0.05)
+    assert (eye - target)[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert -4.0 < eye[1] < -1.0
+
+
+def test_home_is_the_first_view(looking, page):
+    first = [np.array(part) for part in page._start.choose()]
+    for found, wanted in zip(turned(looking, page, lambda: looking.press('H')), first, strict=True):
+        assert found == pytest.approx(wanted)
+
+
+def test_other_browsers_keep_their_views(looking, page, site):
+    with Browser(site.address) as other:
+        other.wait_until(lambda: other.control('View') and len(site.get_clients()) == 2)
+        catch_up(other, page, 'there')
+        seen = len(other.messages)
+        turned(looking, page, lambda: looking.press('T'))
+        catch_up(other, page, 'after')
+        assert not [m for m in other.messages[seen:] if m['type'].startswith('SetCamera')]
+
+
+def test_nothing_to_go_to_is_no_fault(looking, page):
+    looking.messages.clear()
+    looking.press('G')
+    turned(looking, page, lambda: looking.press('T'))
+    assert sum(m['type'] == 'SetCameraPositionMessage' for m in looking.messages) == 1
