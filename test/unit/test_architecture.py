@@ -39,6 +39,8 @@ ARROWS = {
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
+    'sim/controllers':
+        'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/rendering':
         'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
     'sim/rendering/gl': '',
@@ -48,7 +50,7 @@ ARROWS = {
         'sim/rendering',
     'sim/public':
         'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
-        'sim/plugins sim/sensors',
+        'sim/plugins sim/controllers sim/sensors',
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',
@@ -61,9 +63,10 @@ ARROWS = {
     'ros_api/topics':
         'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
     'ros_api/reconfigure':
-        'sim/plugins sim/sensors ros_api/server ros_api/transport ros_api/services',
+        'sim/plugins sim/controllers sim/sensors '
+        'ros_api/server ros_api/transport ros_api/services',
     'ros_api/adapters':
-        'sim/core sim/runtime sim/plugins sim/sensors '
+        'sim/core sim/formats sim/runtime sim/plugins sim/controllers sim/sensors '
         'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
     'ros_api/views':
         'sim/core sim/description sim/runtime sim/rendering '

@@ -16,7 +16,7 @@ from rosbots_description.ros_api.node.world_loading import read_world
 from rosbots_description.ros_api.reconfigure import physics
 from rosbots_description.ros_api.server.loop import Loop
 from rosbots_description.ros_api.server.server import Server
-from rosbots_description.sim import plugins  # noqa: F401  registers
+from rosbots_description.sim import controllers, plugins  # noqa: F401  register
 from rosbots_description.sim.plugin_registry.gazebo_libraries import missing_libraries
 from rosbots_description.sim.plugin_registry.registry import known_filenames
 from rosbots_description.sim.runtime.world import World

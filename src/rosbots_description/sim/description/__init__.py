@@ -27,6 +27,14 @@ from .model_spec import (
 )
 from .model_text import ModelText
 from .physics_settings import PhysicsSettings, check_physics
+from .robot_control import (
+    CONTINUOUS,
+    ControlledJoint,
+    Mimic,
+    RobotControl,
+    SoftLimits,
+    Transmission,
+)
 from .sensor_spec import SensorSpec
 from .shown_reading import ShownReading
 from .shown_scene import (
@@ -48,11 +56,12 @@ from .world_spec import (
 )
 
 __all__ = [
-    'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT', 'SUN',
-    'WORLD', 'Box', 'Collision', 'Colour', 'Cylinder', 'Element', 'Geometry', 'Inertial',
-    'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'ModelSpec', 'ModelState',
-    'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection', 'SceneChange', 'SceneSpec',
-    'SensorSpec', 'ShownContact', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownReading',
-    'ShownSensor', 'Sphere', 'Surface', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material',
-    'inertia', 'material_of_colours',
+    'CONTINUOUS', 'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT',
+    'SUN', 'WORLD', 'Box', 'Collision', 'Colour', 'ControlledJoint', 'Cylinder', 'Element',
+    'Geometry', 'Inertial', 'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'Mimic',
+    'ModelSpec', 'ModelState', 'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection',
+    'RobotControl', 'SceneChange', 'SceneSpec', 'SensorSpec', 'ShownContact', 'ShownLink',
+    'ShownModel', 'ShownMotion', 'ShownReading', 'ShownSensor', 'SoftLimits', 'Sphere', 'Surface',
+    'Transmission', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
+    'material_of_colours',
 ]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from ..core import IDENTITY, Pose, Vector, rotate
 from .element import Element, PluginSpec
+from .robot_control import RobotControl
 from .sensor_spec import SensorSpec
 
 Colour = tuple[float, float, float, float]  # red, green, blue, alpha in 0..1
@@ -251,6 +252,8 @@ class ModelSpec:
     reduced: Mapping[str, tuple[str, Pose]] = field(default_factory=dict)
     nested: Mapping[str, Pose] = field(default_factory=dict)  # nested model -> pose of its frame
     left_out: tuple[str, ...] = ()  # parts that were left out, each in a few words
+    # What controllers need of a URDF; SDF has nothing of it.
+    control: RobotControl | None = field(default=None, compare=False)
     # Location of its description, e.g. 'robot_description, line 1', to begin messages with.
     location: str = field(default='', compare=False)
 

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Self, SupportsIndex
 
-from .. import plugins, runtime, sensors  # noqa: F401  two register what descriptions load
+from .. import controllers, plugins, runtime, sensors  # noqa: F401  register what is loaded
 from ..core import (
     NANOSECONDS,
     NotFoundError,

@@ -364,6 +364,18 @@ class Model:
         raise NotFoundError(
             f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}")
 
+    def controller(self, name: str) -> Any:  # noqa: ANN401  each class has commands of its own
+        """Return the controller of that name, as the plugin gazebo_ros_control has loaded it.
+
+        Raises:
+            NotFoundError: no such controller is loaded.
+        """
+        loaded = {own: one for plugin in self.plugins for own, one in plugin.controllers.items()}
+        if name not in loaded:
+            raise NotFoundError(f"model '{self.name}' has no controller '{name}'; its controllers: "
+                                f"{', '.join(loaded) or 'none'}")
+        return loaded[name]
+
     @property
     def parts(self) -> list[ModelPart]:
         """Return plugins and sensors, as they were loaded."""

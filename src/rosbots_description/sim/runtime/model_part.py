@@ -34,5 +34,12 @@ class ModelPart(Hook):
         """
         return ()
 
+    def components(self) -> Iterable[object]:
+        """Return objects of its state that others refer to, such as the controllers of a robot.
+
+        They keep their identity: when the world's state is restored, so are their attributes.
+        """
+        return ()
+
     def unload(self) -> None:
         """Release resources; the model is about to be deleted."""

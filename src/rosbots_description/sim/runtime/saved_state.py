@@ -25,7 +25,8 @@ class SavedState:
         self._seed = world.seed
         self._snapshot = world.engine.snapshot()
         self._shared = {id(one): one for one in self._find_shared()}
-        self._hooks = [(hook, self._copied(vars(hook))) for hook in hooks]
+        owners = (*hooks, *self._components())
+        self._hooks = [(owner, self._copied(vars(owner))) for owner in owners]
         self._newest = [(output, output.latched) for output in self._outputs()]
 
     def restore(self, world: 'World') -> None:
@@ -62,6 +63,10 @@ class SavedState:
         for part in self._parts():
             yield from (one for one in part.shared() if isinstance(one, Output))
 
+    def _components(self) -> Iterator[object]:
+        for part in self._parts():
+            yield from part.components()
+
     def _copied(self, state: dict[str, Any]) -> dict[str, Any]:
         """Return a deep copy of a hook's own state; shared objects are not copied."""
         return copy.deepcopy(state, dict(self._shared))
@@ -74,7 +79,7 @@ class SavedState:
             yield from (model, model.spec, model.body, *model.links.values())
             yield from model.joints.values()
         for part in self._parts():
-            yield from (part, *part.shared())
+            yield from (part, *part.shared(), *part.components())
 
 
 def _listed(models: Sequence[Any]) -> str:

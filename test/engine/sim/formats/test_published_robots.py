@@ -87,7 +87,7 @@ ROBOTS = {
     'sensors': (gazebo('<sensor type="ray" name="s">'
                        + PLUGIN.format('libgazebo_ros_laser.so') + '</sensor>'), 1),
     'unavailable plugins': (
-        link() + f'<gazebo>{PLUGIN.format("libgazebo_ros_control.so")}</gazebo>'
+        link() + f'<gazebo>{PLUGIN.format("libgazebo_ros_elevator.so")}</gazebo>'
         f'<gazebo>{PLUGIN.format("libmine.so")}<plugin name="x"/></gazebo>', 3),
     'names of any kind': (
         TWO.replace('"a"', '"my base/link"') + joint().replace('"a"', '"my base/link"'), 0),

@@ -36,6 +36,7 @@ from ..xml import (
 )
 from .elements import LinkReader, read_urdf_joint
 from .gazebo_tags import GazeboTags, SpringTags, apply_tags, read_gazebo_tags
+from .robot_control import read_robot_control
 
 logger = logging.getLogger(__name__)
 
@@ -97,6 +98,7 @@ def load_urdf(
         reduction.parents,
         left_out=tuple(dict.fromkeys((*tags.left_out.parts, *_quoted(reduction.vanished)))),
         location=location(robot),
+        control=read_robot_control(robot),
     )
     pose = _robot_origin(robot)
     _log(name, source, [*notes, *tags.left_out.warnings, *_reduction_notes(reduction)], tags)

@@ -1,0 +1,18 @@
+"""Errors about controllers, in upstream's words."""
+
+from ..core import SimError
+
+
+class ControllerError(SimError):
+    """A controller cannot be loaded, unloaded or switched.
+
+    `sentences` are upstream's lines of log, in order; `str()` joins them.
+    """
+
+    def __init__(self, *sentences: str) -> None:
+        super().__init__('; '.join(sentences))
+        self.sentences = sentences
+
+
+class ResourceError(ControllerError):
+    """A joint or sensor that the hardware interface does not have."""

@@ -1,0 +1,252 @@
+"""The controller manager: loading, switching, unloading, conflicts, bad input; states of worlds."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from support.controllers import EFFORT, POSITION, VELOCITY, spawn_arm
+
+from rosbots_description.sim import NotFoundError, World
+from rosbots_description.sim.controllers import ControllerError
+
+GROUP = 'position_controllers/JointGroupPositionController'
+ONE = 'position_controllers/JointPositionController'
+BOTH = {'joints': ['joint1', 'joint2']}
+STATES = 'joint_state_controller/JointStateController'
+PID = 'effort_controllers/JointPositionController'
+GAINS = {'joint': 'joint1', 'pid': {'p': 100.0, 'i': 0.01, 'd': 10.0}}
+LATER = 300  # steps
+
+
+@pytest.fixture
+def world():
+    with World.empty() as made:
+        yield made
+
+
+def refused(call, *arguments):
+    """Return the sentences of the error that a call raises."""
+    with pytest.raises(ControllerError) as error:
+        call(*arguments)
+    return error.value.sentences
+
+
+def test_a_group_follows_its_command(world):
+    model, manager = spawn_arm(world, POSITION)
+    manager.load('arm', GROUP, BOTH)
+    manager.switch(['arm'])
+    model.controller('arm').command([0.5, -0.3])
+    world.run(LATER)
+    assert [joint.position for joint in model.joints.values()] == pytest.approx(
+        [0.5, -0.3], abs=1e-3)
+
+
+def test_states_are_listed_as_upstream(world):
+    _, manager = spawn_arm(world, POSITION)
+    manager.load('arm', GROUP, BOTH)
+    manager.load('states', STATES, {'publish_rate': 50})
+    claimed = ((f'hardware_interface::{POSITION.rpartition("/")[2]}', ('joint1', 'joint2')),)
+    assert manager.list() == [
+        ('arm', 'initialized', GROUP, claimed),
+        ('states', 'initialized', STATES, (('hardware_interface::JointStateInterface', ()),))]
+    manager.switch(['arm'])
+    assert manager.list()[0].state == 'running'
+    manager.switch([], ['arm'])
+    assert manager.list()[0].state == 'stopped'
+
+
+def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
+    model, manager = spawn_arm(world)
+    manager.load('states', STATES, {'publish_rate': 100, 'extra_joints': [
+        {'name': 'extra', 'position': 0.25}, {'name': 'joint1'}, {'position': 1.0}]})
+    manager.switch(['states'])
+    came = []
+    model.controller('states').outputs['joint_states'].connect(
+        lambda reading: came.append((world.clock.steps, reading)))
+    world.run(100)
+    steps = [step for step, _ in came]
+    later = steps[1:]  # as upstream, the first one comes at once
+    assert [b - a for a, b in pairwise(later)] == [10] * (len(later) - 1)
+    assert len(steps) == 11
+    assert came[0][1].names == ('joint1', 'joint2', 'extra')
+    assert came[0][1].positions[2] == 0.25
+
+
+@pytest.mark.parametrize(('type_name', 'parameters', 'sentences'), [
+    (PID, GAINS | {'joint': 'nose'}, (
+        "Exception thrown while initializing controller 'c'.\nCould not find resource 'nose' in "
+        "'hardware_interface::EffortJointInterface'.",
+        "Initializing controller 'c' failed")),
+    (PID, {'joint': 'joint1'}, (
+        'No p gain specified for pid.  Namespace: /arm/c/pid',
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    (PID, {'joint': 'joint1', 'pid': {'p': 'much'}}, (
+        'No p gain specified for pid.  Namespace: /arm/c/pid',
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    (PID, {}, (
+        'No joint given (namespace: /arm/c)',
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    (ONE, {'joint': 'joint1'}, (
+        "Exception thrown while initializing controller 'c'.\nCould not find resource 'joint1' in "
+        "'hardware_interface::PositionJointInterface'.",
+        "Initializing controller 'c' failed")),
+    ('effort_controllers/JointGroupEffortController', {'joints': []}, (
+        'List of joint names is empty.',
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    ('effort_controllers/JointGroupEffortController', {'joints': 'joint1'}, (
+        "Failed to getParam 'joints' (namespace: /arm/c).",
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    ('effort_controllers/JointGroupEffortController', {'joints': ['joint1', 'nose']}, (
+        "Exception thrown: Could not find resource 'nose' in "
+        "'hardware_interface::EffortJointInterface'.",
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    (STATES, {}, (
+        "Parameter 'publish_rate' not set",
+        'Failed to initialize the controller', "Initializing controller 'c' failed")),
+    ('my/Controller', {}, (
+        "Could not load controller 'c' because controller type 'my/Controller' does not exist.",
+        "Use 'rosservice call controller_manager/list_controller_types' to get the available "
+        'types')),
+    ('', {}, (
+        "Could not load controller 'c' because the type was not specified. Did you load the "
+        "controller configuration on the parameter server (namespace: '/arm/c')?",)),
+])
+def test_a_controller_that_cannot_be_loaded_gets_upstreams_answer(
+    type_name, parameters, sentences, world
+):
+    _, manager = spawn_arm(world)
+    assert refused(manager.load, 'c', type_name, parameters) == sentences
+    assert manager.list() == []
+    world.run(10)
+
+
+def test_names_are_unique_and_running_controllers_stay(world):
+    _, manager = spawn_arm(world)
+    manager.load('c', PID, GAINS)
+    assert refused(manager.load, 'c', PID, GAINS) == (
+        "A controller named 'c' was already loaded inside the controller manager",)
+    manager.switch(['c'])
+    assert refused(manager.unload, 'c') == (
+        "Could not unload controller with name 'c' because it is still running",)
+    manager.switch([], ['c'])
+    manager.unload('c')
+    assert refused(manager.unload, 'c') == (
+        "Could not unload controller with name 'c' because no controller with this name exists",)
+
+
+def test_a_joint_has_one_running_controller(world):
+    _, manager = spawn_arm(world, POSITION)
+    manager.load('arm', GROUP, BOTH)
+    manager.load('one', ONE, {'joint': 'joint1'})
+    manager.switch(['arm'])
+    assert refused(manager.switch, ['one']) == (
+        'Resource conflict on [joint1].  Controllers = [arm, one, ]',
+        'Could not switch controllers, due to resource conflict')
+    assert [one.state for one in manager.list()] == ['running', 'initialized']
+    manager.switch(['one'], ['arm'])
+    assert [one.state for one in manager.list()] == ['stopped', 'running']
+
+
+def test_strictness_is_upstreams(world):
+    _, manager = spawn_arm(world)
+    manager.load('c', PID, GAINS)
+    assert refused(manager.switch, ['d']) == (
+        "Could not start controller with name 'd' because no controller with this name exists",)
+    assert refused(manager.switch, [], ['d']) == (
+        "Could not stop controller with name 'd' because no controller with this name exists",)
+    assert refused(manager.switch, [], ['c']) == (
+        "Could not stop controller 'c' since it is not running",)
+    manager.switch(['c', 'd'], ['c'], strict=False)
+    assert refused(manager.switch, ['c']) == ("Controller 'c' is already running",)
+    assert refused(manager.switch, ['c'], ['c']) == (
+        "Could no start or stop controller 'c' because of conflicting switching command",)
+    manager.switch(['c'], ['d'], strict=False)
+    assert manager.list()[0].state == 'running'
+
+
+def test_a_thousand_switches_leave_nothing_behind(world):
+    model, manager = spawn_arm(world, POSITION)
+    plugin = model.plugin('gazebo_ros_control')
+    for i in range(1000):
+        name = f'c{i}'
+        manager.load(name, GROUP, BOTH)
+        manager.switch([name])
+        world.step()
+        manager.switch([], [name])
+        manager.unload(name)
+    assert manager.list() == []
+    fresh = len([*plugin.components(), *plugin.shared()])
+    with World.empty() as other:
+        again, _ = spawn_arm(other, POSITION)
+        unused = again.plugin('gazebo_ros_control')
+        assert fresh == len([*unused.components(), *unused.shared()])
+    assert len(world.schedule._hooks) == len(other.schedule._hooks)
+
+
+@pytest.mark.parametrize('command', [math.nan, math.inf, -math.inf])
+def test_a_command_that_is_not_finite_is_refused(command, world):
+    model, manager = spawn_arm(world, POSITION)
+    manager.load('arm', GROUP, BOTH)
+    manager.switch(['arm'])
+    controller = model.controller('arm')
+    controller.command([0.1, 0.1])
+    with pytest.raises(ValueError, match='finite'):
+        controller.command([0.2, command])
+    world.run(LATER)
+    assert model.joint('joint1').position == pytest.approx(0.1, abs=1e-3)
+
+
+def test_a_command_of_another_size_is_refused(world):
+    model, manager = spawn_arm(world, POSITION)
+    manager.load('arm', GROUP, BOTH)
+    with pytest.raises(ValueError, match=r'Dimension of command \(1\) does not match number of '
+                                         r'joints \(2\)! Not executing!'):
+        model.controller('arm').command([0.2])
+
+
+def test_an_unknown_controller_is_named_with_those_that_exist(world):
+    model, manager = spawn_arm(world)
+    with pytest.raises(NotFoundError, match="no controller 'arm'; its controllers: none"):
+        model.controller('arm')
+    manager.load('c', PID, GAINS)
+    with pytest.raises(NotFoundError, match='its controllers: c'):
+        model.controller('arm')
+
+
+@pytest.mark.parametrize('interface', [EFFORT, POSITION, VELOCITY])
+def test_a_restored_world_repeats_bit_for_bit(interface, world):
+    kind = interface.rpartition('/')[2].removesuffix('JointInterface').lower()
+    name = {'effort': 'JointGroupEffortController', 'position': 'JointGroupPositionController',
+            'velocity': 'JointGroupVelocityController'}[kind]
+    gains = {one: {'p': 80.0, 'i': 5.0, 'd': 3.0, 'i_clamp': 4.0} for one in BOTH['joints']}
+    model, manager = spawn_arm(world, interface, {} if kind == 'velocity' else gains)
+    manager.load('arm', f'{kind}_controllers/{name}', BOTH)
+    manager.switch(['arm'])
+    controller = model.controller('arm')
+    controller.command([0.7, -0.4])
+    world.run(50)
+    saved = world.save_state()
+
+    def go():
+        world.run(100)
+        controller.command([-0.2, 0.3])
+        world.run(LATER)
+        return [joint.state() for joint in model.joints.values()]
+
+    first = go()
+    manager.switch([], ['arm'])
+    manager.unload('arm')
+    world.restore(saved)
+    assert model.controller('arm') is controller
+    assert go() == first
+
+
+def test_commands_survive_a_reset_of_the_simulation(world):
+    model, manager = spawn_arm(world, POSITION)
+    manager.load('arm', GROUP, BOTH)
+    manager.switch(['arm'])
+    model.controller('arm').command([0.5, -0.3])
+    world.run(LATER)
+    world.reset_simulation()
+    world.run(LATER)
+    assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)

@@ -1,0 +1,33 @@
+"""The arm that was recorded under ros_control, here and as recorded."""
+
+import json
+from bisect import bisect_left
+
+from .recorded import DATA
+
+RECORDED = json.loads((DATA / 'controllers.json').read_text())
+EFFORT, POSITION, VELOCITY = (
+    f'hardware_interface/{kind}JointInterface' for kind in ('Effort', 'Position', 'Velocity'))
+_TEXT = (DATA / 'robots' / 'twolink.urdf').read_text()
+
+
+def arm(interface=EFFORT, change=lambda text: text):
+    """Return the URDF of the arm with joints of one interface."""
+    return change(_TEXT.replace(EFFORT, interface))
+
+
+def spawn_arm(world, interface=EFFORT, gains=None, change=lambda text: text, limits=None):
+    """Spawn the arm; return it, and its controller manager."""
+    model = world.spawn(arm(interface, change), name='arm')
+    plugin = model.plugin('gazebo_ros_control')
+    plugin.configure(parameters={
+        'gazebo_ros_control': {'pid_gains': gains or {}}, 'joint_limits': limits or {}})
+    return model, plugin.manager
+
+
+def sampled(rows, time, column):
+    """Return a recorded quantity at a time, between two rows."""
+    i = min(max(bisect_left(rows, [time]), 1), len(rows) - 1)
+    (t0, *before), (t1, *after) = rows[i - 1], rows[i]
+    share = (time - t0) / (t1 - t0)
+    return before[column] + share * (after[column] - before[column])
