@@ -4,8 +4,17 @@ A control law (`pid`, `limits`, …) knows no interface; a controller reads para
 commands, and applies the law; the manager loads, switches and updates controllers.
 """
 
-from . import joint_command, joint_pid, joint_state  # noqa: F401
+from . import (  # noqa: F401
+    ackermann_steering,
+    diff_drive,
+    joint_command,
+    joint_pid,
+    joint_state,
+)
+from .ackermann_steering import AckermannSteeringController
 from .controller import Controller, ControllerSpec, RateGate, require_finite
+from .diff_drive import DiffDriveController
+from .drive import DriveController
 from .errors import ControllerError
 from .hardware import EFFORT, POSITION, STATE, VELOCITY, JointHandle, SimulatedRobot
 from .joint_command import JointCommandController, JointGroupCommandController
@@ -23,8 +32,9 @@ from .plugin import RosControl
 from .registry import register_controller
 
 __all__ = [
-    'EFFORT', 'POSITION', 'STATE', 'VELOCITY', 'Controller', 'ControllerError', 'ControllerManager',
-    'ControllerParameters', 'ControllerSpec', 'ControllerStatus', 'Gains', 'JointCommandController',
+    'EFFORT', 'POSITION', 'STATE', 'VELOCITY', 'AckermannSteeringController', 'Controller',
+    'ControllerError', 'ControllerManager', 'ControllerParameters', 'ControllerSpec',
+    'ControllerStatus', 'DiffDriveController', 'DriveController', 'Gains', 'JointCommandController',
     'JointGroupCommandController', 'JointGroupPositionController', 'JointHandle', 'JointPidState',
     'JointPositionController', 'JointStateController', 'JointVelocityController', 'Pid', 'RateGate',
     'RosControl', 'SimulatedRobot', 'register_controller', 'require_finite',

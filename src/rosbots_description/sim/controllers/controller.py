@@ -55,7 +55,7 @@ class Controller:
         self.outputs: dict[str, Output[Any]] = {}
         self.pids: dict[str, Pid] = {}
         self.claims: tuple[tuple[str, tuple[str, ...]], ...] = ()
-        self._claimed: list[str] = []
+        self._claimed: dict[str, list[str]] = {spec.interface: []}
         self.is_read = False
 
     @property
@@ -86,14 +86,17 @@ class Controller:
         """Return objects of its state that others refer to, besides itself and its PIDs."""
         return ()
 
-    def joint(self, name: str) -> JointHandle:
+    def joint(self, name: str, interface: str = '') -> JointHandle:
         """Return a joint, which it claims.
 
+        Args:
+            interface: of the joint; '' for that of the controller.
         Raises:
             ResourceError: the interface does not have it.
         """
-        handle = self.robot.handle(self.interface, name)
-        self._claimed.append(name)
+        interface = interface or self.interface
+        handle = self.robot.handle(interface, name)
+        self._claimed.setdefault(interface, []).append(name)
         return handle
 
     def pid(self, path: str) -> Pid:
@@ -130,7 +133,8 @@ class Controller:
 
     def finish_loading(self) -> None:
         """Freeze what it claims."""
-        self.claims = ((self.interface, tuple(sorted(self._claimed))),)
+        self.claims = tuple((interface, tuple(sorted(set(names))))
+                            for interface, names in self._claimed.items())
 
 
 class RateGate:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ..core import ZERO, Vector
+
 CONTINUOUS = 'continuous'  # a URDF's revolute joint without position limits
 
 
@@ -48,6 +50,7 @@ class ControlledJoint:
         lower, upper: position limits [rad or m]; infinite for a continuous joint.
         velocity: velocity limit [rad/s or m/s].
         effort: effort limit [N m or N].
+        origin: of the joint in its parent link [m].
     """
 
     type: str
@@ -58,6 +61,7 @@ class ControlledJoint:
     effort: float = math.inf
     soft: SoftLimits | None = None
     mimic: Mimic | None = None
+    origin: Vector = ZERO
 
 
 @dataclass(frozen=True)

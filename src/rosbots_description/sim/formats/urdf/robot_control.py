@@ -7,7 +7,7 @@ import math
 
 from lxml import etree
 
-from ...core import ModelError, parse_number
+from ...core import ZERO, ModelError, Vector, as_vector, parse_number, parse_numbers
 from ...description import ControlledJoint, Mimic, RobotControl, SoftLimits, Transmission
 from ...resources import parse_xml
 
@@ -92,13 +92,19 @@ def _joint(element: etree._Element) -> ControlledJoint:
     if mimic is not None and mimic.get('joint'):
         copied = Mimic(
             mimic.get('joint', ''), _number(mimic, 'multiplier', 1.0), _number(mimic, 'offset'))
+    place = _origin(element.find('origin'))
     if limit is None:
-        return ControlledJoint(kind, soft=soft, mimic=copied)
+        return ControlledJoint(kind, soft=soft, mimic=copied, origin=place)
     lower, upper = -math.inf, math.inf
     if kind in ('revolute', 'prismatic'):
         lower, upper = sorted((_number(limit, 'lower'), _number(limit, 'upper')))
     return ControlledJoint(kind, True, lower, upper, abs(_number(limit, 'velocity')),
-                           abs(_number(limit, 'effort')), soft, copied)
+                           abs(_number(limit, 'effort')), soft, copied, place)
+
+
+def _origin(element: etree._Element | None) -> Vector:
+    numbers = None if element is None else parse_numbers(element.get('xyz', ''), 3)
+    return ZERO if numbers is None else as_vector(numbers)
 
 
 def _number(element: etree._Element, key: str, default: float = 0.0) -> float:

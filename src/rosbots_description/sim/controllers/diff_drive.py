@@ -1,0 +1,79 @@
+"""The differential drive: wheels on two sides follow a planar velocity command.
+
+Parameters, defaults and timing are those of diff_drive_controller 0.22.
+"""
+
+from .drive import DriveController, set_commands
+from .errors import ControllerError
+from .hardware import VELOCITY, JointHandle
+from .registry import register_controller
+
+
+@register_controller('diff_drive_controller/DiffDriveController', VELOCITY)
+class DiffDriveController(DriveController):
+    """Drive the wheels of two sides.
+
+    The multipliers of radius and separation may be set at any time.
+    """
+
+    def load_geometry(self) -> None:
+        """Read names and sizes of the wheels; what is not given is that of the URDF."""
+        read = self.params.read
+        self._left_names, self._right_names = (
+            self.wheel_names(path) for path in ('left_wheel', 'right_wheel'))
+        left, right = len(self._left_names), len(self._right_names)
+        if left != right:
+            raise ControllerError(f'#left wheels ({left}) != #right wheels ({right}).')
+        self.wheel_separation_multiplier = read('wheel_separation_multiplier', 1.0)
+        both = self.params.number('wheel_radius_multiplier')
+        one = 1.0 if both is None else both
+        self.left_wheel_radius_multiplier = read('left_wheel_radius_multiplier', one)
+        self.right_wheel_radius_multiplier = read('right_wheel_radius_multiplier', one)
+        if both is not None:
+            self.left_wheel_radius_multiplier = self.right_wheel_radius_multiplier = both
+        names = self._left_names[0], self._right_names[0]
+        self.wheel_separation = self.length('wheel_separation') or self.distance(*names)
+        self.wheel_radius_given = self.length('wheel_radius') or self.wheel_radius(names[0])
+
+    def load_joints(self) -> None:
+        """Find the wheels."""
+        self.left: tuple[JointHandle, ...] = tuple(map(self.joint, self._left_names))
+        self.right: tuple[JointHandle, ...] = tuple(map(self.joint, self._right_names))
+        self.begin_measuring()
+
+    def begin_measuring(self) -> None:
+        """Measure the rotation of the wheels from here on."""
+        self._ways = self._measure()
+
+    def _measure(self) -> tuple[float, float]:
+        """Return the mean distances of the rims [m], left and right."""
+        left, right = (sum(one.position for one in side) / len(side)
+                       for side in (self.left, self.right))
+        return left * self._radii[0], right * self._radii[1]
+
+    @property
+    def _radii(self) -> tuple[float, float]:
+        radius = self.wheel_radius_given
+        return (radius * self.left_wheel_radius_multiplier,
+                radius * self.right_wheel_radius_multiplier)
+
+    @property
+    def _separation(self) -> float:
+        return self.wheel_separation * self.wheel_separation_multiplier
+
+    def advance_odometry(self, now_ns: int) -> None:
+        """Add the rotation of the wheels."""
+        before, self._ways = self._ways, self._measure()
+        left, right = (now - then for now, then in zip(self._ways, before, strict=True))
+        self.planar.advance((left + right) / 2.0, (right - left) / self._separation, now_ns)
+
+    def drive(self, linear_x: float, angular_z: float, linear_y: float) -> None:
+        """Set the wheels' speeds."""
+        half = angular_z * self._separation / 2.0
+        left, right = self._radii
+        set_commands(self.left, (linear_x - half) / left)
+        set_commands(self.right, (linear_x + half) / right)
+
+    def stand(self) -> None:
+        """Stop the wheels."""
+        set_commands((*self.left, *self.right), 0.0)
