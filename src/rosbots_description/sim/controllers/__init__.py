@@ -10,6 +10,7 @@ from . import (  # noqa: F401
     joint_command,
     joint_pid,
     joint_state,
+    joint_trajectory,
 )
 from .ackermann_steering import AckermannSteeringController
 from .controller import Controller, ControllerSpec, RateGate, require_finite
@@ -25,17 +26,21 @@ from .joint_pid import (
     JointVelocityController,
 )
 from .joint_state import JointStateController
+from .joint_trajectory import FollowedGoal, JointTrajectoryController, TrajectoryState
 from .manager import ControllerManager, ControllerStatus
 from .parameters import ControllerParameters
 from .pid import Gains, Pid
 from .plugin import RosControl
 from .registry import register_controller
+from .trajectory import Tolerance, Trajectory, TrajectoryGoal, TrajectoryPoint
 
 __all__ = [
     'EFFORT', 'POSITION', 'STATE', 'VELOCITY', 'AckermannSteeringController', 'Controller',
     'ControllerError', 'ControllerManager', 'ControllerParameters', 'ControllerSpec',
-    'ControllerStatus', 'DiffDriveController', 'DriveController', 'Gains', 'JointCommandController',
-    'JointGroupCommandController', 'JointGroupPositionController', 'JointHandle', 'JointPidState',
-    'JointPositionController', 'JointStateController', 'JointVelocityController', 'Pid', 'RateGate',
-    'RosControl', 'SimulatedRobot', 'register_controller', 'require_finite',
+    'ControllerStatus', 'DiffDriveController', 'DriveController', 'FollowedGoal', 'Gains',
+    'JointCommandController', 'JointGroupCommandController', 'JointGroupPositionController',
+    'JointHandle', 'JointPidState', 'JointPositionController', 'JointStateController',
+    'JointTrajectoryController', 'JointVelocityController', 'Pid', 'RateGate', 'RosControl',
+    'SimulatedRobot', 'Tolerance', 'Trajectory', 'TrajectoryGoal', 'TrajectoryPoint',
+    'TrajectoryState', 'register_controller', 'require_finite',
 ]

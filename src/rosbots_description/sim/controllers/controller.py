@@ -86,6 +86,10 @@ class Controller:
         """Return objects of its state that others refer to, besides itself and its PIDs."""
         return ()
 
+    def shared(self) -> Iterable[object]:
+        """Return referenced objects that are not part of its state: descriptions and outputs."""
+        return (self.spec, self.params, *self.outputs.values())
+
     def joint(self, name: str, interface: str = '') -> JointHandle:
         """Return a joint, which it claims.
 
@@ -108,7 +112,7 @@ class Controller:
         pid = self.pids[path] = Pid.from_parameters(self.params.section(path))
         return pid
 
-    def joint_names(self, path: str = 'joints') -> list[str]:
+    def listed_joints(self, path: str = 'joints') -> list[str]:
         """Return the joints that a parameter lists.
 
         Raises:

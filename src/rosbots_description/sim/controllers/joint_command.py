@@ -83,7 +83,7 @@ def find_group(controller: Controller) -> tuple[JointHandle, ...]:
         ControllerError: none are given, or the interface does not have one.
     """
     try:
-        return tuple(controller.joint(name) for name in controller.joint_names())
+        return tuple(controller.joint(name) for name in controller.listed_joints())
     except ResourceError as error:
         raise ControllerError(f'Exception thrown: {error}') from None
 

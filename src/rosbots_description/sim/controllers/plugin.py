@@ -206,9 +206,7 @@ class RosControl(ModelPlugin):
         if self._manager is not None:
             yield self._manager.changed
             for controller in self._loaded():
-                yield controller.spec
-                yield controller.params
-                yield from controller.outputs.values()
+                yield from controller.shared()
 
     def components(self) -> Iterable[object]:
         """Return the hardware, the manager and the controllers."""
