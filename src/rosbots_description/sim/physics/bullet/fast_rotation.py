@@ -281,5 +281,11 @@ def energy_growth_rate(moments: Vector, velocity: Vector, step_size: float) -> f
 def _rotated_back(turns: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return vectors (n, 3) rotated by the inverse of quaternions (n, 4)."""
     own, w = -turns[:, :3], turns[:, 3:]
-    twice = 2.0 * np.cross(own, vectors)
-    return vectors + w * twice + np.cross(own, twice)
+    twice = 2.0 * _cross(own, vectors)
+    return vectors + w * twice + _cross(own, twice)
+
+
+def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the cross products of vectors (n, 3), to the last bit as numpy's, which is slow."""
+    a, b = one[:, (1, 2, 0)], other[:, (2, 0, 1)]
+    return a * b - one[:, (2, 0, 1)] * other[:, (1, 2, 0)]
