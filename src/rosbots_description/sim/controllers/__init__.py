@@ -7,6 +7,8 @@ commands, and applies the law; the manager loads, switches and updates controlle
 from . import (  # noqa: F401
     ackermann_steering,
     diff_drive,
+    four_wheel_steering,
+    gripper_action,
     joint_command,
     joint_pid,
     joint_state,
@@ -17,6 +19,8 @@ from .controller import Controller, ControllerSpec, RateGate, require_finite
 from .diff_drive import DiffDriveController
 from .drive import DriveController
 from .errors import ControllerError
+from .four_wheel_steering import FourWheelSteering, FourWheelSteeringController
+from .gripper_action import GripperActionController, GripperGoal, GripperResult
 from .hardware import EFFORT, POSITION, STATE, VELOCITY, JointHandle, SimulatedRobot
 from .joint_command import JointCommandController, JointGroupCommandController
 from .joint_pid import (
@@ -37,10 +41,11 @@ from .trajectory import Tolerance, Trajectory, TrajectoryGoal, TrajectoryPoint
 __all__ = [
     'EFFORT', 'POSITION', 'STATE', 'VELOCITY', 'AckermannSteeringController', 'Controller',
     'ControllerError', 'ControllerManager', 'ControllerParameters', 'ControllerSpec',
-    'ControllerStatus', 'DiffDriveController', 'DriveController', 'FollowedGoal', 'Gains',
-    'JointCommandController', 'JointGroupCommandController', 'JointGroupPositionController',
-    'JointHandle', 'JointPidState', 'JointPositionController', 'JointStateController',
-    'JointTrajectoryController', 'JointVelocityController', 'Pid', 'RateGate', 'RosControl',
-    'SimulatedRobot', 'Tolerance', 'Trajectory', 'TrajectoryGoal', 'TrajectoryPoint',
-    'TrajectoryState', 'register_controller', 'require_finite',
+    'ControllerStatus', 'DiffDriveController', 'DriveController', 'FollowedGoal',
+    'FourWheelSteering', 'FourWheelSteeringController', 'Gains', 'GripperActionController',
+    'GripperGoal', 'GripperResult', 'JointCommandController', 'JointGroupCommandController',
+    'JointGroupPositionController', 'JointHandle', 'JointPidState', 'JointPositionController',
+    'JointStateController', 'JointTrajectoryController', 'JointVelocityController', 'Pid',
+    'RateGate', 'RosControl', 'SimulatedRobot', 'Tolerance', 'Trajectory', 'TrajectoryGoal',
+    'TrajectoryPoint', 'TrajectoryState', 'register_controller', 'require_finite',
 ]

@@ -1,6 +1,7 @@
 """What the controllers of wheeled robots have in common: commands, limits, odometry, frames."""
 
 import logging
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -131,7 +132,7 @@ class DriveController(Controller):
         else:
             self.advance_odometry(now_ns)
         if self._gate.opens(now_ns) and self.is_read:
-            self._send(self.planar.reading)
+            self.report(self.planar.reading)
         wanted = self._command
         if self._commanded_ns is None or now_ns - self._commanded_ns > self._timeout_ns:
             wanted = _AT_REST
@@ -147,7 +148,8 @@ class DriveController(Controller):
         self._command, self._commanded_ns = _AT_REST, None
         self._last = (_AT_REST, _AT_REST)
 
-    def _send(self, reading: Odometry) -> None:
+    def report(self, reading: Odometry) -> None:
+        """Send what has readers."""
         if self.odometry.wanted:
             self.odometry.send(reading)
         if self.odometry_transform.wanted and self.enable_odom_tf:
@@ -217,6 +219,21 @@ class DriveController(Controller):
                 f'Wheel link {link.name} is NOT modeled as a cylinder or sphere!', failed)
         return geometry.radius
 
+    def joint_distance(self, one: str, other: str) -> float:
+        """Return the horizontal distance of two joints, with all joints at zero [m].
+
+        Raises:
+            ControllerError: the model does not have one of them.
+        """
+        ends = []
+        for name in (one, other):
+            joint = self.model.joints.get(name)
+            if joint is None:
+                raise ControllerError(f"{name} couldn't be retrieved from model description")
+            ends.append(self.model.links[joint.spec.child].spec.pose.position)
+        (ax, ay, _), (bx, by, _) = ends
+        return math.hypot(ax - bx, ay - by)
+
     def distance(self, one: str, other: str) -> float:
         """Return the distance of the origins of two joints in their parents [m].
 
@@ -229,8 +246,7 @@ class DriveController(Controller):
             if described is None:
                 raise ControllerError(f"{name} couldn't be retrieved from model description")
             ends.append(described.origin)
-        (ax, ay, az), (bx, by, bz) = ends
-        return float(((ax - bx) ** 2 + (ay - by) ** 2 + (az - bz) ** 2) ** 0.5)
+        return math.dist(*ends)
 
 
 def set_commands(joints: 'tuple[JointHandle, ...]', value: float) -> None:
