@@ -13,6 +13,7 @@ from . import (  # noqa: F401
     joint_pid,
     joint_state,
     joint_trajectory,
+    mecanum_drive,
 )
 from .ackermann_steering import AckermannSteeringController
 from .controller import Controller, ControllerSpec, RateGate, require_finite
@@ -32,6 +33,8 @@ from .joint_pid import (
 from .joint_state import JointStateController
 from .joint_trajectory import FollowedGoal, JointTrajectoryController, TrajectoryState
 from .manager import ControllerManager, ControllerStatus
+from .mecanum_drive import MecanumDriveController
+from .mimic_plugin import MimicJointPlugin
 from .parameters import ControllerParameters
 from .pid import Gains, Pid
 from .plugin import RosControl
@@ -45,7 +48,8 @@ __all__ = [
     'FourWheelSteering', 'FourWheelSteeringController', 'Gains', 'GripperActionController',
     'GripperGoal', 'GripperResult', 'JointCommandController', 'JointGroupCommandController',
     'JointGroupPositionController', 'JointHandle', 'JointPidState', 'JointPositionController',
-    'JointStateController', 'JointTrajectoryController', 'JointVelocityController', 'Pid',
-    'RateGate', 'RosControl', 'SimulatedRobot', 'Tolerance', 'Trajectory', 'TrajectoryGoal',
-    'TrajectoryPoint', 'TrajectoryState', 'register_controller', 'require_finite',
+    'JointStateController', 'JointTrajectoryController', 'JointVelocityController',
+    'MecanumDriveController', 'MimicJointPlugin', 'Pid', 'RateGate', 'RosControl', 'SimulatedRobot',
+    'Tolerance', 'Trajectory', 'TrajectoryGoal', 'TrajectoryPoint', 'TrajectoryState',
+    'register_controller', 'require_finite',
 ]
