@@ -14,6 +14,7 @@ from . import (  # noqa: F401
     joint_state,
     joint_trajectory,
     mecanum_drive,
+    sensor_states,
 )
 from .ackermann_steering import AckermannSteeringController
 from .controller import Controller, ControllerSpec, RateGate, require_finite
@@ -39,6 +40,7 @@ from .parameters import ControllerParameters
 from .pid import Gains, Pid
 from .plugin import RosControl
 from .registry import register_controller
+from .sensor_states import SensorController
 from .trajectory import Tolerance, Trajectory, TrajectoryGoal, TrajectoryPoint
 
 __all__ = [
@@ -49,7 +51,7 @@ __all__ = [
     'GripperGoal', 'GripperResult', 'JointCommandController', 'JointGroupCommandController',
     'JointGroupPositionController', 'JointHandle', 'JointPidState', 'JointPositionController',
     'JointStateController', 'JointTrajectoryController', 'JointVelocityController',
-    'MecanumDriveController', 'MimicJointPlugin', 'Pid', 'RateGate', 'RosControl', 'SimulatedRobot',
-    'Tolerance', 'Trajectory', 'TrajectoryGoal', 'TrajectoryPoint', 'TrajectoryState',
-    'register_controller', 'require_finite',
+    'MecanumDriveController', 'MimicJointPlugin', 'Pid', 'RateGate', 'RosControl',
+    'SensorController', 'SimulatedRobot', 'Tolerance', 'Trajectory', 'TrajectoryGoal',
+    'TrajectoryPoint', 'TrajectoryState', 'register_controller', 'require_finite',
 ]

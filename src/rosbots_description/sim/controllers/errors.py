@@ -14,5 +14,9 @@ class ControllerError(SimError):
         self.sentences = sentences
 
 
+class InterfaceError(ControllerError):
+    """A hardware interface that the robot does not have."""
+
+
 class ResourceError(ControllerError):
     """A joint or sensor that the hardware interface does not have."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..core import NotFoundError, suggestion
 from ..runtime import Output
 from .controller import RUNNING, STOPPED, Controller, ControllerSpec
-from .errors import ControllerError, ResourceError
+from .errors import ControllerError, InterfaceError, ResourceError
 from .hardware import SimulatedRobot
 from .registry import BASE_CLASS, find_type, type_names
 
@@ -103,6 +103,8 @@ class ControllerManager:
             raise ControllerError(
                 f"Exception thrown while initializing controller '{name}'.\n{error}", failed,
             ) from None
+        except InterfaceError as error:
+            raise ControllerError(*error.sentences, failed) from None
         except ControllerError as error:
             raise ControllerError(
                 *error.sentences, 'Failed to initialize the controller', failed) from None

@@ -56,9 +56,9 @@ class Pid:
             return 0.0
         if error_rate is None:
             error_rate = (error - self._last_error) / period
+            self._last_error = error
         elif not math.isfinite(error_rate):
             return 0.0
-        self._last_error = error
         p, i, d, i_max, i_min, antiwindup = self.gains
         self._integral += period * error
         if antiwindup and i:
