@@ -47,7 +47,7 @@ class Controller:
         """Prepare for `load`; `root` is the namespace of the controller manager."""
         self.world, self.robot, self.spec = world, robot, spec
         self.name, self.type, self.interface = spec
-        own = f'{root}/{self.name}'
+        own = f'{root}/{self.name}'.replace('//', '/')
         self.namespace = root if self.in_root_namespace else own
         self.log_prefix = ''
         self.params = ControllerParameters(parameters, f'/{own}'.replace('//', '/'))
@@ -57,6 +57,10 @@ class Controller:
         self.claims: tuple[tuple[str, tuple[str, ...]], ...] = ()
         self._claimed: dict[str, list[str]] = {spec.interface: []}
         self.is_read = False
+
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.name}>'
 
     @property
     def model(self) -> 'Model':

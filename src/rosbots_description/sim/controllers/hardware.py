@@ -24,6 +24,7 @@ from .limits import (
     VelocitySoftLimits,
     read_limits,
 )
+from .mimic_plugin import MimicJointPlugin
 from .parameters import ControllerParameters
 from .pid import Pid
 
@@ -298,10 +299,13 @@ class SimulatedRobot:
         return handle
 
     def _find_mimics(self) -> Iterator[MimicJoint]:
-        """Yield the joints that follow others and that no transmission drives."""
+        """Yield the joints that follow others, and that nothing else moves."""
         joints = self.model.joints
+        of_plugins = {plugin.follower for plugin in self.model.plugins
+                      if isinstance(plugin, MimicJointPlugin)}
         for name, described in self.control.joints.items():
-            if described.mimic is not None and name in joints and name not in self.joints:
+            is_free = name in joints and name not in self.joints and name not in of_plugins
+            if described.mimic is not None and is_free:
                 leader = joints.get(described.mimic.joint)
                 if leader is None:
                     logger.error("joint '%s' mimics '%s', which the model does not have; it is "

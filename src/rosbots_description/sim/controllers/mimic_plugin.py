@@ -23,8 +23,8 @@ logger = logging.getLogger(__name__)
 class MimicJointPlugin(ModelPlugin):
     """Keep a joint at multiplier * position of another joint + offset.
 
-    With <hasPID> a force within <maxEffort> does so; `gains_path` is where `configure` finds the
-    gains of its PID.
+    `follower` is the name of that joint. With <hasPID> a force within <maxEffort> does so;
+    `gains_path` is where `configure` finds the gains of its PID.
     """
 
     missing_level = logging.DEBUG
@@ -41,6 +41,7 @@ class MimicJointPlugin(ModelPlugin):
                 raise PluginError(
                     f'No {what}joint named "{name}". MimicJointPlugin could not be loaded.')
         self._leader, self._joint = (self.model.joints[name] for name in names)
+        self.follower = names[1]
         self.multiplier = self.params.read('multiplier', 1.0)
         self.offset = self.params.read('offset', 0.0)  # [rad or m]
         self.sensitiveness = self.params.read('sensitiveness', 0.0)  # [rad or m]

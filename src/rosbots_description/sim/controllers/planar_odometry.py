@@ -27,6 +27,8 @@ class PlanarOdometry:
 
     def advance(self, forward: float, turn: float, now_ns: int, left: float = 0.0) -> None:
         """Add a step of `forward` and `left` [m] and `turn` [rad] in the robot's frame."""
+        if not math.isfinite(forward + left + turn):
+            return  # the model has diverged, and will be put back
         self._integrate(forward, left, turn)
         elapsed = (now_ns - self._ns) / NANOSECONDS
         if elapsed < _SHORTEST:

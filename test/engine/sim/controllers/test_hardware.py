@@ -50,6 +50,14 @@ def test_the_namespace_is_the_models_name_unless_given(world):
     assert spawned(world, lambda text: text).manager.namespace == '/arm'
 
 
+@pytest.mark.parametrize(('written', 'own'), [
+    ('/', '/c'), ('/arm', '/arm/c'), ('arm', 'arm/c'), ('', '/c')])
+def test_a_controller_is_in_the_robots_namespace(written, own, world):
+    plugin = spawned(world, lambda text: text.replace('>/arm<', f'>{written}<'))
+    plugin.manager.load('c', TYPES[EFFORT], BOTH)
+    assert plugin.manager.controller('c').namespace == own
+
+
 @pytest.mark.parametrize(('period', 'text'), [
     ('0.0001', '(0.000100000 s) is faster than the gazebo simulation period (0.001000000 s)'),
     ('0.01', '(0.010000000 s) is slower than the gazebo simulation period (0.001000000 s)')])

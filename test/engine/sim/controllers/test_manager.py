@@ -250,3 +250,38 @@ def test_commands_survive_a_reset_of_the_simulation(world):
     world.reset_simulation()
     world.run(LATER)
     assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
+
+
+def test_controllers_go_on_through_a_reset_of_the_world(world):
+    model, manager = spawn_arm(world, POSITION)
+    manager.load('arm', 'position_controllers/JointTrajectoryController', BOTH)
+    manager.switch(['arm'])
+    model.controller('arm').command([0.5, -0.3], seconds=0.5)
+    world.run(250)
+    world.reset_world()
+    world.run(400)
+    assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_trajectory_holds_after_a_reset_of_the_simulation(world):
+    model, manager = spawn_arm(world, POSITION)
+    manager.load('arm', 'position_controllers/JointTrajectoryController', BOTH)
+    manager.switch(['arm'])
+    model.controller('arm').command([0.5, -0.3], seconds=0.5)
+    world.run(250)
+    world.reset_simulation()
+    world.run(400)
+    assert model.joint('joint1').position == pytest.approx(0.0, abs=1e-3)
+    model.controller('arm').command([0.5, -0.3], seconds=0.5)
+    world.run(600)
+    assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_controller_that_fails_does_not_stop_the_world(world, caplog):
+    model, manager = spawn_arm(world)
+    manager.load('c', PID, GAINS)
+    manager.switch(['c'])
+    model.controller('c').update = None
+    world.run(10)
+    assert 'internal fault of RosControl; the simulation goes on' in caplog.text
+    assert world.clock.steps == 10

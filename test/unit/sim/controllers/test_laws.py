@@ -16,6 +16,7 @@ from rosbots_description.sim.controllers.limits import (
     VelocitySoftLimits,
     read_limits,
 )
+from rosbots_description.sim.controllers.planar_odometry import PlanarOdometry
 from rosbots_description.sim.description import ControlledJoint, SoftLimits
 
 DT = 0.001
@@ -137,3 +138,14 @@ def test_values_of_a_wrong_type_are_absent():
     assert params.section('a/b').find('x') is None
     assert params.section('a').namespace == '/ns/a'
     assert params.fill('<a/c>') == '5.0'
+
+
+def test_odometry_integrates_arcs_exactly_and_ignores_what_is_not_finite():
+    odometry = PlanarOdometry(10)
+    odometry.advance(math.nan, 0.0, 1)
+    steps = 90
+    for step in range(1, steps + 1):
+        odometry.advance(math.pi / 2.0 / steps, math.pi / 2.0 / steps, step * 10_000_000)
+    assert (odometry.x, odometry.y) == pytest.approx((1.0, 1.0), abs=1e-12)
+    assert odometry.heading == pytest.approx(math.pi / 2.0)
+    assert odometry.velocity[0] == pytest.approx(math.pi / 2.0 / steps / 0.01)
