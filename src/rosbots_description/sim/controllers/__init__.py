@@ -32,7 +32,7 @@ from .joint_pid import (
     JointVelocityController,
 )
 from .joint_state import JointStateController
-from .joint_trajectory import FollowedGoal, JointTrajectoryController, TrajectoryState
+from .joint_trajectory import FollowedGoal, JointTrajectoryController
 from .manager import ControllerManager, ControllerStatus
 from .mecanum_drive import MecanumDriveController
 from .mimic_plugin import MimicJointPlugin
@@ -40,12 +40,18 @@ from .parameters import ControllerParameters
 from .pid import Gains, Pid
 from .plugin import RosControl
 from .registry import register_controller
-from .sensor_states import SensorController
-from .trajectory import Tolerance, Trajectory, TrajectoryGoal, TrajectoryPoint
+from .sensor_states import IMU, WRENCH, SensorController
+from .trajectory import (
+    Tolerance,
+    Trajectory,
+    TrajectoryGoal,
+    TrajectoryPoint,
+    TrajectoryState,
+)
 
 __all__ = [
-    'EFFORT', 'POSITION', 'STATE', 'VELOCITY', 'AckermannSteeringController', 'Controller',
-    'ControllerError', 'ControllerManager', 'ControllerParameters', 'ControllerSpec',
+    'EFFORT', 'IMU', 'POSITION', 'STATE', 'VELOCITY', 'WRENCH', 'AckermannSteeringController',
+    'Controller', 'ControllerError', 'ControllerManager', 'ControllerParameters', 'ControllerSpec',
     'ControllerStatus', 'DiffDriveController', 'DriveController', 'FollowedGoal',
     'FourWheelSteering', 'FourWheelSteeringController', 'Gains', 'GripperActionController',
     'GripperGoal', 'GripperResult', 'JointCommandController', 'JointGroupCommandController',

@@ -3,18 +3,29 @@
 Parameters, defaults and timing are those of diff_drive_controller 0.22.
 """
 
+import math
+from collections.abc import Mapping, Sequence
+
+from ..runtime import Output
 from .drive import DriveController, set_commands
 from .errors import ControllerError
 from .hardware import VELOCITY, JointHandle
 from .registry import register_controller
+from .trajectory import TrajectoryPoint, TrajectoryState
 
 
 @register_controller('diff_drive_controller/DiffDriveController', VELOCITY)
 class DiffDriveController(DriveController):
     """Drive the wheels of two sides.
 
-    The multipliers of radius and separation may be set at any time.
+    The multipliers of radius and separation may be set at any time. A further output, in each
+    update, is wheel_joint_controller_state, if publish_wheel_joint_controller_state: the left
+    wheels, then the right ones, and what the velocity before its limits would be.
     """
+
+    topic_names: Mapping[str, str] = {
+        **DriveController.topic_names, 'wheel_states': 'wheel_joint_controller_state'}
+    wheel_states: Output[TrajectoryState] | None = None
 
     def load_geometry(self) -> None:
         """Read names and sizes of the wheels; what is not given is that of the URDF."""
@@ -32,6 +43,7 @@ class DiffDriveController(DriveController):
         if both is not None:
             self.left_wheel_radius_multiplier = self.right_wheel_radius_multiplier = both
         names = self._left_names[0], self._right_names[0]
+        self._reports_wheels = read('publish_wheel_joint_controller_state', False)
         self.wheel_separation = self.length('wheel_separation') or self.distance(*names)
         self.wheel_radius_given = self.length('wheel_radius') or self.wheel_radius(names[0])
 
@@ -39,6 +51,11 @@ class DiffDriveController(DriveController):
         """Find the wheels."""
         self.left: tuple[JointHandle, ...] = tuple(map(self.joint, self._left_names))
         self.right: tuple[JointHandle, ...] = tuple(map(self.joint, self._right_names))
+        self._wheels = self.left + self.right
+        self._desired = [(0.0, 0.0)] * len(self._wheels)  # positions and velocities
+        self._last_speeds = [0.0] * len(self._wheels)
+        if self._reports_wheels:
+            self.wheel_states = self.output('wheel_states')
         self.begin_measuring()
 
     def begin_measuring(self) -> None:
@@ -76,4 +93,42 @@ class DiffDriveController(DriveController):
 
     def stand(self) -> None:
         """Stop the wheels."""
-        set_commands((*self.left, *self.right), 0.0)
+        set_commands(self._wheels, 0.0)
+
+    def update(self, now_ns: int, period: float) -> None:
+        """Also report the wheels."""
+        super().update(now_ns, period)
+        if self.wheel_states is not None:
+            self._report_wheels(self.wheel_states, period)
+
+    def _report_wheels(self, output: Output[TrajectoryState], period: float) -> None:
+        """Send the state of the wheels; as upstream the desired acceleration is dv * dt."""
+        forward, yaw_rate, _ = self.wanted
+        half = yaw_rate * self._separation / 2.0
+        left, right = self._radii
+        speeds = ([(forward - half) / left] * len(self.left)
+                  + [(forward + half) / right] * len(self.right))
+        before, self._desired = self._desired, [
+            (position + speed * period, speed)
+            for (position, _), speed in zip(self._desired, speeds, strict=True)]
+        if output.wanted:
+            output.send(self._wheel_state(before, period))
+        self._last_speeds = [wheel.velocity for wheel in self._wheels]
+
+    def _wheel_state(
+        self, before: Sequence[tuple[float, float]], period: float
+    ) -> TrajectoryState:
+        desired = [(position, speed, (speed - last) * period, math.nan)
+                   for (position, speed), (_, last) in zip(self._desired, before, strict=True)]
+        actual = [(wheel.position, wheel.velocity, (wheel.velocity - last) / period, wheel.effort)
+                  for wheel, last in zip(self._wheels, self._last_speeds, strict=True)]
+        errors = [(p - q, v - w, a - b, e - f)
+                  for (p, v, a, e), (q, w, b, f) in zip(desired, actual, strict=True)]
+        return TrajectoryState(tuple(wheel.name for wheel in self._wheels),
+                               _point(desired), _point(actual), _point(errors))
+
+
+def _point(rows: Sequence[tuple[float, float, float, float]]) -> TrajectoryPoint:
+    """Return a point of some wheels: position, velocity, acceleration and effort of each."""
+    positions, velocities, accelerations, efforts = zip(*rows, strict=True)
+    return TrajectoryPoint(positions, velocities, accelerations, 0.0, efforts)

@@ -42,6 +42,7 @@ class DriveController(Controller):
     _command = _AT_REST
     _commanded_ns: int | None = None
     _last = (_AT_REST, _AT_REST)
+    wanted = _AT_REST  # the command, unless it has expired
 
     def load(self) -> None:
         """Read the parameters; find the joints."""
@@ -136,6 +137,7 @@ class DriveController(Controller):
         wanted = self._command
         if self._commanded_ns is None or now_ns - self._commanded_ns > self._timeout_ns:
             wanted = _AT_REST
+        self.wanted = wanted
         last, before = self._last
         x, z, y = (limiter.limit(speed, one, other, period) for limiter, speed, one, other in zip(
             self._limiters, wanted, last, before, strict=True))

@@ -17,6 +17,11 @@ class ControllerError(SimError):
 class InterfaceError(ControllerError):
     """A hardware interface that the robot does not have."""
 
+    def __init__(self, interface: str) -> None:
+        super().__init__(
+            f"This controller requires a hardware interface of type '{interface}'. Make sure this "
+            'is registered in the hardware_interface::RobotHW class.')
+
 
 class ResourceError(ControllerError):
     """A joint or sensor that the hardware interface does not have."""

@@ -5,14 +5,13 @@ Parameters, defaults, timing and errors are those of joint_trajectory_controller
 
 import logging
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from ..core import NANOSECONDS
 from ..description import CONTINUOUS
 from ..runtime import Output
 from .angles import shortest
 from .controller import RUNNING, Controller, RateGate, require_finite
-from .errors import ControllerError, ResourceError
+from .errors import ControllerError, InterfaceError, ResourceError
 from .hardware import EFFORT, POSITION, VELOCITY, JointHandle
 from .registry import register_controller
 from .trajectory import (
@@ -23,6 +22,7 @@ from .trajectory import (
     Trajectory,
     TrajectoryGoal,
     TrajectoryPoint,
+    TrajectoryState,
     active,
     check_points,
     coefficients,
@@ -37,15 +37,6 @@ ACTIVE, SUCCEEDED, ABORTED, CANCELED, REJECTED = (
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, PATH_TOLERANCE_VIOLATED, GOAL_TOLERANCE_VIOLATED = (
     0, -1, -2, -4, -5)
 _NOT_RUNNING = "Can't accept new commands. Controller is not running."
-
-
-class TrajectoryState(NamedTuple):
-    """Desired and actual state of the joints, and the difference; without a part, it is empty."""
-
-    joint_names: Sequence[str]
-    desired: TrajectoryPoint
-    actual: TrajectoryPoint
-    error: TrajectoryPoint
 
 
 class FollowedGoal:
@@ -76,6 +67,12 @@ class FollowedGoal:
         self.done.send(self)
 
 
+# The simulated hardware has no joints of the first two, as in Gazebo.
+@register_controller(
+    'pos_vel_controllers/JointTrajectoryController', 'hardware_interface::PosVelJointInterface')
+@register_controller(
+    'pos_vel_acc_controllers/JointTrajectoryController',
+    'hardware_interface::PosVelAccJointInterface')
 @register_controller('effort_controllers/JointTrajectoryController', EFFORT)
 @register_controller('position_controllers/JointTrajectoryController', POSITION)
 @register_controller('velocity_controllers/JointTrajectoryController', VELOCITY)
@@ -91,6 +88,8 @@ class JointTrajectoryController(Controller):
 
     def load(self) -> None:
         """Read the parameters and find the joints."""
+        if self.interface not in (EFFORT, POSITION, VELOCITY):
+            raise InterfaceError(self.interface)
         read = self.params.read
         self._state_gate = RateGate(read('state_publish_rate', 50.0))
         self._feedback_gate = RateGate(read('action_monitor_rate', 20.0))

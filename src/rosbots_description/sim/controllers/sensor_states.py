@@ -51,9 +51,7 @@ class SensorController(Controller):
         found = self._find_imus() if self.interface == IMU else self._find_wrenches()
         self._sources = dict(found)
         if not self._sources:
-            raise InterfaceError(
-                f"This controller requires a hardware interface of type '{self.interface}'. Make "
-                'sure this is registered in the hardware_interface::RobotHW class.')
+            raise InterfaceError(self.interface)
         rate = self.params.number('publish_rate')
         if rate is None:
             raise ControllerError("Parameter 'publish_rate' not set")

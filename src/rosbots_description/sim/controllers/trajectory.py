@@ -23,6 +23,16 @@ class TrajectoryPoint(NamedTuple):
     velocities: Sequence[float] = ()
     accelerations: Sequence[float] = ()
     time_from_start: float = 0.0
+    efforts: Sequence[float] = ()  # [N m or N], in states only
+
+
+class TrajectoryState(NamedTuple):
+    """Desired and actual state of the joints, and the difference; what is not known is empty."""
+
+    joint_names: Sequence[str]
+    desired: TrajectoryPoint
+    actual: TrajectoryPoint
+    error: TrajectoryPoint
 
 
 class Tolerance(NamedTuple):

@@ -150,3 +150,23 @@ def test_commands_are_refused_while_it_does_not_run_or_if_they_are_not_finite(wo
     robot.plugin('gazebo_ros_control').manager.switch([], ['drive'])
     with pytest.raises(ControllerError, match='Controller is not running'):
         drive.command(FORWARD, 0.0)
+
+
+def test_the_states_of_wheels_are_reported_on_request(world):
+    _, drive = spawned(world, PARAMETERS | {
+        'publish_wheel_joint_controller_state': True, 'cmd_vel_timeout': 9.0,
+        'linear': {'x': {'has_velocity_limits': True, 'max_velocity': 0.1}}})
+    states = []
+    drive.outputs['wheel_states'].connect(states.append)
+    before = drive.left[0].position
+    drive.command(FORWARD, 0.0)
+    world.run(500)
+    assert len(states) == 500
+    last = states[-1]
+    assert last.joint_names == ('wheel_left_joint', 'wheel_right_joint')
+    assert last.desired.velocities == pytest.approx([FORWARD / 0.033] * 2)
+    assert last.desired.positions == pytest.approx([0.5 * FORWARD / 0.033] * 2)
+    assert last.actual.velocities == pytest.approx([0.1 / 0.033] * 2, rel=0.01)
+    assert last.error.velocities[0] == last.desired.velocities[0] - last.actual.velocities[0]
+    assert last.actual.positions[0] > before
+    assert math.isnan(last.desired.efforts[0])

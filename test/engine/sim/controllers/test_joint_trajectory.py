@@ -290,3 +290,15 @@ def test_a_restored_world_repeats_a_goal_bit_for_bit(world):
     world.restore(saved)
     assert followed.is_active
     assert go() == first
+
+
+@pytest.mark.parametrize('kind', ['pos_vel', 'pos_vel_acc'])
+def test_an_interface_that_gazebo_lacks_gets_upstreams_answer(kind, world):
+    _, manager = spawn_arm(world)
+    with pytest.raises(ControllerError) as error:
+        manager.load('arm', f'{kind}_controllers/JointTrajectoryController', PARAMETERS)
+    name = {'pos_vel': 'PosVel', 'pos_vel_acc': 'PosVelAcc'}[kind]
+    assert error.value.sentences == (
+        f"This controller requires a hardware interface of type 'hardware_interface::{name}"
+        "JointInterface'. Make sure this is registered in the hardware_interface::RobotHW class.",
+        "Initializing controller 'arm' failed")

@@ -7,7 +7,7 @@ import pytest
 from support.controllers import EFFORT, POSITION, VELOCITY, spawn_arm
 
 from rosbots_description.sim import NotFoundError, World
-from rosbots_description.sim.controllers import ControllerError
+from rosbots_description.sim.controllers import ControllerError, ControllerManager
 
 GROUP = 'position_controllers/JointGroupPositionController'
 ONE = 'position_controllers/JointPositionController'
@@ -285,3 +285,20 @@ def test_a_controller_that_fails_does_not_stop_the_world(world, caplog):
     world.run(10)
     assert 'internal fault of RosControl; the simulation goes on' in caplog.text
     assert world.clock.steps == 10
+
+
+def test_all_types_of_the_recorded_controller_manager_can_be_loaded():
+    """The types that Gazebo's manager listed, with the packages that were built there."""
+    recorded = {
+        'diff_drive_controller/DiffDriveController', STATES,
+        *(f'{kind}_controllers/JointTrajectoryController'
+          for kind in ('effort', 'position', 'velocity', 'pos_vel', 'pos_vel_acc')),
+        *(f'effort_controllers/Joint{what}Controller' for what in (
+            'Effort', 'GroupEffort', 'GroupPosition', 'Position', 'Velocity')),
+        'position_controllers/JointGroupPositionController',
+        'position_controllers/JointPositionController',
+        *(f'velocity_controllers/Joint{what}Controller' for what in (
+            'GroupVelocity', 'Position', 'Velocity'))}
+    types = ControllerManager.types()
+    assert {base for _, base in types} == {'controller_interface::ControllerBase'}
+    assert recorded <= {name for name, _ in types}
