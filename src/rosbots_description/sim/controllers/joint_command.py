@@ -16,12 +16,12 @@ class ForwardCommand(Controller):
 
     def starting(self, now_ns: int) -> None:
         """Hold the position; or command no velocity, or no effort."""
-        self._commands = tuple(
+        self.commands = tuple(
             one.position if self.interface == POSITION else 0.0 for one in self.joints)
 
     def update(self, now_ns: int, period: float) -> None:
         """Forward the commands."""
-        for joint, command in zip(self.joints, self._commands, strict=True):
+        for joint, command in zip(self.joints, self.commands, strict=True):
             joint.command = command
 
 
@@ -42,7 +42,7 @@ class JointCommandController(ForwardCommand):
             ValueError: it is not finite.
         """
         require_finite((value,))
-        self._commands = (float(value),)
+        self.commands = (float(value),)
 
 
 @register_controller('effort_controllers/JointGroupEffortController', EFFORT)
@@ -61,7 +61,7 @@ class JointGroupCommandController(ForwardCommand):
         Raises:
             ValueError: a number is not finite, or there is not one per joint.
         """
-        self._commands = checked_group(values, len(self.joints))
+        self.commands = checked_group(values, len(self.joints))
 
 
 def required_joint(controller: Controller) -> str:

@@ -1,9 +1,19 @@
-"""Which class stands for which type of controller."""
+"""Which class stands for which type of controller.
+
+A type that is not known is looked for in the Python package of its name: `my_robot/Wave` is what
+the module `my_robot.controllers` registers as that.
+"""
 
 from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import NamedTuple
 
 from .controller import Controller
+from .errors import ControllerError
+
+_MODULE = 'controllers'
 
 BASE_CLASS = 'controller_interface::ControllerBase'
 
@@ -38,8 +48,33 @@ def register_controller(
 
 
 def find_type(name: str) -> ControllerType | None:
-    """Return the type of that name, or None."""
+    """Return the type of that name, or None; the module of its package is imported for it.
+
+    Raises:
+        ControllerError: the module cannot be imported.
+    """
+    package = name.partition('/')[0]
+    if name not in _TYPES and _has_controllers(package):
+        try:
+            import_module(f'{package}.{_MODULE}')
+        except Exception as error:
+            raise ControllerError(
+                f"Could not load class '{name}': {type(error).__name__} in "
+                f'{package}.{_MODULE}: {error}') from error
     return _TYPES.get(name)
+
+
+def _has_controllers(package: str) -> bool:
+    """Tell whether a package has such a module, without importing anything."""
+    if not package.isidentifier():
+        return False
+    try:
+        spec = find_spec(package)
+    except (ImportError, ValueError):
+        return False
+    places = spec.submodule_search_locations if spec is not None else None
+    return any(file.is_file() for place in places or () for file in (
+        Path(place, f'{_MODULE}.py'), Path(place, _MODULE, '__init__.py')))
 
 
 def type_names() -> list[str]:
