@@ -4,6 +4,7 @@ A type that is not known is looked for in the Python package of its name: `my_ro
 the module `my_robot.controllers` registers as that.
 """
 
+import sys
 from collections.abc import Callable
 from importlib import import_module
 from importlib.util import find_spec
@@ -14,6 +15,8 @@ from .controller import Controller
 from .errors import ControllerError
 
 _MODULE = 'controllers'
+# Of the package that this module is in: in Python, and in a server of ROS.
+_OWN_NAMES = 'rosbots_description', 'rosbots_simulator'
 
 BASE_CLASS = 'controller_interface::ControllerBase'
 
@@ -55,6 +58,7 @@ def find_type(name: str) -> ControllerType | None:
     """
     package = name.partition('/')[0]
     if name not in _TYPES and _has_controllers(package):
+        _share_names()
         try:
             import_module(f'{package}.{_MODULE}')
         except Exception as error:
@@ -62,6 +66,17 @@ def find_type(name: str) -> ControllerType | None:
                 f"Could not load class '{name}': {type(error).__name__} in "
                 f'{package}.{_MODULE}: {error}') from error
     return _TYPES.get(name)
+
+
+def _share_names() -> None:
+    """Make this room one and the same module under both names of its package.
+
+    A module that imports it by the other name would register in a copy of it.
+    """
+    own = __name__.rpartition('.')[0]
+    room = own.partition('.')[2]
+    for name in _OWN_NAMES:
+        sys.modules.setdefault(f'{name}.{room}', sys.modules[own])
 
 
 def _has_controllers(package: str) -> bool:

@@ -37,7 +37,8 @@ def package(monkeypatch, tmp_path):
     folder.mkdir()
     (folder / '__init__.py').touch()
     yield folder
-    for name in [name for name in sys.modules if name.partition('.')[0] == 'my_robot']:
+    for name in [name for name in sys.modules
+                 if name.partition('.')[0] in ('my_robot', 'rosbots_simulator')]:
         del sys.modules[name]
 
 
@@ -48,8 +49,11 @@ def test_the_controller_is_short_and_lint_clean():
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
-def test_the_controller_is_found_by_its_type_and_waves(package, world):
-    (package / 'controllers.py').write_text(CODE, encoding='utf-8')
+@pytest.mark.parametrize('own', ['rosbots_description', 'rosbots_simulator'])
+def test_the_controller_is_found_by_its_type_and_waves(own, package, world):
+    """It may import the simulator by either name: a server has the second one."""
+    (package / 'controllers.py').write_text(
+        CODE.replace('rosbots_description', own), encoding='utf-8')
     model, manager = spawn_arm(world)
     parameters = WAVE['wave'] | {'joint': 'joint1'}
     manager.load('wave', parameters['type'], parameters)
