@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Compare motion with that recorded in Gazebo; print the largest differences first.
 
-Where Gazebo contradicts mechanics, the motion is compared with mechanics, too.
+A steady speed is compared with the interval between Gazebo's value and that of mechanics, the
+friction law solved to convergence. Where Gazebo contradicts mechanics, the motion is compared with
+mechanics, too.
 
 Repeats all recordings (test/data/gazebo), headless and with the real plugins: drives of six
 robots, robots without commands, and passive scenes. Every quantity is compared, however small.

@@ -27,7 +27,8 @@ FOLDER = Path(__file__).resolve().parent
 # Duration on two idle processors [s, wall].
 PARTS = {'fidelity': 45.0, 'physics': 330.0, 'veer': 260.0, 'speed': 280.0, 'real_time': 140.0,
          'sensors': 235.0, 'gym': 180.0, 'web': 130.0}
-LONG = {'batch': 240.0, 'soak': 1530.0, 'mutants': 9000.0, 'fuzz': 1800.0}  # only by name
+LONG = {'batch': 240.0, 'mechanics': 600.0, 'soak': 1530.0, 'mutants': 9000.0,
+        'fuzz': 1800.0}  # only by name
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
 GRACE = 2.0  # [s, wall] for processes to end after a signal
 _BECOME_SUBREAPER = 36  # of prctl: orphaned descendants become our children

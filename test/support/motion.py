@@ -1,27 +1,33 @@
 """Repeat drives recorded in Gazebo, and measure the motion in the same way."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from typing import NamedTuple
 
 from rosbots_description.sim.core.transforms import Pose, relative, rotate, yaw_of
 from rosbots_description.sim.description.model_spec import ModelSpec
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.physics.bullet.tuning import Tuning
+from rosbots_description.sim.runtime.world import World
 
 from . import empty_world, robot_spec
+from .converged import mechanics
 from .mechanics import DRIVES
 from .recorded import DATA, Difference, load
 
 ROBOTS = ('article', 'burger', 'box4', 'skid4', 'planar', 'tricycle')
+MOTORED = ('article', 'burger', 'box4', 'skid4', 'tricycle')  # driven by motors in joints
 REST = 3.0  # [s] after the end of a command
+STEADY = ('v', 'lateral', 'w', 'odom_vx', 'odom_wz')  # steady speeds, beside those of wheels
 STEADY_FROM = 1.0  # [s] after the start of a command
 REACHED = 0.9  # share of the steady speed
 STOPPED = 0.05  # share of the steady speed
 ROW = 20  # steps between the rows of a recording
 IDLE = 20.0  # [s]
 
-# Tolerances relative to Gazebo's values, with lower bounds (floors).
+# Tolerances relative to Gazebo's values, with lower bounds (floors). A steady speed must be within
+# SPEED_SHARE of the interval between Gazebo's value and that of mechanics (converged.py).
 SPEED_SHARE = 0.03  # of a steady speed, an angle turned, a wheel speed
 PLACE_SHARE = 0.04  # of the displacement
 TIME_SHARE, TIME_FLOOR = 0.05, 0.03  # of a rise or stopping time; [s], more than one row
@@ -32,6 +38,7 @@ WHEEL_FLOOR = 0.05  # [rad/s]
 HEIGHT, PITCH = 0.001, 0.002  # [m], [rad]
 CREEP, CREEP_TURN = 0.0005, 0.0005  # [m], [rad] in 20 s at rest
 
+MakeWorld = Callable[[Tuning | None], AbstractContextManager[World]]
 Command = tuple[float, float, float, float]  # time [s], vx, vy [m/s], yaw rate [rad/s]
 
 
@@ -75,10 +82,11 @@ def robot(name: str) -> Robot:
 
 
 def drive(
-    one: Robot, commands: Sequence[Command], duration: float, tuning: Tuning | None = None
+    one: Robot, commands: Sequence[Command], duration: float, tuning: Tuning | None = None,
+    make_world: MakeWorld = empty_world,
 ) -> list[Sample]:
     """Return the motion after each step, from the first command on."""
-    with empty_world(tuning) as world:
+    with make_world(tuning) as world:
         model = world.spawn(one.spec, 'robot', Pose((0.0, 0.0, one.spawn_z)))
         latest = [Pose(), (0.0, 0.0)]
 
@@ -111,12 +119,14 @@ def drive(
         return samples
 
 
-def drive_as_recorded(name: str, command: str, tuning: Tuning | None = None) -> list[Sample]:
+def drive_as_recorded(
+    name: str, command: str, tuning: Tuning | None = None, make_world: MakeWorld = empty_world
+) -> list[Sample]:
     """Return the motion of a recorded robot for a command, until it is at rest."""
     data = load(name)['drives'][command]
     seconds = data['seconds']
     commands = [(0.0, *data['command']), (seconds, 0.0, 0.0, 0.0)]
-    return drive(robot(name), commands, seconds + REST, tuning)
+    return drive(robot(name), commands, seconds + REST, tuning, make_world)
 
 
 def measure(samples: Sequence[Sample], seconds: float) -> dict[str, float]:
@@ -162,10 +172,12 @@ def compare_drive(
     *_, turning = data['command']
     rim = math.hypot(gazebo['v'], gazebo['lateral']) + abs(gazebo['w']) * arm
     floor = WAY_SHARE * rim * data['seconds']
+    solved = mechanics().get(scene, {}).get('quantities', {})
     found = []
 
     def add(quantity: str, unit: str, *values, least: bool = False) -> None:
-        found.append(Difference(scene, quantity, unit, *values, least))
+        predicted = solved.get(quantity) if quantity in (*STEADY, *data.get('wheels', ())) else None
+        found.append(Difference(scene, quantity, unit, *values, least, mechanics=predicted))
 
     for keys in (('end_x', 'end_y'), ('x', 'y'), ('odom_x', 'odom_y')):
         if keys[0] in gazebo:

@@ -39,3 +39,15 @@ def test_rebounds_replace_place_and_velocity():
     rebound = STILL._replace(quantity='b::link rebound')
     assert rebound.replaces == ('b::link place', 'b::link velocity')
     assert exceeded([OFF, OFF._replace(quantity='b::link velocity'), rebound]) == []
+
+
+@pytest.mark.parametrize(('gazebo', 'mechanics', 'ours', 'off'), [
+    (1.0, 1.1, 1.05, 0.0), (1.1, 1.0, 1.0, 0.0), (1.0, 1.1, 1.13, 0.03), (1.1, 1.0, 0.98, -0.02),
+    (-1.0, -1.1, -1.13, -0.03), (1.0, None, 1.02, 0.02), (1.0, None, 0.9, -0.1),
+])
+def test_a_speed_is_compared_with_the_interval_between_gazebo_and_mechanics(
+    gazebo, mechanics, ours, off
+):
+    one = Difference('drive', 'v', 'm/s', gazebo, ours, 0.03, mechanics=mechanics)
+    assert one.off == pytest.approx(off, abs=1e-12)
+    assert one.share == pytest.approx(abs(off) / 0.03, abs=1e-9)

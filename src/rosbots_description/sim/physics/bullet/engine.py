@@ -29,9 +29,6 @@ from .tuning import Tuning
 
 _MAX_BATCH = 20  # steps in one call, which is faster than a call for each, but for a few steps
 _MIN_BATCH = 7
-# Convergence threshold of the solver: squared change of velocity [m^2/s^2] in an iteration. With
-# PyBullet's default, 1e-7, a robot parked on a slope creeps at 0.01 mm/s.
-_CONVERGED = 1e-8
 _TOUCHES = 1e-6  # [m] depth up to which models touch but do not overlap
 # URDF and meshes of removed bodies [bytes], some 45 robots of the article. PyBullet leaks two or
 # three times as much. A rebuild of the engine takes 5 ms for each robot in the world.
@@ -88,7 +85,7 @@ class Engine(BodyStates):
             collisionFilterMode=0,  # a pair collides if both masks allow it
             enableFileCaching=0,  # file names are reused with other contents
             minimumSolverIslandSize=1,  # islands converge independently
-            solverResidualThreshold=_CONVERGED,
+            solverResidualThreshold=self._tuning.residual,
             jointFeedbackMode=pybullet.JOINT_FEEDBACK_IN_JOINT_FRAME,
             physicsClientId=self._client,
         )
