@@ -96,7 +96,11 @@ class RosControl(ModelPlugin):
             raise PluginError(f"{self._who}: the controller manager is running already; configure "
                               'it before the first step, or spawn the model again')
         self._is_postponed, self._failed = False, True
-        described = control or self.model.spec.control or RobotControl()
+        described = control or self.model.spec.control
+        if described is None:
+            described = RobotControl()
+            logger.warning('%s: SDF has no transmissions, so that no joint is controlled; pass the '
+                           'robot\'s URDF to configure()', self._who)
         own = f'/{self.namespace}'.replace('//', '/').rstrip('/')
         robot = SimulatedRobot(self.model, described, ControllerParameters(parameters or {}, own))
         self._failed = False

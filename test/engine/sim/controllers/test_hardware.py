@@ -7,6 +7,8 @@ from support.controllers import EFFORT, POSITION, VELOCITY, arm, spawn_arm
 
 from rosbots_description.sim import PluginError, World
 from rosbots_description.sim.controllers import ControllerError
+from rosbots_description.sim.core import IDENTITY
+from rosbots_description.sim.formats import load_robot_control, load_urdf, sdf_of_model
 
 BOTH = {'joints': ['joint1', 'joint2']}
 STILL = 1e-3  # [rad]
@@ -214,6 +216,16 @@ def test_a_plugin_waits_for_a_description_that_is_to_come(world):
     assert list(plugin.manager.robot.joints) == ['joint1', 'joint2']
     with pytest.raises(PluginError, match='is running already'):
         plugin.configure()
+
+
+def test_a_robot_from_sdf_is_controlled_by_its_urdf_only(world, caplog):
+    text = sdf_of_model(load_urdf(arm(), 'arm')[0], IDENTITY)
+    plugin = world.spawn(text, name='arm').plugin('gazebo_ros_control')
+    assert list(plugin.manager.robot.joints) == []
+    assert 'SDF has no transmissions, so that no joint is controlled' in caplog.text
+    again = world.spawn(text, name='again').plugin('gazebo_ros_control')
+    again.configure(load_robot_control(arm()))
+    assert list(again.manager.robot.joints) == ['joint1', 'joint2']
 
 
 def test_a_limp_robot_costs_no_steps(world):

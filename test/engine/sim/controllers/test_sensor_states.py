@@ -52,7 +52,7 @@ def test_a_wrench_is_reported_at_the_rate(world):
     assert readings[-1].force[2] == pytest.approx(-WEIGHT, rel=0.05)
 
 
-def test_sensors_are_read_only_while_somebody_reads_a_running_controller(world):
+def test_sensors_are_read_only_while_a_running_controller_has_readers(world):
     bot, controller = started(world, IMUS, IMU, {'publish_rate': 50})
     sensor = bot.sensor('imu')
     assert sensor.readings.readers == 0
