@@ -84,7 +84,8 @@ ARROWS = {
     'batch': 'sim sim/core sim/plugins',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
     'gym':
-        'sim sim/description sim/plugins sim/rendering sim/runtime sim/sensors web',
+        'sim sim/controllers sim/description sim/plugins sim/rendering sim/runtime sim/sensors '
+        'web',
     'gym/tasks': 'gym sim sim/description',
     'cli':
         'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/window ros_api/node '

@@ -1,4 +1,4 @@
-"""What a robot is told in each control step: the commands that its plugins take, and efforts."""
+"""What a robot is told in each control step: commands of plugins and controllers, and efforts."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -8,6 +8,17 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from ..sim import Joint, Model, NotFoundError, SimError, World
+from ..sim.controllers import (
+    Controller,
+    DriveController,
+    GripperActionController,
+    JointCommandController,
+    JointGroupCommandController,
+    JointGroupPositionController,
+    JointPositionController,
+    JointVelocityController,
+    MecanumDriveController,
+)
 from ..sim.plugins import Drive, Force, PlanarMove
 
 Floats = NDArray[np.float32]
@@ -34,6 +45,22 @@ def _of_plugin(plugin: Any) -> Command | None:  # noqa: ANN401  each class has i
     return None
 
 
+def _of_controller(controller: Controller) -> Command | None:
+    name = controller.name
+    match controller:
+        case MecanumDriveController():
+            return Command(
+                name, 3, lambda numbers: controller.command(numbers[0], numbers[2], numbers[1]))
+        case DriveController():
+            return Command(name, 2, lambda numbers: controller.command(*numbers))
+        case JointGroupCommandController() | JointGroupPositionController():
+            return Command(name, len(controller.joints), controller.command)
+        case (JointCommandController() | JointPositionController() | JointVelocityController()
+              | GripperActionController()):
+            return Command(name, 1, lambda numbers: controller.command(numbers[0]))
+    return None
+
+
 def _effort(world: World, joint: Joint) -> Command:
     def give(numbers: Sequence[float]) -> None:
         world.clear_forces(joint)
@@ -43,7 +70,9 @@ def _effort(world: World, joint: Joint) -> Command:
 
 
 def _commands(world: World, robot: Model, names: Sequence[str] | None) -> Iterator[Command]:
-    of_plugins = {one.name: one for one in map(_of_plugin, robot.plugins) if one}
+    loaded = (one for plugin in robot.plugins for one in plugin.controllers.values())
+    of_plugins = {one.name: one for one in (
+        *map(_of_plugin, robot.plugins), *map(_of_controller, loaded)) if one}
     if names is None:
         yield from of_plugins.values()
         return
@@ -54,8 +83,8 @@ def _commands(world: World, robot: Model, names: Sequence[str] | None) -> Iterat
             yield _effort(world, robot.joints[name])
         else:
             raise NotFoundError(
-                f"model '{robot.name}' takes no action '{name}'; its plugins with commands: "
-                f"{', '.join(of_plugins) or 'none'}; its joints: "
+                f"model '{robot.name}' takes no action '{name}'; its plugins and controllers with "
+                f"commands: {', '.join(of_plugins) or 'none'}; its joints: "
                 f"{', '.join(robot.joints) or 'none'}")
 
 
@@ -69,10 +98,12 @@ class Actions:
         """Find the commands.
 
         Args:
-            limits: the greatest numbers of each command, by the name of its plugin or joint; a
-                single number holds for all of them. None: those of all plugins, with limits 1.
+            limits: the greatest numbers of each command, by the name of its plugin, controller or
+                joint; a single number holds for all of them. None: those of all plugins and
+                controllers, with limits 1.
         Raises:
-            NotFoundError: no plugin or joint has such a name; the message lists those that exist.
+            NotFoundError: no plugin, controller or joint has such a name; the message lists those
+                that exist.
             SimError: there is no command at all.
             ValueError: the limits of a command are not positive numbers, one for each of its own.
         """

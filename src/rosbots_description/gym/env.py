@@ -54,6 +54,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         web_port: int = 0,
         package_path: Sequence[str | os.PathLike[str]] = (),
         model_path: Sequence[str | os.PathLike[str]] = (),
+        controllers: Mapping[str, object] | None = None,
     ) -> None:
         """Load the world and the robot, and let them come to rest.
 
@@ -62,8 +63,9 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             robot: a URDF, xacro or SDF: path, package:// or model:// address, or text.
             pose: at which the robot is spawned.
             arguments: for a xacro file, such as {'laser': 'true'}.
-            actions: the limits of each command, by the name of its plugin [as it takes them], or of
-                a joint whose effort is to be set [N m or N]; by default those of all plugins, 1.
+            actions: the limits of each command, by the name of its plugin or controller [as it
+                takes them], or of a joint whose effort is to be set [N m or N]; by default those of
+                all plugins and controllers, 1.
             sensors: names of sensors, or 'odometry'; by default all that can be observed.
             more: spaces of what `observe` adds.
             period: of control [s, simulated], a multiple of the world's step size.
@@ -73,8 +75,11 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             web_port: of the page, 0 for any that is free.
             package_path: folders to search for package:// addresses.
             model_path: folders to search for model:// addresses.
+            controllers: of ros_control, to be started: the parameters in the robot's namespace,
+                nested as in YAML.
         Raises:
-            SimError: the world or the robot cannot be loaded, or has no such sensor or plugin.
+            SimError: the world or the robot cannot be loaded, or has no such sensor, plugin or
+                controller.
             ValueError: a number is out of range.
         """
         self._require_mode(render_mode)
@@ -85,7 +90,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self._randomise = randomise or Randomisation()
         self._stage = Stage(Setting(
             world, robot, pose, dict(arguments or {}), actions, sensors, settle, package_path,
-            model_path))
+            model_path, dict(controllers or {})))
         try:
             self._randomise.require(self.world, self.robot)
             self._steps = self._stage.whole_steps(period)

@@ -32,6 +32,7 @@ class Setting:
     settle: float
     package_path: Sequence[Path]
     model_path: Sequence[Path]
+    controllers: Mapping[str, object]
 
 
 class Stage:
@@ -57,6 +58,8 @@ class Stage:
             given.world, package_path=given.package_path, model_path=given.model_path)
         try:
             self.robot = self.world.spawn(given.robot, pose=given.pose, arguments=given.arguments)
+            if given.controllers:
+                self.robot.plugin('gazebo_ros_control').start_all(given.controllers)
             self.actions = Actions(self.world, self.robot, given.actions)
             self.pictures = Pictures(self.world, self.robot)
             self.observed = observed(self.robot, given.sensors)

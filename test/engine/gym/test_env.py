@@ -146,7 +146,7 @@ def test_action_that_cannot_be_given_is_named(forward, action, said):
 
 @pytest.mark.parametrize(('options', 'kind', 'said'), [
     ({'sensors': ['radar']}, NotFoundError, "no sensor 'radar'; what can be observed: odometry"),
-    ({'actions': {'sails': 1.0}}, NotFoundError, "no action 'sails'; its plugins with commands"),
+    ({'actions': {'sails': 1.0}}, NotFoundError, "no action 'sails'; its plugins and controllers"),
     ({'actions': {'differential_drive_controller': (1.0, -1.0)}}, ValueError, 'positive numbers'),
     ({'world': 'nowhere'}, NotFoundError, 'nowhere'),
     ({'robot': '<robot name="r"/>'}, SimError, 'link'),

@@ -109,6 +109,23 @@ class RosControl(ModelPlugin):
         self._wake()
         logger.info('Loaded gazebo_ros_control.')
 
+    def start_all(self, parameters: Mapping[str, object]) -> None:
+        """Load and start controllers, and configure the hardware; before the first step.
+
+        Args:
+            parameters: all those in the robot's namespace, nested as in YAML. What has a `type` is
+                a controller; the others are those of `configure`.
+        Raises:
+            ControllerError: a controller cannot be loaded or started.
+            PluginError: as `configure`.
+        """
+        kinds = {name: one['type'] for name, one in parameters.items()
+                 if isinstance(one, Mapping) and 'type' in one}
+        self.configure(parameters=parameters)
+        for name, kind in kinds.items():
+            self.manager.load(name, str(kind), parameters[name])  # type: ignore[arg-type]
+        self.manager.switch(list(kinds))
+
     @property
     def manager(self) -> ControllerManager:
         """Return the controller manager; configure it from the model's description if need be.
