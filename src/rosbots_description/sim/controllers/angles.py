@@ -6,8 +6,9 @@ from ..description import CONTINUOUS
 
 
 def shortest(start: float, end: float) -> float:
-    """Return the shortest rotation from `start` to `end`, in [-pi, pi]."""
-    return math.remainder(end - start, math.tau)
+    """Return the shortest rotation from `start` to `end`, in [-pi, pi]; NaN between infinities."""
+    way = end - start
+    return math.nan if math.isinf(way) else math.remainder(way, math.tau)
 
 
 def shortest_within(start: float, end: float, lower: float, upper: float) -> float:

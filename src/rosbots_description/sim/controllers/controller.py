@@ -14,6 +14,8 @@ from .pid import Pid
 if TYPE_CHECKING:
     from ..runtime import Model, World
 
+_LEAST_RATE = 1e-9  # [Hz]
+_LONGEST = 1e9  # [s]
 INITIALIZED, RUNNING, STOPPED = 'initialized', 'running', 'stopped'
 
 
@@ -149,8 +151,8 @@ class RateGate:
     """Opens at a rate, whose mean is exact."""
 
     def __init__(self, rate: float) -> None:
-        """Open at `rate` [Hz]; <= 0: never."""
-        self._period_ns = round(NANOSECONDS / rate) if rate > 0.0 else 0
+        """Open at `rate` [Hz]; <= 0, or less than once in 30 years: never."""
+        self._period_ns = round(NANOSECONDS / rate) if rate > _LEAST_RATE else 0
         self._last_ns: int | None = None
 
     def restart(self, now_ns: int, at_once: bool = False) -> None:
@@ -170,6 +172,11 @@ class RateGate:
             return False
         self._last_ns += self._period_ns
         return True
+
+
+def nanoseconds(seconds: float) -> int:
+    """Return a duration of at most 30 years [ns]."""
+    return round(max(-_LONGEST, min(seconds, _LONGEST)) * NANOSECONDS)
 
 
 def require_finite(values: Sequence[float]) -> None:

@@ -5,10 +5,10 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ..core import NANOSECONDS, Twist
+from ..core import Twist
 from ..description import Cylinder, Sphere
 from ..runtime import FrameTransform, Odometry, Output
-from .controller import RUNNING, Controller, RateGate, require_finite
+from .controller import RUNNING, Controller, RateGate, nanoseconds, require_finite
 from .errors import ControllerError
 from .planar_odometry import PlanarOdometry
 from .speed_limiter import SpeedLimiter
@@ -51,7 +51,7 @@ class DriveController(Controller):
         self.set_publish_rate(read('publish_rate', 50.0))
         self.open_loop = read('open_loop', False)
         self.planar = PlanarOdometry(read('velocity_rolling_window_size', 10.0))
-        self._timeout_ns = round(read('cmd_vel_timeout', 0.5) * NANOSECONDS)
+        self._timeout_ns = nanoseconds(read('cmd_vel_timeout', 0.5))
         read('allow_multiple_cmd_vel_publishers', True)
         read('base_frame_id', 'base_link')
         read('odom_frame_id', 'odom')

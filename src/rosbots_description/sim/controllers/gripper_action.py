@@ -6,9 +6,8 @@ Parameters, defaults and results are those of gripper_action_controller 0.22.
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from ..core import NANOSECONDS
 from ..runtime import Output
-from .controller import RUNNING, Controller, require_finite
+from .controller import RUNNING, Controller, nanoseconds, require_finite
 from .errors import ControllerError, ResourceError
 from .hardware import EFFORT, POSITION
 from .registry import register_controller
@@ -73,7 +72,7 @@ class GripperActionController(Controller):
         self._tolerance = abs(read('goal_tolerance', 0.01))
         self._default_effort = abs(read('max_effort', 0.0))
         self._stall_velocity = read('stall_velocity_threshold', 0.001)
-        self._stall_ns = round(read('stall_timeout', 1.0) * NANOSECONDS)
+        self._stall_ns = nanoseconds(read('stall_timeout', 1.0))
         self._pid = self.pid(f'gains/{name}') if self.interface == EFFORT else None
         self._active: GripperGoal | None = None
         self._wanted, self._max_effort, self._effort = 0.0, self._default_effort, 0.0

@@ -73,6 +73,8 @@ class JointHandle:
 
     def enforce(self, period: float) -> None:
         """Keep the command within the limits, `period` [s] after the last call."""
+        if math.isnan(self.command):  # of a law that overflowed, or of a diverged model
+            self.command = self.position if self.interface == POSITION else 0.0
         self.command = self._law.enforce(self.command, self.position, self.velocity, period)
 
     def write(self, period: float, stopped: bool) -> None:
@@ -85,7 +87,7 @@ class JointHandle:
         return self.interface == EFFORT and self.command == 0.0
 
     def _push(self, effort: float) -> None:
-        self.effort = effort
+        self.effort = effort = 0.0 if math.isnan(effort) else effort
         if effort:
             self.joint.apply_effort(effort)
 

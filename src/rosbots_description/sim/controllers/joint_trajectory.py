@@ -15,6 +15,7 @@ from .errors import ControllerError, InterfaceError, ResourceError
 from .hardware import EFFORT, POSITION, VELOCITY, JointHandle
 from .registry import register_controller
 from .trajectory import (
+    MOST,
     JointPoint,
     SplineSegment,
     Tolerance,
@@ -93,7 +94,7 @@ class JointTrajectoryController(Controller):
         read = self.params.read
         self._state_gate = RateGate(read('state_publish_rate', 50.0))
         self._feedback_gate = RateGate(read('action_monitor_rate', 20.0))
-        self._stop_duration = read('stop_trajectory_duration', 0.0)
+        self._stop_duration = min(read('stop_trajectory_duration', 0.0), MOST)
         self._allows_partial = read('allow_partial_joints_goal', False)
         names = self.params.strings('joints')
         if not names:

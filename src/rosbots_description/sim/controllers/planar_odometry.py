@@ -7,6 +7,7 @@ from ..core import NANOSECONDS, Pose, Twist, from_rpy
 from ..runtime import Odometry
 
 _STRAIGHT = 1e-6  # [rad] rotation below which a step counts as straight
+_LARGEST = 10_000  # steps in a mean
 _SHORTEST = 1e-4  # [s] below which no velocity is estimated
 
 
@@ -15,7 +16,7 @@ class PlanarOdometry:
 
     def __init__(self, window: float) -> None:
         """Begin at the origin; `window` is the number of steps in the mean."""
-        self._size = max(1, int(window))
+        self._size = max(1, int(min(window, _LARGEST)))
         self.x = self.y = self.heading = 0.0
         self.restart(0)
 

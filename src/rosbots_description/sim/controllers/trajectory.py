@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 from .angles import shortest
 
+MOST = 1e9  # of the numbers in a trajectory, so that no polynomial overflows
+_INSTANT = 1e-9  # [s] below which a segment has no duration
 _AT_PI = 1e-9  # [rad] from half a turn, within which the direction is that of the numbers
 
 
@@ -125,15 +127,16 @@ def coefficients(start: JointPoint, end: JointPoint, time: float) -> tuple[float
     """Return the coefficients of the polynomial between two points, `time` [s] apart."""
     p0, v0, a0 = start
     p1, v1, a1 = end
+    is_instant = time < _INSTANT
     if v0 is None or v1 is None:
-        return (p0, (p1 - p0) / time if time else 0.0, 0.0, 0.0, 0.0, 0.0)
+        return (p0, 0.0 if is_instant else (p1 - p0) / time, 0.0, 0.0, 0.0, 0.0)
     if a0 is None or a1 is None:
-        if not time:
+        if is_instant:
             return (p0, v0, 0.0, 0.0, 0.0, 0.0)
         way = p1 - p0
         return (p0, v0, (3.0 * way / time - 2.0 * v0 - v1) / time,
                 (v0 + v1 - 2.0 * way / time) / time ** 2, 0.0, 0.0)
-    if not time:
+    if is_instant:
         return (p0, v0, a0 / 2.0, 0.0, 0.0, 0.0)
     # What is left of the way, the velocity and the acceleration after a parabola from the start.
     way = (p1 - p0 - v0 * time - a0 * time ** 2 / 2.0) / time ** 3
@@ -174,12 +177,14 @@ def check_points(trajectory: Trajectory) -> None:
 
     Raises:
         ValueError: points are not in the order of time, have another size than the joints, lack
-            positions, or are not finite.
+            positions, or have numbers that are not finite or beyond MOST.
     """
     times = [point.time_from_start for point in trajectory.points]
     numbers = [number for point in trajectory.points for series in point[:3] for number in series]
     if not all(map(math.isfinite, (*numbers, *times))):
         raise ValueError('Trajectory message contains a number that is not finite.')
+    if any(abs(number) > MOST for number in (*numbers, *times)):
+        raise ValueError(f'Trajectory message contains a number beyond {MOST:g}.')
     if any(later <= sooner for sooner, later in pairwise(times)):
         raise ValueError('Trajectory message contains waypoints that are not strictly increasing '
                          'in time.')

@@ -199,6 +199,8 @@ def test_an_end_out_of_tolerance_aborts_after_the_goal_time(world):
      'Trajectory message contains a number that is not finite.'),
     (goal((math.inf, (0.0, 0.0))), -1,
      'Trajectory message contains a number that is not finite.'),
+    (goal((1e200, (0.0, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
+    (goal((1.0, (1e300, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
     (goal((1.0, (1.0, 0.0, 0.0))), -1,
      'Size mismatch in trajectory point position, velocity or acceleration data.'),
     (goal((1.0, ())), -1,

@@ -1,5 +1,6 @@
 """The controller manager: loading, switching, unloading, conflicts, bad input; states of worlds."""
 
+import contextlib
 import math
 from itertools import pairwise
 
@@ -302,3 +303,43 @@ def test_all_types_of_the_recorded_controller_manager_can_be_loaded():
     types = ControllerManager.types()
     assert {base for _, base in types} == {'controller_interface::ControllerBase'}
     assert recorded <= {name for name, _ in types}
+
+
+@pytest.mark.parametrize('huge', [1e300, 1e-300, -1e300, 10 ** 400])
+@pytest.mark.parametrize(('kind', 'paths'), [
+    (PID, ['pid/p', 'pid/i', 'pid/d', 'pid/i_clamp']),
+    (STATES, ['publish_rate']),
+    ('effort_controllers/GripperActionController', [
+        'stall_timeout', 'goal_tolerance', 'max_effort', 'gains/joint1/p']),
+    ('effort_controllers/JointTrajectoryController', [
+        'stop_trajectory_duration', 'state_publish_rate', 'action_monitor_rate',
+        'constraints/goal_time', 'gains/joint1/p'])])
+def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(kind, paths, huge, world):
+    model, manager = spawn_arm(world)
+    parameters = {'joint': 'joint1', 'joints': ['joint1'], 'publish_rate': 50.0,
+                  'pid': {'p': 1.0}, 'gains': {'joint1': {'p': 1.0}}, 'constraints': {}}
+    for path in paths:
+        *sections, last = path.split('/')
+        inner = parameters
+        for section in sections:
+            inner = inner.setdefault(section, {})
+        inner[last] = huge
+    with contextlib.suppress(ControllerError):
+        manager.load('c', kind, parameters)
+        manager.switch(['c'])
+        if hasattr(model.controller('c'), 'command'):
+            wanted = 0.5 if kind != 'effort_controllers/JointTrajectoryController' else [0.5]
+            model.controller('c').command(wanted)
+    world.run(200)
+    assert world.rebuilds == 0
+    assert not model.has_diverged()
+
+
+def test_a_command_that_overflows_is_none(world):
+    model, manager = spawn_arm(world)
+    manager.load('c', PID, GAINS | {'pid': {'p': 1e200, 'd': -1e200}})
+    manager.switch(['c'])
+    model.controller('c').command(1e200)
+    world.run(50)
+    assert not model.has_diverged()
+    assert world.rebuilds == 0

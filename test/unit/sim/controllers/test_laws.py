@@ -149,3 +149,15 @@ def test_odometry_integrates_arcs_exactly_and_ignores_what_is_not_finite():
     assert (odometry.x, odometry.y) == pytest.approx((1.0, 1.0), abs=1e-12)
     assert odometry.heading == pytest.approx(math.pi / 2.0)
     assert odometry.velocity[0] == pytest.approx(math.pi / 2.0 / steps / 0.01)
+
+
+@pytest.mark.parametrize('rate', [0.0, -1.0, 1e-300, math.inf])
+def test_a_gate_of_an_absurd_rate_neither_fails_nor_floods(rate):
+    gate = RateGate(rate)
+    gate.start(0)
+    assert not gate.opens(1_000_000)
+
+
+def test_between_infinities_there_is_no_shortest_way():
+    assert math.isnan(shortest(0.0, math.inf))
+    assert math.isnan(shortest(math.inf, math.inf))
