@@ -21,11 +21,11 @@ class AckermannSteeringController(DriveController):
         read = self.params.read
         self._names = (read('rear_wheel', 'rear_wheel_joint'),
                        read('front_steer', 'front_steer_joint'))
-        wheelbase = self.length('wheel_separation_h') or self.distance(*self._names)
+        wheelbase = self.length('wheel_separation_h', lambda: self.distance(*self._names))
         # As upstream, the multipliers act on odometry only.
-        self._wheelbase = wheelbase * read('wheel_separation_h_multiplier', 1.0)
-        self.radius = self.length('wheel_radius') or self.wheel_radius(self._names[0])
-        self._odometry_radius = self.radius * read('wheel_radius_multiplier', 1.0)
+        self._wheelbase = wheelbase * self.multiplier('wheel_separation_h_multiplier')
+        self.radius = self.length('wheel_radius', lambda: self.wheel_radius(self._names[0]))
+        self._odometry_radius = self.radius * self.multiplier('wheel_radius_multiplier')
         self._steering_scale = read('steer_pos_multiplier', 1.0)
 
     def load_joints(self) -> None:

@@ -35,17 +35,18 @@ class DiffDriveController(DriveController):
         left, right = len(self._left_names), len(self._right_names)
         if left != right:
             raise ControllerError(f'#left wheels ({left}) != #right wheels ({right}).')
-        self.wheel_separation_multiplier = read('wheel_separation_multiplier', 1.0)
-        both = self.params.number('wheel_radius_multiplier')
-        one = 1.0 if both is None else both
-        self.left_wheel_radius_multiplier = read('left_wheel_radius_multiplier', one)
-        self.right_wheel_radius_multiplier = read('right_wheel_radius_multiplier', one)
-        if both is not None:
-            self.left_wheel_radius_multiplier = self.right_wheel_radius_multiplier = both
+        self.wheel_separation_multiplier = self.multiplier('wheel_separation_multiplier')
+        paths = ['left_wheel_radius_multiplier', 'right_wheel_radius_multiplier']
+        if self.params.number('wheel_radius_multiplier') is not None:
+            paths = ['wheel_radius_multiplier'] * 2
+        self.left_wheel_radius_multiplier, self.right_wheel_radius_multiplier = map(
+            self.multiplier, paths)
         names = self._left_names[0], self._right_names[0]
         self._reports_wheels = read('publish_wheel_joint_controller_state', False)
-        self.wheel_separation = self.length('wheel_separation') or self.distance(*names)
-        self.wheel_radius_given = self.length('wheel_radius') or self.wheel_radius(names[0])
+        self.wheel_separation = self.length(
+            'wheel_separation', lambda: self.distance(*names))
+        self.wheel_radius_given = self.length(
+            'wheel_radius', lambda: self.wheel_radius(names[0]))
 
     def load_joints(self) -> None:
         """Find the wheels."""

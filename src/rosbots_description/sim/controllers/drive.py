@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from ..core import Twist
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 _DIAGONAL = 6
+_SHORTEST, _LONGEST = 1e-6, 1e6  # of lengths [m], and of factors on them
 _AT_REST = (0.0, 0.0, 0.0)
 
 
@@ -189,15 +190,29 @@ class DriveController(Controller):
                 raise ControllerError(f"Wheel param '{path}' #{number} isn't a string.")
         return list(given)
 
-    def length(self, path: str) -> float | None:
-        """Return a length [m] above zero; None if it is not given.
+    def length(self, path: str, find: Callable[[], float]) -> float:
+        """Return a length [m]; if it is not given, what `find` returns.
 
         Raises:
-            ControllerError: it is zero or negative.
+            ControllerError: it is zero, negative or absurd.
         """
-        value = self.params.number(path)
-        if value is not None and value <= 0.0:
-            raise ControllerError(f'{path} is {value:g} m; it must be above 0')
+        given = self.params.number(path)
+        value = find() if given is None else given
+        if not _SHORTEST < value < _LONGEST:
+            raise ControllerError(
+                f'{path} is {value:g} m; it must be above 0' if value < _LONGEST
+                else f'{path} is {value:g} m; it must be below {_LONGEST:g}')
+        return value
+
+    def multiplier(self, path: str, default: float = 1.0) -> float:
+        """Return a factor on a length.
+
+        Raises:
+            ControllerError: it is zero, negative or absurd.
+        """
+        value = self.params.read(path, default)
+        if not _SHORTEST < value < _LONGEST:
+            raise ControllerError(f'{path} is {value:g}; it must be above 0, and about 1')
         return value
 
     def wheel_radius(self, name: str) -> float:

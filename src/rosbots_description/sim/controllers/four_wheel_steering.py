@@ -56,10 +56,10 @@ class FourWheelSteeringController(DriveController):
                 raise ControllerError(
                     f'#two {what} by axle (left and right) is needed; now : {count} .')
         left, right = self._names['front_wheel']
-        self.track = self.length('track') or self.joint_distance(left, right)
-        self.wheel_base = self.length('wheel_base') or self.joint_distance(
-            left, self._names['rear_wheel'][0])
-        self.radius = self.length('wheel_radius') or self.wheel_radius(left)
+        self.track = self.length('track', lambda: self.joint_distance(left, right))
+        self.wheel_base = self.length('wheel_base', lambda: self.joint_distance(
+            left, self._names['rear_wheel'][0]))
+        self.radius = self.length('wheel_radius', lambda: self.wheel_radius(left))
         # Between the axis of steering and the middle of the wheel.
         self._offset = self.joint_distance(self._names['front_steering'][0], left)
         self._steering_track = self.track - 2.0 * self._offset

@@ -26,8 +26,9 @@ class MecanumDriveController(DriveController):
             if name is None:
                 raise ControllerError(f"Couldn't retrieve {place}_wheel_joint from param server.")
             self._names.append(name)
-        self.radius = self.length('wheels_radius') or self.wheel_radius(self._names[0])
-        self.arm = self.length('wheels_k') or self._find_arm()
+        self.radius = self.length(
+            'wheels_radius', lambda: self.wheel_radius(self._names[0]))
+        self.arm = self.length('wheels_k', self._find_arm)
 
     def _find_arm(self) -> float:
         """Return half of the wheelbase and of the track together [m]."""

@@ -134,6 +134,12 @@ def test_a_command_is_limited_and_reported(world):
     ({'left_wheel': ['wheel_left_joint'] * 2}, '#left wheels (2) != #right wheels (1).'),
     ({'left_wheel': 'nose'}, "nose couldn't be retrieved from model description"),
     ({'wheel_radius': 0.0}, 'wheel_radius is 0 m; it must be above 0'),
+    ({'wheel_radius': 1e300}, 'wheel_radius is 1e+300 m; it must be below 1e+06'),
+    ({'wheel_separation_multiplier': 0.0},
+     'wheel_separation_multiplier is 0; it must be above 0, and about 1'),
+    ({'wheel_radius_multiplier': -1.0},
+     'wheel_radius_multiplier is -1; it must be above 0, and about 1'),
+    ({'right_wheel': 'wheel_left_joint'}, 'wheel_separation is 0 m; it must be above 0'),
 ])
 def test_bad_parameters_get_a_clear_answer(change, text, world):
     robot = world.spawn(TEXT, name='bot')
@@ -170,3 +176,18 @@ def test_the_states_of_wheels_are_reported_on_request(world):
     assert last.error.velocities[0] == last.desired.velocities[0] - last.actual.velocities[0]
     assert last.actual.positions[0] > before
     assert math.isnan(last.desired.efforts[0])
+
+
+@pytest.mark.parametrize('absurd', [1e300, -1e300, 1e-300])
+@pytest.mark.parametrize('path', [
+    'publish_rate', 'cmd_vel_timeout', 'velocity_rolling_window_size', 'linear/x/max_velocity',
+    'linear/x/max_acceleration', 'linear/x/max_jerk'])
+def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(path, absurd, world):
+    parameters = PARAMETERS | {path.split('/')[0]: absurd} if '/' not in path else PARAMETERS | {
+        'linear': {'x': {path.rpartition('/')[2]: absurd, 'has_velocity_limits': True,
+                         'has_acceleration_limits': True, 'has_jerk_limits': True}}}
+    robot, drive = spawned(world, parameters)
+    drive.command(1e300, 1e300)
+    world.run(100)
+    assert world.rebuilds == 0
+    assert not robot.has_diverged()
