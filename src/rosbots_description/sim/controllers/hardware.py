@@ -309,8 +309,9 @@ class SimulatedRobot:
             is_free = name in joints and name not in self.joints and name not in of_plugins
             if described.mimic is not None and is_free:
                 leader = joints.get(described.mimic.joint)
-                if leader is None:
-                    logger.error("joint '%s' mimics '%s', which the model does not have; it is "
-                                 'passive', name, described.mimic.joint)
+                if leader is None or leader is joints[name]:
+                    logger.error("joint '%s' mimics '%s', which %s; it is passive", name,
+                                 described.mimic.joint, 'is itself' if leader is not None
+                                 else 'the model does not have')
                 else:
                     yield MimicJoint(joints[name], leader, described)

@@ -40,6 +40,10 @@ class MimicJointPlugin(ModelPlugin):
             if name not in self.model.joints:
                 raise PluginError(
                     f'No {what}joint named "{name}". MimicJointPlugin could not be loaded.')
+        if names[0] == names[1]:
+            raise PluginError(
+                f'Joint "{names[0]}" is to mimic itself; name another one in <joint>. '
+                'MimicJointPlugin could not be loaded.')
         self._leader, self._joint = (self.model.joints[name] for name in names)
         self.follower = names[1]
         self.multiplier = self.params.read('multiplier', 1.0)

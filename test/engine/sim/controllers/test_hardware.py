@@ -250,3 +250,35 @@ def test_a_mimic_joint_follows_its_leader(world):
         model.controller('arm').command(wanted)
         world.run(300)
         assert model.joint('joint2').position == pytest.approx(-0.5 * wanted + 0.1, abs=STILL)
+
+
+@pytest.mark.parametrize(('leader', 'why'), [
+    ('joint2', 'is itself'), ('nose', 'the model does not have')])
+def test_a_mimic_joint_without_another_leader_is_passive(leader, why, world, caplog):
+    cut = '<transmission name="joint2_trans">'
+    plugin = spawned(world, lambda text: text.replace(
+        'effort="60" velocity="6"/>', f'effort="60" velocity="6"/><mimic joint="{leader}"/>'
+    ).replace(text[text.index(cut):text.index('<gazebo>')], ''))
+    world.run(50)
+    assert f"joint 'joint2' mimics '{leader}', which {why}; it is passive" in caplog.messages
+    assert plugin.due > world.clock.steps + 1000
+
+
+@pytest.mark.parametrize('absurd', ['0', '1e300', '-1e300', '1e-300', 'nan'])
+def test_absurd_limits_and_mimics_do_not_make_a_robot_diverge(absurd, world):
+    text = arm(POSITION).replace('effort="100" velocity="10"',
+                                 f'effort="{absurd}" velocity="{absurd}"')
+    control = load_robot_control(text.replace(
+        '<dynamics damping="0.5"/>',
+        f'<dynamics damping="0.5"/><mimic joint="joint1" multiplier="{absurd}"/>'
+        f'<safety_controller soft_lower_limit="{absurd}" soft_upper_limit="{absurd}" '
+        f'k_position="{absurd}" k_velocity="{absurd}"/>'))
+    model = world.spawn(arm(POSITION), name='arm')
+    plugin = model.plugin('gazebo_ros_control')
+    plugin.configure(control)
+    plugin.manager.load('arm', TYPES[POSITION], BOTH)
+    plugin.manager.switch(['arm'])
+    model.controller('arm').command([0.5, 0.5])
+    world.run(200)
+    assert world.rebuilds == 0
+    assert not model.has_diverged()
