@@ -187,11 +187,11 @@ class GzwebTest(unittest.TestCase):
                                        for note in browser.notes()))
         browser.upload(UPLOAD, 'ball.urdf', BALL.encode())  # another one is there
         browser.wait_until(lambda: '/models/ball_0/body' in browser.nodes)
-        self.assertGreater(state('ball_0', '').pose.position.z, 0.49)
+        ball = state('ball_0', '').pose.position
+        self.assertGreater(ball.z, 0.49)
+        self.wait_for_gizmo(browser, ball)  # the newest is selected
         browser.click_node('/models/box/link/0 visual')
-        # It was at the ball, which was selected before.
-        browser.wait_until(
-            lambda: abs(browser.nodes.get('/gizmo', ('', (0.0, 0.0)))[1][1] - 3.0) < 0.01)
+        self.wait_for_gizmo(browser, at)
         browser.grab('/gizmo')
         browser.drag('/gizmo', [-3.0, 1.0, 2.0])
         browser.wait_until(lambda: abs(state('box', '').pose.position.z - 2.0) < 0.01)
@@ -204,6 +204,11 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: browser.control("Undo: move 'box'"))
         browser.click("Undo: move 'box'")
         browser.wait_until(lambda: abs(state('box', '').pose.position.x - 2.0) < 0.01)
+
+    def wait_for_gizmo(self, browser, point):
+        x, y = point.x, point.y
+        browser.wait_until(lambda: '/gizmo' in browser.nodes and math.dist(
+            browser.nodes['/gizmo'][1][:2], (x, y)) < 0.01)
 
     def turn_a_joint(self, browser):
         hinge = proxy('get_joint_properties', GetJointProperties)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,8 @@ def numbers_in(value: Any) -> Iterator[float]:
 
 def check_spec(spec: ModelSpec) -> None:
     """Assert that numbers are finite, names unique, and every link is in exactly one tree."""
-    assert all(map(math.isfinite, numbers_in(spec)))
+    assert all(map(math.isfinite, numbers_in(replace(spec, control=None))))
+    assert not any(map(math.isnan, numbers_in(spec.control)))  # limits are infinite without one
     names = [link.name for link in spec.links]
     assert names
     assert len(set(names)) == len(names)

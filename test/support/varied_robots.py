@@ -7,6 +7,7 @@ so that each is in several robots, in different company.
 from rosbots_description.sim.plugin_registry import missing_libraries
 
 ROBOTS = 60
+MIMIC = '<joint>left_grip</joint><mimicJoint>right_grip</mimicJoint><multiplier>-1</multiplier>'
 
 TRUE = ('true', 'True', 'TRUE', '1', ' true ', 'yes')
 FALSE = ('false', 'False', 'FALSE', '0', ' false ', 'no')
@@ -172,6 +173,24 @@ TRANSMISSIONS = [
     '<transmission name="t{k}"/>', '',
 ]
 
+# Two fingers, the second of which follows the first, by one of the plugins for that.
+FINGERS = ''.join(
+    f'<link name="{side}_finger">' + MASS.format(m=0.1, i=0.001) + f'</link><joint name="{side}"'
+    f' type="revolute"><parent link="base_link"/><child link="{side}_finger"/><origin '
+    'xyz="0.2 0 0.1"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="5" velocity="2"/>'
+    f'{mimic}</joint>' for side, mimic in (('left_grip', ''), ('right_grip', '{mimic}')))
+GRIPPERS = {
+    'ros_control': (
+        '<mimic joint="left_grip" multiplier="-1"/>', '<transmission name="g"><type>'
+        'transmission_interface/SimpleTransmission</type><joint name="left_grip">'
+        '<hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface></joint>'
+        '<actuator name="m"><mechanicalReduction>1</mechanicalReduction></actuator></transmission>',
+        'libgazebo_ros_control.so', '<robotSimType>gazebo_ros_control/DefaultRobotHWSim'
+        '</robotSimType><controlPeriod>0.001</controlPeriod>'),
+    'roboticsgroup': ('', '', 'libroboticsgroup_gazebo_mimic_joint_plugin.so', MIMIC),
+    'upatras': ('', '', 'libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so', MIMIC),
+}
+
 # What else is in public descriptions.
 ODD = [
     '<gazebo reference="base_link"><material>Gazebo/Blue</material><mu1>0.2</mu1><mu2 value="0.2"/>'
@@ -212,6 +231,10 @@ def urdf(k):
     for offset in (0, 7):
         parts.append(_sensor(k, offset))
     parts.append('' if drive == 'planar_move' else TRANSMISSIONS[k % len(TRANSMISSIONS)])
+    if k % 4 == 3:  # its wheels have no transmission
+        mimic, transmission, library, inside = list(GRIPPERS.values())[k // 4 % len(GRIPPERS)]
+        parts += [FINGERS.replace('{mimic}', mimic), transmission,
+                  _plugin(library, 'gripper', inside, k)]
     odd = ODD[k % len(ODD)]
     parts.append('' if drive == 'planar_move' and '{wheel}' in odd else odd)
     if k % 6 == 5:
