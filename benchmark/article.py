@@ -36,6 +36,17 @@ def robot_spec() -> ModelSpec:
     return load_urdf(robot_urdf(), 'rosbots', robot_namespace='/')[0]
 
 
+def kind_urdf(kind: str) -> str:
+    """Return the URDF text of a kind of drive: the article's robot, or one recorded in Gazebo.
+
+    The latter get their commands below the namespace in which they are spawned.
+    """
+    if kind == 'article':
+        return robot_urdf()
+    text = (ROOT / 'test' / 'data' / 'gazebo' / 'robots' / f'{kind}.urdf').read_text('utf-8')
+    return text.replace('<robotNamespace>/</robotNamespace>', '')
+
+
 @contextlib.contextmanager
 def driven_world(robots: int, distance: float, driving: bool) -> Iterator[World]:
     """Yield an empty world with robots side by side, `distance` [m] apart; close it at the end."""

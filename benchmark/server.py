@@ -34,9 +34,10 @@ from std_srvs.srv import Empty
 
 from rosbots_description.cli.launched import Launched
 
-PATIENCE = 30.0  # [s, wall] timeout of what usually takes a second
+PATIENCE = 120.0  # [s, wall] timeout of what usually takes a second, on a busy machine, too
 EMPTY_WORLD = ('gazebo_ros', 'empty_world.launch', 'gui:=false')
 DISTANCE = 3.0  # [m] between robots
+STEPS_PER_SECOND = 1000.0  # at real time
 USER_TIME, SYSTEM_TIME, STARTED = 11, 12, 19  # fields of /proc/PID/stat after the name
 COMMANDS = 'cmd_vel'  # below a robot's namespace, where the article's robot has /part2_cmr/cmd_vel
 
@@ -117,6 +118,15 @@ class Server:
             SetPhysicsPropertiesRequest(now.time_step, 0.0, now.gravity, now.ode_config)
         )
 
+    def speed(self, window: float) -> float:
+        """Return the steps per second over a window [s, wall]; it is paused before and after."""
+        self.unpause()
+        begin, simulated = time.monotonic(), self.simulated()
+        time.sleep(window)
+        end, simulated = time.monotonic(), self.simulated() - simulated
+        self.pause()
+        return STEPS_PER_SECOND * simulated / (end - begin)
+
     def pause(self) -> None:
         """Pause physics."""
         self._pause()
@@ -125,12 +135,17 @@ class Server:
         """Unpause physics."""
         self._unpause()
 
-    def spawn(self) -> float:
-        """Spawn one more robot beside the others; return the duration of the call [s]."""
+    def spawn(self, urdf: str | None = None, height: float = 0.5) -> float:
+        """Spawn one more robot beside the others; return the duration of the call [s].
+
+        Args:
+            urdf: of another robot than the article's, which obeys cmd_vel.
+            height: of the robot's frame [m].
+        """
         number = len(self._drivers)
-        place = Pose(Point(0.0, DISTANCE * number, 0.5), Quaternion(0.0, 0.0, 0.0, 1.0))
+        place = Pose(Point(0.0, DISTANCE * number, height), Quaternion(0.0, 0.0, 0.0, 1.0))
         begin = time.monotonic()
-        answer = self._spawn(f'robot{number}', self._urdf, f'robot{number}', place, '')
+        answer = self._spawn(f'robot{number}', urdf or self._urdf, f'robot{number}', place, '')
         took = time.monotonic() - begin
         if not answer.success:
             raise RuntimeError(answer.status_message)
@@ -152,10 +167,10 @@ class Server:
                 raise TimeoutError(f'{seconds:g} s of simulated time not within {PATIENCE:g} s')
             time.sleep(0.01)
 
-    def drive(self, forward: float = FORWARD) -> None:
-        """Command all robots to drive straight at `forward` [m/s]."""
+    def drive(self, forward: float = FORWARD, turning: float = 0.0) -> None:
+        """Command all robots to drive at `forward` [m/s] and to turn at `turning` [rad/s]."""
         command = Twist()
-        command.linear.x = forward
+        command.linear.x, command.angular.z = forward, turning
         for driver in self._drivers:
             wait_until(driver.get_num_connections, f'a subscriber of {driver.name}')
             driver.publish(command)

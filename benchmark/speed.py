@@ -9,12 +9,14 @@ speed here.
 
 The loops alternate in short windows. The best window of each counts, since other load can only slow
 a loop down.
+
+Then one and twenty robots of three kinds of drive get nine commands each (sweep.py); the slowest is
+the headline.
 """
 
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
@@ -24,12 +26,12 @@ from article import OUTPUT
 from loops import Loop
 from plot import plot_speed
 from reader import PER_SECOND, Reader, robot_topics
-from server import Server, run_in_new_process
+from server import STEPS_PER_SECOND, Server, run_in_new_process
+from sweep import sweep_all, sweep_table
 
 WINDOW = 0.5  # [s, wall]
 ROUNDS = 10  # windows of each loop
 SETTLE = 1.0  # [s, simulated] until spawned robots stand, or drive at a steady speed
-STEPS_PER_SECOND = 1000.0  # at real time
 GAZEBO_BARE = {20: 2150.0}  # steps/s of the bare loop on the machine of Gazebo, by robots
 LOOPS = ('bare', 'engine', 'world')
 COLUMNS = (*LOOPS, 'server', 'read')
@@ -114,28 +116,18 @@ def _measure_case(case: Case, server: Server) -> None:
         for _ in range(ROUNDS):
             for kind, loop in loops.items():
                 case.record(kind, loop.speed(WINDOW))
-            case.record('server', _speed(server))
+            case.record('server', server.speed(WINDOW))
             if case.robots:
                 speed, received = _speed_read(server, case.robots)
                 case.record('read', speed)
                 case.received = max(case.received, received)
 
 
-def _speed(server: Server) -> float:
-    """Return the steps per second of the server over a window; pause it before and after."""
-    server.unpause()
-    begin, simulated = time.monotonic(), server.simulated()
-    time.sleep(WINDOW)
-    end, simulated = time.monotonic(), server.simulated() - simulated
-    server.pause()
-    return STEPS_PER_SECOND * simulated / (end - begin)
-
-
 def _speed_read(server: Server, robots: int) -> tuple[float, float]:
     """Return the steps per second with a subscriber, and the share of messages it received."""
     with Reader(*robot_topics(robots)) as reader:
         before, simulated = reader.messages(), server.simulated()
-        speed = _speed(server)
+        speed = server.speed(WINDOW)
         simulated = server.simulated() - simulated
         return speed, (reader.messages() - before) / (PER_SECOND * robots * simulated)
 
@@ -204,6 +196,7 @@ def main() -> int:
     """Print the table and save the plot; return the exit code."""
     measured = run_in_new_process(measure)
     print(table(measured))
+    print(sweep_table(sweep_all()))
     draw(measured, PICTURE)
     print(f'picture: {PICTURE}')
     return 0

@@ -1,4 +1,4 @@
-"""Table and plot of speeds: estimates are called so."""
+"""Tables and plot of speeds: estimates are called so, the slowest command is the headline."""
 
 import sys
 from types import ModuleType
@@ -11,13 +11,14 @@ from support import ROOT
 def speed(monkeypatch):
     """Return the module, with stubs for the modules that start servers."""
     monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
-    for name, members in (('server', ('Server', 'run_in_new_process')),
+    for name, members in (('server', ('Server', 'run_in_new_process', 'STEPS_PER_SECOND')),
                           ('reader', ('PER_SECOND', 'Reader', 'robot_topics')),
                           ('loops', ('Loop',))):
         module = ModuleType(name)
-        vars(module).update(dict.fromkeys(members))
+        vars(module).update(dict.fromkeys(members, 1000.0))
         monkeypatch.setitem(sys.modules, name, module)
-    monkeypatch.delitem(sys.modules, 'speed', raising=False)
+    for name in ('speed', 'sweep'):
+        monkeypatch.delitem(sys.modules, name, raising=False)
     import speed
     return speed
 
@@ -52,3 +53,22 @@ def test_plot_is_written_as_png(speed, measured, tmp_path):
 
 def test_table_calls_gazebos_speeds_estimated(speed, measured):
     assert 'not measured here but estimated' in speed.table(measured)
+
+
+def test_the_slowest_command_of_each_kind_is_the_headline(speed):
+    import sweep
+    points = [sweep.Swept(kind, robots, command, (one - 0.1, one, one + 5.0), 1e4, 0.5)
+              for kind in sweep.KINDS for robots in sweep.TARGETS
+              for command, one in zip(sweep.COMMANDS, range(9, 0, -1), strict=True)]
+    text = sweep.sweep_table(points)
+    assert ('slowest command, 20 skid steer of four: 1.00 times Gazebo at (0 m/s, 1 rad/s) '
+            '(NOT met: 4)') in text
+    assert text.count('slowest command') == 6
+    assert 'Gazebo: estimated' in text
+
+
+def test_the_sweep_has_nine_commands_for_three_kinds(speed):
+    import sweep
+    assert len(set(sweep.COMMANDS)) == 9
+    assert {speed for speed, turning in sweep.COMMANDS if not turning} == {0.05, 0.1, 0.3, 0.5, 1.0}
+    assert len(sweep.KINDS) == 3
