@@ -6,6 +6,7 @@ usage: make_messages.py COMPANIONS OUTPUT
 from __future__ import annotations
 
 import sys
+import tempfile
 from pathlib import Path
 
 from genpy.generate_initpy import write_modules
@@ -13,16 +14,46 @@ from genpy.generator import MsgGenerator, SrvGenerator
 
 SHARE = Path('/usr/share')  # of Debian's message packages
 KINDS = {'msg': MsgGenerator, 'srv': SrvGenerator}
+# The messages of an action {0}, beside the three in its file.
+ACTION = {
+    'Action': '{0}ActionGoal action_goal\n{0}ActionResult action_result\n'
+              '{0}ActionFeedback action_feedback\n',
+    'ActionGoal': 'Header header\nactionlib_msgs/GoalID goal_id\n{0}Goal goal\n',
+    'ActionResult': 'Header header\nactionlib_msgs/GoalStatus status\n{0}Result result\n',
+    'ActionFeedback': 'Header header\nactionlib_msgs/GoalStatus status\n{0}Feedback feedback\n',
+}
 
 
 def main(companions: Path, output: Path) -> int:
     """Write OUTPUT/PACKAGE/{msg,srv}; return the exit code."""
-    found = {path.parent.name: [str(path)]
-             for folder in (SHARE, companions) for path in folder.glob('*/msg')}
+    with tempfile.TemporaryDirectory() as folder:
+        return _generate(companions, output, Path(folder))
+
+
+def write_action_messages(package: Path, output: Path) -> None:
+    """Write the definitions of the messages that make up the actions of a package."""
+    output.mkdir(parents=True, exist_ok=True)
+    for path in package.glob('action/*.action'):
+        name, parts = path.stem, path.read_text(encoding='utf-8').split('\n---')
+        texts = dict(zip(('Goal', 'Result', 'Feedback'), parts, strict=True))
+        texts |= {kind: text.format(name) for kind, text in ACTION.items()}
+        for kind, text in texts.items():
+            (output / f'{name}{kind}.msg').write_text(text, encoding='utf-8')
+
+
+def _generate(companions: Path, output: Path, actions: Path) -> int:
+    packages = sorted(companions.glob('*_msgs'))
+    for package in packages:
+        write_action_messages(package, actions / package.name / 'msg')
+    found: dict[str, list[str]] = {}
+    for folder in (SHARE, companions, actions):
+        for path in folder.glob('*/msg'):
+            found.setdefault(path.parent.name, []).append(str(path))
     code = 0
-    for package in sorted(companions.glob('*_msgs')):
+    for package in packages:
         for kind, generator in KINDS.items():
-            files = sorted(map(str, package.glob(f'{kind}/*.{kind}')))
+            files = sorted(str(path) for folder in (package, actions / package.name)
+                           for path in folder.glob(f'{kind}/*.{kind}'))
             target = output / package.name / kind
             target.mkdir(parents=True, exist_ok=True)
             if files:

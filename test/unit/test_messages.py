@@ -17,7 +17,7 @@ def fixture_generated(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize('package', ['gazebo_msgs', 'rosbots_msgs'])
+@pytest.mark.parametrize('package', ['gazebo_msgs', 'rosbots_msgs', 'control_msgs'])
 def test_generated_messages_have_the_checksums_of_catkins(generated, package):
     files = [path for kind in ('msg', 'srv')
              for path in sorted((ROOT / 'companions' / package / kind).glob('*.*'))]
