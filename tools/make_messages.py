@@ -1,6 +1,8 @@
-"""Generate the Python modules of the messages in companions/, as catkin does, but without catkin.
+"""Generate the code of the messages in companions/, as catkin does, but all in one process.
 
-usage: make_messages.py COMPANIONS OUTPUT
+catkin starts three for each message, which take most of the time of the set-up.
+
+usage: make_messages.py COMPANIONS MODULES [HEADERS [PACKAGE]]
 """
 
 from __future__ import annotations
@@ -9,10 +11,12 @@ import sys
 import tempfile
 from pathlib import Path
 
+from genmsg.template_tools import generate_from_file
 from genpy.generate_initpy import write_modules
 from genpy.generator import MsgGenerator, SrvGenerator
 
 SHARE = Path('/usr/share')  # of Debian's message packages
+TEMPLATES = SHARE / 'gencpp'
 KINDS = {'msg': MsgGenerator, 'srv': SrvGenerator}
 # The messages of an action {0}, beside the three in its file.
 ACTION = {
@@ -24,10 +28,13 @@ ACTION = {
 }
 
 
-def main(companions: Path, output: Path) -> int:
-    """Write OUTPUT/PACKAGE/{msg,srv}; return the exit code."""
+def main(
+    companions: Path, modules: Path, headers: Path | None = None, package: str = '*_msgs'
+) -> int:
+    """Write MODULES/PACKAGE/{msg,srv} and, if given, HEADERS/PACKAGE; return the exit code."""
     with tempfile.TemporaryDirectory() as folder:
-        return _generate(companions, output, Path(folder))
+        return _generate(companions, sorted(companions.glob(package)), modules, headers,
+                         Path(folder))
 
 
 def write_action_messages(package: Path, output: Path) -> None:
@@ -41,8 +48,9 @@ def write_action_messages(package: Path, output: Path) -> None:
             (output / f'{name}{kind}.msg').write_text(text, encoding='utf-8')
 
 
-def _generate(companions: Path, output: Path, actions: Path) -> int:
-    packages = sorted(companions.glob('*_msgs'))
+def _generate(
+    companions: Path, packages: list[Path], modules: Path, headers: Path | None, actions: Path
+) -> int:
     for package in packages:
         write_action_messages(package, actions / package.name / 'msg')
     found: dict[str, list[str]] = {}
@@ -51,17 +59,30 @@ def _generate(companions: Path, output: Path, actions: Path) -> int:
             found.setdefault(path.parent.name, []).append(str(path))
     code = 0
     for package in packages:
+        name = package.name
         for kind, generator in KINDS.items():
-            files = sorted(str(path) for folder in (package, actions / package.name)
+            files = sorted(str(path) for folder in (package, actions / name)
                            for path in folder.glob(f'{kind}/*.{kind}'))
-            target = output / package.name / kind
+            target = modules / name / kind
             target.mkdir(parents=True, exist_ok=True)
             if files:
-                code |= generator().generate_messages(package.name, files, str(target), found)
+                code |= generator().generate_messages(name, files, str(target), found)
             write_modules(str(target))
-        (output / package.name / '__init__.py').touch()
+            if headers is not None:
+                _write_headers(name, files, headers / name, found)
+        (modules / name / '__init__.py').touch()
     return code
 
 
+def _write_headers(
+    package: str, files: list[str], output: Path, found: dict[str, list[str]]
+) -> None:
+    folders = [f'{name}:{folder}' for name, paths in found.items() for folder in paths]
+    message, service = ({f'{kind}.h.template': '@NAME@.h'} for kind in KINDS)
+    for file in files:
+        generate_from_file(
+            file, package, str(output), str(TEMPLATES), folders, message, service)
+
+
 if __name__ == '__main__':
-    sys.exit(main(*map(Path, sys.argv[1:])))
+    sys.exit(main(*map(Path, sys.argv[1:4]), *sys.argv[4:]))  # type: ignore[arg-type]

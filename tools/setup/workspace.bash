@@ -26,8 +26,9 @@ workspace_fingerprint() (
     find . companions -maxdepth 2 \( -path './.*' -prune \) -o \
       \( -name CMakeLists.txt -o -name package.xml -o -name setup.py \) -print0 |
       sort -z | xargs -0 sha256sum
-    find companions -type f \( -name '*.msg' -o -name '*.srv' -o -path '*/cmake/*' \) -print0 |
-      sort -z | xargs -0 -r sha256sum
+    find companions -type f \
+      \( -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -path '*/cmake/*' \) -print0 |
+      sort -z | xargs -0 -r sha256sum tools/make_messages.py tools/messages.cmake
     find scripts companions/*/scripts test/rostest -type f 2> /dev/null | sort
   } | sha256sum
 )
@@ -50,9 +51,9 @@ link_packages() {
 }
 
 # A clean environment, so that a workspace the caller has sourced is not built into ours, and
-# Debian's tools before those of pyenv and the like. Messages for Lisp are left out. A build does not
-# wait for a busy machine, as catkin_make has it by default (-l). The catkin of
-# Debian 13 finds Python by another module of CMake, and so by another variable.
+# Debian's tools before those of pyenv and the like. It is only configured: all that there is to build
+# is the code of messages, which is made on the way (tools/messages.cmake). Messages for Lisp are left
+# out. The catkin of Debian 13 finds Python by another module of CMake, and so by another variable.
 build_workspace() {
   local cache=$WORKSPACE/build/CMakeCache.txt
   if [[ -f $cache ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$WORKSPACE/src" "$cache"; then
@@ -61,9 +62,9 @@ build_workspace() {
   link_packages
   local python=$WORKSPACE/venv/bin/python
   env -u CMAKE_PREFIX_PATH -u ROS_PACKAGE_PATH -u PYTHONPATH PATH="/usr/bin:/bin:$PATH" \
-    ROS_LANG_DISABLE=genlisp ROS_PARALLEL_JOBS="-j$(nproc)" \
+    ROS_LANG_DISABLE=genlisp ROS_PARALLEL_JOBS=-j1 \
     /usr/bin/catkin_make -C "$WORKSPACE" "-DPYTHON_EXECUTABLE=$python" "-DPython_EXECUTABLE=$python" \
-    -DCATKIN_ENABLE_TESTING=OFF
+    -DCATKIN_ENABLE_TESTING=OFF cmake_check_build_system
 }
 
 # ---- without a workspace: a compiler and catkin would take most of a newcomer's first minute ----
