@@ -16,7 +16,7 @@ from rosbots_description.ros_api.node.world_loading import read_world
 from rosbots_description.ros_api.reconfigure import physics
 from rosbots_description.ros_api.server.loop import Loop
 from rosbots_description.ros_api.server.server import Server
-from rosbots_description.sim import controllers, plugins  # noqa: F401  register
+from rosbots_description.sim import controllers, plugins  # noqa: F401  plugins registers
 from rosbots_description.sim.plugin_registry.gazebo_libraries import missing_libraries
 from rosbots_description.sim.plugin_registry.registry import known_filenames
 from rosbots_description.sim.runtime.world import World
@@ -87,7 +87,7 @@ def registered():
 @pytest.mark.parametrize(
     'section',
     ['Services', 'Topics', 'Parameters', 'Arguments of empty_world.launch', 'Plugins',
-     'Launch files and programs', 'Commands of gz', 'Paths and packages'],
+     'Controllers', 'Launch files and programs', 'Commands of gz', 'Paths and packages'],
 )
 def test_each_name_has_one_row_with_a_known_state(section):
     counts = Counter(name for name, _, _ in rows(section))
@@ -107,6 +107,10 @@ def test_node_offers_exactly_what_its_table_lists(section, registered):
 
 def test_every_plugin_has_a_row_as_supported():
     assert set(known_filenames()) == offered('Plugins')
+
+
+def test_every_type_of_controller_has_a_row():
+    assert {name for name, _ in controllers.ControllerManager.types()} == offered('Controllers')
 
 
 def test_every_known_but_unsupported_library_has_a_row():

@@ -7,6 +7,7 @@ from . import (  # noqa: F401
     force,
     imus,
     ray_sensors,
+    ros_control,
     state,
     wheel_slip,
     wrenches,

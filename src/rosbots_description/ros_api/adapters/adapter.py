@@ -3,12 +3,12 @@
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import rospy
 from genpy import Message
 
-from ...sim.plugins import ModelPlugin
+from ...sim.runtime import Model, Output
 from ..server import Server
 from ..transport import (
     SubscriberWatch,
@@ -26,8 +26,36 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 
+class Named(Protocol):
+    """The description of a plugin or controller."""
+
+    @property
+    def name(self) -> str:
+        """Its name in the description."""
+
+
+class HasTopics(Protocol):
+    """A plugin, or a controller."""
+
+    @property
+    def model(self) -> Model:
+        """The model that it belongs to."""
+
+    @property
+    def spec(self) -> Named:
+        """Its description."""
+
+    @property
+    def params(self) -> Any:  # noqa: ANN401  declarations know the class
+        """Its tags or parameters."""
+
+    namespace: str
+    log_prefix: str
+    outputs: dict[str, Output[Any]]
+
+
 class Adapter:
-    """Opens and closes the declared topics and services of a plugin.
+    """Opens and closes the declared topics and services of a plugin or controller.
 
     Those whose names are not valid ROS names are left out, with an error.
 
@@ -36,11 +64,12 @@ class Adapter:
     """
 
     def __init__(
-        self, server: Server, plugin: ModelPlugin, declared: 'Iterable[Declaration]' = ()
+        self, server: Server, plugin: HasTopics, declared: 'Iterable[Declaration]' = ()
     ) -> None:
         self.server = server
         self.plugin = plugin
         self._connected = False
+        self.is_closed = False
         self._watch = SubscriberWatch(lambda: server.loop.post(self.refresh))
         self._opened: list[Callable[[], None]] = []  # functions to call in `close`
         self.endpoints = self._with_valid_names([one.join(self) for one in declared])
@@ -78,6 +107,7 @@ class Adapter:
 
     def close(self) -> None:
         """Unregister what was registered."""
+        self.is_closed = True
         for close in self._opened:
             close()
 
@@ -133,6 +163,6 @@ class Adapter:
         return there == message_class._type
 
 
-def where(plugin: ModelPlugin) -> str:
-    """Return the name of a plugin for messages."""
+def where(plugin: HasTopics) -> str:
+    """Return the name of a plugin or controller for messages."""
     return f"model '{plugin.model.name}', plugin '{plugin.spec.name}'"

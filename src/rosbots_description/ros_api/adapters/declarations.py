@@ -188,7 +188,15 @@ class SubscribedTopic(Endpoint):
                 logger.error('%sdropped a command on %s with %s',
                              plugin.log_prefix, self.text, error)
         else:
-            self.adapter.server.loop.post(lambda: getattr(plugin, declared.call)(*arguments))
+            self.adapter.server.loop.post(lambda: self._command(*arguments))
+
+    def _command(self, *arguments: object) -> None:
+        """Call the method; an invalid command changes nothing."""
+        plugin = self.adapter.plugin
+        try:
+            getattr(plugin, self._declared.call)(*arguments)
+        except ValueError as error:
+            logger.error('%s%s: %s', plugin.log_prefix, self.text, error)
 
 
 def finite(*fields: str) -> Callable[[Message], tuple[float, ...]]:

@@ -17,7 +17,14 @@ from .master import (
     write_parameters,
 )
 from .name_conflict import node_name, replacing_node, require_free, running_node
-from .names import find_tf_prefix, frame_name, is_valid_name, topic_name
+from .names import (
+    find_tf_prefix,
+    frame_name,
+    is_valid_name,
+    read_parameter,
+    search_parameter,
+    topic_name,
+)
 from .process import init_node, is_node
 from .registrar import Registrar
 from .registrations import published_types, subscribed_types, watch_master
@@ -58,10 +65,12 @@ __all__ = [
     'publish_serialized',
     'published_types',
     'publisher_names',
+    'read_parameter',
     'replacing_node',
     'require_address',
     'require_free',
     'running_node',
+    'search_parameter',
     'sender_of',
     'set_level',
     'start_node',

@@ -1,6 +1,7 @@
 """Names of topics and frames, resolved as the plugins of gazebo_ros_pkgs resolve them."""
 
 import re
+from typing import Any, cast
 
 import rosgraph
 import rospy
@@ -39,10 +40,24 @@ def find_tf_prefix(namespace: str) -> str:
 
     Waits while there is no ROS master.
     """
+    name = search_parameter(namespace, 'tf_prefix')
+    return '' if name is None else str(read_parameter(name, ''))
+
+
+def search_parameter(namespace: str, parameter: str) -> str | None:
+    """Return the global name of a parameter, searched from `namespace` upward; None: not found.
+
+    Waits while there is no ROS master.
+    """
     namespace = rospy.resolve_name(namespace).rstrip('/')
     try:
         # The master searches upward from the caller's name.
-        name = retry_call(lambda: rosgraph.Master(f'{namespace}/plugin').searchParam('tf_prefix'))
+        return cast(str, retry_call(
+            lambda: rosgraph.Master(f'{namespace}/plugin').searchParam(parameter)))
     except rosgraph.MasterError:
-        return ''
-    return str(retry_call(lambda: rospy.get_param(name, '')))
+        return None
+
+
+def read_parameter(name: str, default: object = None) -> Any:  # noqa: ANN401  whatever is set
+    """Return the value of a parameter, or `default`; waits while there is no ROS master."""
+    return retry_call(lambda: rospy.get_param(name, default))

@@ -56,12 +56,12 @@ def test_plugin_is_without_topics_whose_names_ros_rejects(server, caplog, tags, 
     (record,) = caplog.records
     assert record.message.startswith(
         "model 'robot', plugin 'drive': not opened, since ROS has no such names: '/")
-    (made,) = adapters._open.values()
+    (made,) = adapters._adapters._open.values()
     names = {one.name for one in made.endpoints}
     assert names & left
     assert all(one in record.message for tag, one in tags.items() if tag != 'robotNamespace')
     adapters.model_deleted(model)
-    assert not adapters._open
+    assert not adapters._adapters._open
 
 
 def test_topic_with_a_conflicting_type_is_left_out(adapter, caplog):

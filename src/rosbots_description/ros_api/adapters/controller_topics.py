@@ -1,0 +1,197 @@
+"""The topics of controllers, in the namespace of each.
+
+Subscribes:
+    <ns>/<controller>/command (std_msgs/Float64): controllers of one joint
+    <ns>/<controller>/command (std_msgs/Float64MultiArray): controllers of a group of joints
+    <ns>/<controller>/cmd_vel (geometry_msgs/Twist): drives
+    <ns>/<controller>/cmd_four_wheel_steering (four_wheel_steering_msgs/FourWheelSteering)
+Publishes:
+    <ns>/joint_states (sensor_msgs/JointState): joint_state_controller
+    <ns>/<controller>/state (control_msgs/JointControllerState): PIDs of one joint
+    <ns>/<controller>/odom (nav_msgs/Odometry), /tf (tf2_msgs/TFMessage): drives; and cmd_vel_out
+        (geometry_msgs/TwistStamped) if publish_cmd, wheel_joint_controller_state
+        (control_msgs/JointTrajectoryControllerState) if publish_wheel_joint_controller_state
+    <ns>/<controller>/odom_steer (four_wheel_steering_msgs/FourWheelSteeringStamped)
+Services and more:
+    <ns>/<controller>/<pid>/...: the gains of each PID, see `reconfigure.gains`
+    <ns>/<controller>/...: settings of diff_drive_controller, see `reconfigure.diff_drive`
+"""
+
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+import rospy
+from control_msgs.msg import JointControllerState, JointTrajectoryControllerState
+from four_wheel_steering_msgs.msg import FourWheelSteering, FourWheelSteeringStamped
+from geometry_msgs.msg import Twist, TwistStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64, Float64MultiArray
+from tf2_msgs.msg import TFMessage
+
+from ...sim.controllers import (
+    Controller,
+    DiffDriveController,
+    DriveController,
+    FourWheelSteeringController,
+    JointCommandController,
+    JointGroupCommandController,
+    JointGroupPositionController,
+    JointPidState,
+    JointPositionController,
+    JointStateController,
+    JointVelocityController,
+    MecanumDriveController,
+    Pid,
+)
+from ...sim.controllers import FourWheelSteering as AxleSteering
+from ...sim.core import Twist as Velocity
+from ..messages import OdometryLayout, TransformLayout, fill_twist
+from ..transport import topic_name
+from .adapter import Adapter, where
+from .declarations import Declaration, Endpoint, Offers, Pack, Publishes, Subscribes, finite
+from .packs import JointStatesPack
+from .registry import connects
+from .trajectory_messages import fill_state
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class TunesGains:
+    """The gains of a controller's PIDs, for dynamic_reconfigure."""
+
+    def join(self, adapter: Adapter) -> 'GainsEndpoint':
+        """Return the endpoint of the adapter's controller."""
+        return GainsEndpoint(adapter)
+
+
+class GainsEndpoint(Endpoint):
+    """Opens a server of dynamic_reconfigure for each PID."""
+
+    def open(self) -> None:
+        """Advertise the gains."""
+        controller = cast(Controller, self.adapter.plugin)
+        open_gains(self.adapter, controller.pids)
+
+
+def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
+    """Advertise gains, by their paths in the namespace; called on the registrar's thread."""
+    from ..reconfigure.gains import GainsReconfigure
+
+    if adapter.is_closed:
+        return
+    for path, pid in pids.items():
+        name = topic_name(adapter.plugin.namespace, path)
+        try:
+            server = GainsReconfigure(pid, name, adapter.server.loop.post)
+        except rospy.ServiceException:
+            logger.warning('%s: there is a server of dynamic_reconfigure in %s already',
+                           where(adapter.plugin), name)
+        else:
+            adapter.on_close(server.close)
+
+
+def connects_controller(owner: type[Controller], *declared: Declaration) -> None:
+    """Give the controllers of a class these topics, and those of their gains."""
+    connects(owner, *declared, TunesGains())
+
+
+def read_group(message: Float64MultiArray) -> tuple[Any, ...]:
+    """Return the argument of a group's `command`."""
+    return (message.data,)
+
+
+def read_number(message: Float64) -> tuple[Any, ...]:
+    """Return the argument of the `command` of one joint."""
+    return (message.data,)
+
+
+def twist_message(twist: Velocity) -> TwistStamped:
+    """Return a velocity command after its limits as a message."""
+    message = TwistStamped()
+    fill_twist(message.twist, twist)
+    return message
+
+
+def pid_state_message(state: JointPidState) -> JointControllerState:
+    """Return the state of a PID as a message; as upstream its clamp is that of i_clamp_max."""
+    gains = state.gains
+    return JointControllerState(
+        set_point=state.set_point, process_value=state.process_value,
+        process_value_dot=state.process_value_dot, error=state.error, time_step=state.time_step,
+        command=state.command, p=gains.p, i=gains.i, d=gains.d, i_clamp=gains.i_max,
+        antiwindup=gains.antiwindup)
+
+
+def steering_message(steering: AxleSteering) -> FourWheelSteeringStamped:
+    """Return the measured steering of both axles as a message."""
+    return FourWheelSteeringStamped(data=FourWheelSteering(
+        speed=steering.speed, front_steering_angle=steering.front_angle,
+        rear_steering_angle=steering.rear_angle))
+
+
+def odometry_pack(adapter: Adapter) -> Pack:
+    """Return the function that serialises a drive's odometry; its frames take no prefix."""
+    drive = cast(DriveController, adapter.plugin)
+    return OdometryLayout(*_frames(drive), drive.pose_variances, drive.twist_variances).pack
+
+
+def transform_pack(adapter: Adapter) -> Pack:
+    """Return the function that serialises the transform of a drive."""
+    layout = TransformLayout(*_frames(cast(DriveController, adapter.plugin)))
+    return lambda _number, now_ns, edge: layout.pack(now_ns, edge.pose)
+
+
+def _frames(drive: DriveController) -> tuple[str, str]:
+    values = drive.params.values
+    return str(values['odom_frame_id']), str(values['base_frame_id'])
+
+
+def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
+    """Offer the settings of a diff_drive_controller to dynamic_reconfigure."""
+    from ..reconfigure.diff_drive import DiffDriveReconfigure
+
+    return DiffDriveReconfigure(
+        cast(DiffDriveController, adapter.plugin), name, adapter.server.loop.post).close
+
+
+GROUP = Subscribes('command', Float64MultiArray, 'command', read_group)
+SINGLE = Subscribes('command', Float64, 'command', read_number)
+STATE = Publishes('state', 'state', JointControllerState, convert=pid_state_message, frame='')
+COMMAND, SIDEWAYS = (
+    Subscribes(DriveController.topic_names['command'], Twist, 'command', finite(*fields))
+    for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y')))
+ODOMETRY = (
+    Publishes('odometry', DriveController.topic_names['odometry'], Odometry, pack=odometry_pack,
+              queue=100),
+    Publishes('odometry_transform', DriveController.topic_names['odometry_transform'], TFMessage,
+              pack=transform_pack, queue=100),
+    Publishes('limited_command', DriveController.topic_names['limited_command'], TwistStamped,
+              convert=twist_message, frame='', queue=100),
+)
+
+connects_controller(Controller)
+connects_controller(JointStateController, Publishes(
+    'joint_states', JointStateController.topic_names['joint_states'], JointState,
+    pack=JointStatesPack, queue=1000))
+connects_controller(JointCommandController, SINGLE)
+connects_controller(JointPositionController, SINGLE, STATE)
+connects_controller(JointVelocityController, SINGLE, STATE)
+connects_controller(JointGroupCommandController, GROUP)
+connects_controller(JointGroupPositionController, GROUP)
+connects_controller(DriveController, COMMAND, *ODOMETRY)
+connects_controller(
+    DiffDriveController, COMMAND, *ODOMETRY, Offers('', offer_settings),
+    Publishes('wheel_states', DiffDriveController.topic_names['wheel_states'],
+              JointTrajectoryControllerState, frame='', queue=100,
+              convert=lambda state: fill_state(JointTrajectoryControllerState(), state)))
+connects_controller(MecanumDriveController, SIDEWAYS, *ODOMETRY)
+connects_controller(
+    FourWheelSteeringController, COMMAND, *ODOMETRY,
+    Subscribes(FourWheelSteeringController.topic_names['steer'], FourWheelSteering, 'steer',
+               finite('speed', 'front_steering_angle', 'rear_steering_angle')),
+    Publishes('steering', FourWheelSteeringController.topic_names['steering'],
+              FourWheelSteeringStamped, convert=steering_message, frame='', queue=100))

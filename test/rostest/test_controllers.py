@@ -1,0 +1,409 @@
+#!/usr/bin/env python3
+"""Controllers on the wire: names and types as recorded, launch files, commands, bad input."""
+
+import json
+import math
+import signal
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import actionlib
+import rosgraph
+import rospy
+import rosservice
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from control_msgs.msg import (
+    FollowJointTrajectoryAction,
+    FollowJointTrajectoryGoal,
+    JointControllerState,
+)
+from control_msgs.srv import QueryTrajectoryState
+from controller_manager_msgs.srv import (
+    ListControllers,
+    ListControllerTypes,
+    LoadController,
+    SwitchController,
+    UnloadController,
+)
+from dynamic_reconfigure.client import Client
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
+from simulator import DEADLINE, SimulatorTest, wait_until
+from std_msgs.msg import Bool, Float64
+from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+DATA = Path(__file__).resolve().parents[1] / 'data'
+ROBOTS = DATA / 'gazebo' / 'robots'
+RECORDED = json.loads((DATA / 'gazebo' / 'controller_interfaces.json').read_text())
+ARM = (ROBOTS / 'twolink.urdf').read_text()
+BURGER = (ROBOTS / 'burger_ros_control.urdf').read_text()
+LAUNCH = DATA / 'controllers' / 'arm_control.launch'
+MANAGER = ('list_controller_types', 'list_controllers', 'load_controller',
+           'reload_controller_libraries', 'switch_controller', 'unload_controller')
+STRICT, BEST_EFFORT = 2, 1
+JSC = 'joint_state_controller'
+
+
+class ControllersTest(SimulatorTest):
+
+    def setUp(self):
+        super().setUp()
+        self.errors = []
+        self._connections.append(rospy.Subscriber('/rosout', Log, self._hear))
+        self.parameters = set()
+
+    def tearDown(self):
+        super().tearDown()
+        for name in self.parameters:
+            rospy.delete_param(name)
+        wait_until(lambda: not managers(), 'the services of deleted robots to go')
+
+    def _hear(self, message):
+        if message.level >= Log.WARN and message.name == '/gazebo':
+            self.errors.append(message.msg)
+
+    def set_parameter(self, name, value):
+        rospy.set_param(name, value)
+        self.parameters.add(name)
+
+    def spawn_robot(self, text=ARM, namespace='/arm', parameters=None):
+        """Spawn a robot with the parameters of its controllers, and wait for its manager."""
+        self.set_parameter('/robot_description', text)
+        for name, value in (parameters or {}).items():
+            self.set_parameter(f'{namespace}/{name}', value)
+        self.assertTrue(self.spawn('robot', text).success)
+        wait_until(lambda: managers() >= {f'{namespace}/controller_manager/{name}'
+                                          for name in MANAGER}, 'the controller manager')
+        self.manager = f'{namespace}/controller_manager'
+
+    def call(self, service, kind, *arguments, **named):
+        return rospy.ServiceProxy(f'{self.manager}/{service}', kind)(*arguments, **named)
+
+    def load(self, name):
+        return self.call('load_controller', LoadController, name).ok
+
+    def unload(self, name):
+        return self.call('unload_controller', UnloadController, name).ok
+
+    def switch(self, start=(), stop=(), strictness=STRICT):
+        return self.call('switch_controller', SwitchController, start_controllers=list(start),
+                         stop_controllers=list(stop), strictness=strictness).ok
+
+    def states(self):
+        return {one.name: one.state
+                for one in self.call('list_controllers', ListControllers).controller}
+
+    def publisher(self, topic, kind):
+        made = rospy.Publisher(topic, kind, queue_size=10)
+        self._connections.append(made)
+        wait_until(made.get_num_connections, f'a subscriber of {topic}')
+        return made
+
+    def heard_errors(self, *texts):
+        wait_until(lambda: all(any(text in error for error in self.errors) for text in texts),
+                   f'{texts} in {self.errors}')
+
+    def test_names_and_types_are_those_of_the_recordings(self):
+        for scenario, recorded in RECORDED.items():
+            with self.subTest(scenario):
+                try:
+                    self._check_scenario(recorded)
+                finally:
+                    self._clean()
+                    wait_until(lambda: not managers(), 'the services to go')
+
+    def _check_scenario(self, recorded):
+        interface, controllers = recorded['interface'], recorded['parameters']
+        before = graph()
+        if interface:
+            self.spawn_robot(
+                ARM.replace('EffortJointInterface', interface), '/arm',
+                {**controllers, 'gazebo_ros_control/pid_gains': recorded['pid_gains']})
+        else:
+            self.spawn_robot(BURGER, '', controllers)
+        wait_until(lambda: len(added(before)['services']) >= len(
+            (recorded['by_plugin'] or {}).get('services', MANAGER)), 'all services')
+        if recorded['by_plugin']:
+            self.assertEqual(added(before), recorded['by_plugin'])
+        idle = graph()
+        for name in controllers:
+            self.assertTrue(self.load(name), self.errors)
+        self.assertEqual(set(self.states().values()), {'initialized'})
+        self.assertTrue(self.switch(start=controllers))
+        self.assertEqual(added(idle), recorded['by_controllers'])
+        if 'list' in recorded:
+            listed = self.call('list_controllers', ListControllers).controller
+            self.assertEqual([as_dict(one) for one in listed], recorded['list'])
+        self.assertTrue(self.switch(stop=controllers))
+        for name in controllers:
+            self.assertTrue(self.unload(name))
+        self.assertEqual(graph(), idle)
+
+    def test_launch_file_starts_controllers_and_ctrl_c_unloads_them(self):
+        self.spawn_robot()
+        launch = subprocess.Popen(['roslaunch', str(LAUNCH)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True)
+        try:
+            wait_until(lambda: set(self.states().values()) == {'running'}, 'the controllers')
+            states = self.collect('/arm/joint_states', JointState)
+            reports = self.collect('/arm/joint1_position_controller/state', JointControllerState)
+            self.publisher('/arm/joint1_position_controller/command', Float64).publish(0.3)
+            # As recorded, gravity leaves an error of command / p.
+            wait_until(lambda: reports and reports[-1].set_point == 0.3 and abs(
+                reports[-1].process_value_dot) < 1e-4 and reports[-1].process_value > 0.25,
+                'the joint to rest')
+            last = reports[-1]
+            self.assertAlmostEqual(last.command, 100.0 * last.error, delta=0.01)
+            self.assertEqual((last.p, last.i, last.d, last.i_clamp), (100.0, 0.01, 10.0, 0.0))
+            wait_until(lambda: abs(states[-1].position[0] - last.process_value) < 1e-3, 'the state')
+            self.assertEqual(states[-1].name, ['joint1', 'joint2'])
+            self.assertEqual(periods(states), {0.01})
+            self._check_programs()
+        finally:
+            launch.send_signal(signal.SIGINT)
+            output = launch.communicate(timeout=DEADLINE)[0]
+        self.assertEqual(self.states(), {})
+        for line in ('Controller Spawner: Waiting for service controller_manager/load_controller',
+                     'Loading controller: joint_state_controller',
+                     'Started controllers: joint_state_controller, joint1_position_controller',
+                     'Shutting down spawner. Stopping and unloading controllers...',
+                     'Succeeded in unloading joint_state_controller'):
+            self.assertIn(line, output)
+
+    def _check_programs(self):
+        """The commands of controller_manager, beside running controllers."""
+        for command, expected in (
+                ('list', "'joint1_position_controller' - 'hardware_interface::EffortJointInterface'"
+                         ' ( running )'),
+                ('stop joint2_position_controller',
+                 "Stopped ['joint2_position_controller'] successfully"),
+                ('start joint2_position_controller nope',
+                 "Started ['joint2_position_controller'] successfully\n"
+                 "Error when starting ['nope'] and stopping []")):
+            ended = subprocess.run(
+                ['rosrun', 'controller_manager', 'controller_manager', *command.split(),
+                 '__ns:=/arm'], capture_output=True, text=True, timeout=DEADLINE, check=True)
+            self.assertIn(expected, ended.stdout)
+
+    def test_spawner_reports_what_cannot_be_loaded_and_waits(self):
+        self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
+        spawner = subprocess.Popen(
+            ['rosrun', 'controller_manager', 'spawner', '--namespace', '/arm', 'nope', JSC],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        wait_until(lambda: self.states() == {JSC: 'running'}, 'the other controller')
+        spawner.send_signal(signal.SIGINT)
+        output = spawner.communicate(timeout=DEADLINE)[0]
+        self.assertEqual(spawner.returncode, 0)
+        self.assertIn('Failed to load nope', output)
+        self.assertEqual(self.states(), {})
+        self.heard_errors("Could not load controller 'nope' because the type was not specified. "
+                          'Did you load the controller configuration on the parameter server '
+                          "(namespace: '/arm/nope')?")
+
+    def test_bad_input_is_answered_as_upstream_and_the_world_goes_on(self):
+        good = RECORDED['effort_pos']['parameters']
+        self.spawn_robot(parameters={
+            **good, 'wrong': {'type': 'no_such/Controller'}, 'list': [1, 2],
+            'jointless': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint9'},
+            'rival': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint1'}})
+        name = 'joint1_position_controller'
+        for bad in ('nope', 'wrong', 'list', 'jointless', '', 'a b', '../../x'):
+            self.assertFalse(self.load(bad), bad)
+        self.assertTrue(self.load(name))
+        self.assertFalse(self.load(name))
+        self.assertTrue(self.load('rival'))
+        self.assertTrue(self.switch(start=[name]))
+        self.assertFalse(self.switch(start=['rival']))
+        self.assertFalse(self.switch(start=['nope']))
+        self.assertTrue(self.switch(start=['nope'], strictness=BEST_EFFORT))
+        self.assertFalse(self.unload(name))
+        self.assertTrue(self.switch(start=['rival'], stop=[name]))
+        self.assertEqual(self.states(), {name: 'stopped', 'rival': 'running'})
+        command = self.publisher('/arm/rival/command', Float64)
+        for value in (math.nan, math.inf):
+            command.publish(value)
+        self.heard_errors(
+            "Could not load controller 'wrong' because controller type 'no_such/Controller' does "
+            'not exist.',
+            "Use 'rosservice call controller_manager/list_controller_types' to get the available "
+            'types',
+            f"A controller named '{name}' was already loaded inside the controller manager",
+            "Initializing controller 'jointless' failed",
+            'Could not switch controllers, due to resource conflict',
+            "Could not start controller with name 'nope' because no controller with this name "
+            'exists',
+            f"Could not unload controller with name '{name}' because it is still running",
+            'a command takes finite numbers')
+        now = self.world().sim_time
+        wait_until(lambda: self.world().sim_time > now, 'the world')
+
+    def test_types_are_at_least_those_of_the_recording(self):
+        self.spawn_robot()
+        answer = self.call('list_controller_types', ListControllerTypes)
+        self.assertLessEqual(set(RECORDED['effort_pos']['types']), set(answer.types))
+        self.assertEqual(set(answer.base_classes), {'controller_interface::ControllerBase'})
+
+    def test_goals_are_followed_violated_rejected_and_canceled(self):
+        recorded = RECORDED['jtc_position']['parameters']
+        self.spawn_robot(ARM.replace('EffortJointInterface', 'PositionJointInterface'),
+                         parameters=recorded)
+        for name in recorded:
+            self.assertTrue(self.load(name))
+        self.assertTrue(self.switch(start=recorded))
+        client = actionlib.SimpleActionClient(
+            '/arm/arm_controller/follow_joint_trajectory', FollowJointTrajectoryAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(DEADLINE)))
+        feedback = []
+
+        def follow(seconds, positions, names=('joint1', 'joint2'), wait=True):
+            goal = FollowJointTrajectoryGoal()
+            goal.trajectory.joint_names = list(names)
+            goal.trajectory.points = [JointTrajectoryPoint(
+                positions=positions, time_from_start=rospy.Duration(seconds))]
+            client.send_goal(goal, feedback_cb=feedback.append)
+            if wait:
+                wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, 'result')
+            result = client.get_result()
+            return (client.get_state(), result.error_code, result.error_string) if wait else None
+
+        self.assertEqual(follow(0.5, [0.5, -0.3]), (GoalStatus.SUCCEEDED, 0, ''))
+        self.assertEqual(feedback[-1].joint_names, ['joint1', 'joint2'])
+        query = rospy.ServiceProxy('/arm/arm_controller/query_state', QueryTrajectoryState)
+        now = rospy.Time.from_sec(self.world().sim_time)
+        self.assertEqual([round(one, 6) for one in query(now).position], [0.5, -0.3])
+        self.assertEqual(follow(1.0, [0.5], ['nope']), (GoalStatus.REJECTED, -2, ''))
+        follow(30.0, [0.0, 0.0], wait=False)
+        wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 'the goal to be accepted')
+        client.cancel_goal()
+        wait_until(lambda: client.get_state() == GoalStatus.PREEMPTED, 'the goal to be canceled')
+        state, code, text = follow(0.02, [2.5, -2.0])
+        self.assertEqual((state, code), (GoalStatus.ABORTED, -4))
+        self.assertRegex(text, r'^joint\d path error -?\d\.\d{6}$')
+
+    def test_gains_are_changed_and_the_emergency_stop_takes_the_effort(self):
+        parameters = RECORDED['effort_pos']['parameters']
+        self.spawn_robot(ARM.replace('</robotNamespace>',
+                                     '</robotNamespace><eStopTopic>stop</eStopTopic>'),
+                         parameters=parameters)
+        for name in parameters:
+            self.assertTrue(self.load(name))
+        self.assertTrue(self.switch(start=parameters))
+        reports = self.collect('/arm/joint1_position_controller/state', JointControllerState)
+        client = Client('/arm/joint1_position_controller/pid', timeout=DEADLINE)
+        changed = client.update_configuration({'p': 55.0, 'i_clamp_max': 3.0})
+        self.assertEqual((changed['p'], changed['d']), (55.0, 10.0))
+        wait_until(lambda: reports and (reports[-1].p, reports[-1].i_clamp) == (55.0, 3.0), 'p')
+        self.publisher('/arm/joint1_position_controller/command', Float64).publish(0.5)
+        states = self.collect('/arm/joint_states', JointState)
+        wait_until(lambda: states and abs(states[-1].effort[0]) > 0.5, 'effort')
+        stop = self.publisher('/arm/stop', Bool)
+        stop.publish(True)
+        wait_until(lambda: states[-1].effort[0] == 0.0, 'the stop')
+        stop.publish(False)
+        wait_until(lambda: states[-1].effort[0] != 0.0, 'effort again')
+
+    def test_a_controller_of_a_users_package_is_loaded_by_its_type(self):
+        self.spawn_robot(
+            ARM.replace('EffortJointInterface', 'PositionJointInterface'),
+            parameters={JSC: RECORDED['effort_pos']['parameters'][JSC],
+                        'swing': {'type': 'my_robot/Swing', 'joint': 'joint2'}})
+        for name in (JSC, 'swing'):
+            self.assertTrue(self.load(name), self.errors)
+        self.assertTrue(self.switch(start=[JSC, 'swing']))
+        states = self.collect('/arm/joint_states', JointState)
+
+        def swings_about(centre):
+            angles = [one.position[1] for one in states[-25:]]
+            return len(angles) == 25 and max(
+                abs(max(angles) - centre - 0.1), abs(min(angles) - centre + 0.1)) < 0.02
+
+        wait_until(lambda: swings_about(0.0), 'the swing')
+        self.publisher('/arm/swing/command', Float64).publish(0.5)
+        wait_until(lambda: swings_about(0.5), 'the swing elsewhere')
+
+    def test_the_world_goes_on_until_the_description_arrives(self):
+        self.assertFalse(rospy.has_param('/robot_description'))
+        self.assertTrue(self.spawn('robot', ARM).success)
+        start = self.world().sim_time
+        wait_until(lambda: self.world().sim_time > start + 0.3, 'the world')
+        self.assertEqual(managers(), set())
+        self.set_parameter('/robot_description', ARM)
+        wait_until(lambda: len(managers()) == len(MANAGER), 'the controller manager')
+
+    def test_a_robot_drives_by_its_diff_drive_controller(self):
+        parameters = RECORDED['diff_drive_controller']['parameters']
+        self.spawn_robot(BURGER, '', parameters)
+        for name in parameters:
+            self.assertTrue(self.load(name))
+        self.assertTrue(self.switch(start=parameters))
+        odometry = self.collect('/diff_cont/odom', Odometry)
+        frames = self.collect('/tf', TFMessage)
+        command = Twist()
+        command.linear.x, command.angular.z = 0.2, 0.5
+        publisher = self.publisher('/diff_cont/cmd_vel', Twist)
+        publisher.publish(command)
+        wait_until(lambda: odometry and abs(odometry[-1].twist.twist.linear.x - 0.2) < 0.002,
+                   'the speed')
+        driving = odometry[-1]
+        self.assertEqual((driving.header.frame_id, driving.child_frame_id),
+                         ('odom', 'base_footprint'))
+        self.assertEqual(driving.pose.covariance[35], 1000.0)
+        # Without further commands it stops after cmd_vel_timeout.
+        wait_until(lambda: abs(odometry[-1].twist.twist.linear.x) < 0.01, 'the time-out')
+        self.assertEqual(periods(odometry), {0.02})
+        edge = frames[-1].transforms[0]
+        self.assertEqual((edge.header.frame_id, edge.child_frame_id), ('odom', 'base_footprint'))
+        self.assertGreater(edge.transform.translation.x, 0.01)
+        settings = Client('/diff_cont', timeout=DEADLINE)
+        changed = settings.update_configuration({'enable_odom_tf': False, 'publish_rate': 10.0})
+        self.assertEqual(changed['publish_rate'], 10.0)
+        wait_until(lambda: periods(odometry[-2:]) == {0.1}, 'the new rate')
+
+
+def periods(messages):
+    """Return the times between messages [s]."""
+    return {round((after.header.stamp - before.header.stamp).to_sec(), 6)
+            for before, after in pairwise(messages)}
+
+
+def managers():
+    """Return the services of controller managers."""
+    return {name for name in rosservice.get_service_list() if '/controller_manager/' in name}
+
+
+def graph():
+    """Return what the simulator publishes, subscribes to and serves, with types."""
+    master = rosgraph.Master(rospy.get_name())
+    published, subscribed, services = master.getSystemState()
+    types = dict(master.getTopicTypes())
+
+    def of_simulator(entries):
+        return [name for name, nodes in entries if '/gazebo' in nodes]
+
+    return {'publishes': {name: types[name] for name in of_simulator(published)},
+            'subscribes': {name: types[name] for name in of_simulator(subscribed)},
+            'services': {name: rosservice.get_service_type(name)
+                         for name in of_simulator(services)}}
+
+
+def added(before):
+    """Return what has come since."""
+    return {kind: {name: entry for name, entry in entries.items() if name not in before[kind]}
+            for kind, entries in graph().items()}
+
+
+def as_dict(state):
+    return {'name': state.name, 'state': state.state, 'type': state.type, 'claimed_resources': [
+        {'hardware_interface': claim.hardware_interface, 'resources': claim.resources}
+        for claim in state.claimed_resources]}
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_controllers', disable_rostime=True)
+    rostest.rosrun('rosbots_description', 'controllers', ControllersTest, sys.argv)
