@@ -2,9 +2,9 @@
 """Regenerate the README's pictures: `./rosbots exec tools/make_pictures.py [folder [picture …]]`.
 
 The windows are opened on a virtual display (Xvfb), which stores its pixels in a file; the
-demo draws its own two; `web.png` and `web_dark.png` are what Chromium shows. The default is all
-of them, into doc/images; `speed.png` is drawn by `./rosbots bench`, and `map.png` is RViz after a
-minute of map_while_driving.launch.
+demo draws its own two; `web.png`, `web_dark.png` and `arm.png` are what Chromium shows. The
+default is all of them, into doc/images; `speed.png` is drawn by `./rosbots bench`, and `map.png`
+is RViz after a minute of map_while_driving.launch.
 """
 
 import os
@@ -59,7 +59,10 @@ ROOM: Steps = [
     (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
      'Successfully spawned entity'),
 ]
-BROWSER = {'web.png': '', 'web_dark.png': '&darkMode'}  # what the address ends with
+ARM: Steps = [(['rosbots_description', 'arm.launch', 'gui:=false', 'web:=true'], 'The box is at')]
+BROWSER = {  # what is started, and what the address ends with
+    'web.png': (ROOM, ''), 'web_dark.png': (ROOM, '&darkMode'), 'arm.png': (ARM, ''),
+}
 # Viser fades the scene in as it draws frames; in software that may stop halfway.
 FADED_IN = """const style = document.createElement('style');
 style.textContent = 'canvas { opacity: 1 !important }';
@@ -130,13 +133,14 @@ def picture_of(steps: Steps, folder: Path) -> np.ndarray:
         return steady(pixels)
 
 
-def picture_in_browser(query: str, folder: Path) -> Image.Image:
-    """Open the window of the room in a browser; return what it shows.
+def picture_in_browser(steps: Steps, query: str, folder: Path) -> Image.Image:
+    """Open the window of a world in a browser; return what it shows.
 
     Args:
+        steps: launch files; the first opens the window.
         query: what the address ends with.
     """
-    with started(ROOM, folder), opened(address_in(folder) + query, PAGE) as browser:
+    with started(steps, folder), opened(address_in(folder) + query, PAGE) as browser:
         return picture(browser)
 
 
@@ -229,7 +233,7 @@ def main() -> int:
                 save(Image.fromarray(picture_of(WINDOWS[name], Path(folder))), images / name)
         for name in BROWSER.keys() & names:
             with tempfile.TemporaryDirectory() as folder:
-                save(picture_in_browser(BROWSER[name], Path(folder)), images / name)
+                save(picture_in_browser(*BROWSER[name], Path(folder)), images / name)
         if DEMO.keys() & names:
             make_demo(images, DEMO.keys() & names)
     except (PictureError, OSError) as error:
