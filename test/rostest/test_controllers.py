@@ -186,10 +186,37 @@ class ControllersTest(SimulatorTest):
                 ('start joint2_position_controller nope',
                  "Started ['joint2_position_controller'] successfully\n"
                  "Error when starting ['nope'] and stopping []")):
-            ended = subprocess.run(
-                ['rosrun', 'controller_manager', 'controller_manager', *command.split(),
-                 '__ns:=/arm'], capture_output=True, text=True, timeout=DEADLINE, check=True)
-            self.assertIn(expected, ended.stdout)
+            self.assertIn(expected, said_by(start('controller_manager', *command.split())))
+
+    def test_unspawner_keeps_controllers_stopped_until_it_ends(self):
+        controllers = RECORDED['effort_pos']['parameters']
+        self.spawn_robot(parameters=controllers)
+        for name in controllers:
+            self.assertTrue(self.load(name))
+        one, two = (f'joint{number}_position_controller' for number in (1, 2))
+        self.assertTrue(self.switch(start=[JSC, one]))
+        unspawner = start('unspawner', one, two, 'nope')
+        stopped = {JSC: 'running', one: 'stopped', two: 'initialized'}
+        wait_until(lambda: self.states() == stopped, 'the controller to stop')
+        # Whoever starts one, it is stopped again.
+        self.assertTrue(self.switch(start=[two]))
+        wait_until(lambda: self.states() == {**stopped, two: 'stopped'}, 'the other one, too')
+        unspawner.send_signal(signal.SIGINT)
+        output = said_by(unspawner)
+        for name in (one, two):
+            self.assertIn(f'Inhibiting controllers: {name}', output)
+        self.assertEqual(self.states(), dict.fromkeys(controllers, 'running'))
+
+    def test_unspawner_ends_without_the_manager(self):
+        self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
+        self.assertTrue(self.load(JSC))
+        self.assertTrue(self.switch(start=[JSC]))
+        unspawner = start('unspawner', JSC)
+        wait_until(lambda: self.states() == {JSC: 'stopped'}, 'the controller to stop')
+        self._clean()
+        wait_until(lambda: not managers(), 'the services to go')
+        unspawner.send_signal(signal.SIGINT)
+        self.assertIn('the controllers were not started again: service', said_by(unspawner))
 
     def test_spawner_reports_what_cannot_be_loaded_and_waits(self):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
@@ -364,6 +391,20 @@ class ControllersTest(SimulatorTest):
         changed = settings.update_configuration({'enable_odom_tf': False, 'publish_rate': 10.0})
         self.assertEqual(changed['publish_rate'], 10.0)
         wait_until(lambda: periods(odometry[-2:]) == {0.1}, 'the new rate')
+
+
+def start(name, *arguments):
+    """Return the process of a program of controller_manager, which prints to a pipe."""
+    return subprocess.Popen(
+        ['rosrun', 'controller_manager', name, *arguments, '__ns:=/arm'],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def said_by(process):
+    """Return what a program has printed when it ends."""
+    said = process.communicate(timeout=DEADLINE)[0]
+    assert process.returncode == 0, said
+    return said
 
 
 def periods(messages):

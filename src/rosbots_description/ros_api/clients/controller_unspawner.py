@@ -6,18 +6,21 @@ Services (called):
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Sequence
 
 import rospy
-from controller_manager_msgs.srv import ListControllers
+from controller_manager_msgs.srv import ListControllers, SwitchController
 
 from ..transport import is_running, start_node
-from .controller_calls import BEST_EFFORT, RUNNING, call, switch
+from .controller_calls import BEST_EFFORT, MANAGER, RUNNING, call, switch
+from .gazebo_interface import interruptibly
 
 DONE, FAILED = 0, 1  # exit codes
 _PERIOD = 3.0  # [s] between two looks for controllers that somebody has started again
 _POLL = 0.05  # [s] wall time between polls of the shutdown flag
+_LAST_CALL = 5.0  # [s] wall time that each of the last two calls may take at the end
 
 
 def run(names: Sequence[str], arguments: Sequence[str]) -> int:
@@ -31,13 +34,14 @@ def run(names: Sequence[str], arguments: Sequence[str]) -> int:
         Exit code: 0; 1 if the controller manager ends meanwhile.
     """
     start_node('unspawner', arguments, anonymous=True)
-    stopped: set[str] = set()
-    rospy.on_shutdown(lambda: _start_again(stopped))
+    unspawner = Unspawner(names)
+    rospy.on_shutdown(unspawner.start_again)
     try:
         while is_running():
-            _stop(set(names), stopped)
-            due = rospy.get_time() + _PERIOD
-            while is_running() and rospy.get_time() < due:
+            unspawner.stop()
+            begun = rospy.get_time()
+            # The time may be set back.
+            while is_running() and begun <= rospy.get_time() < begun + _PERIOD:
                 time.sleep(_POLL)
     except rospy.ROSInterruptException:
         pass
@@ -48,19 +52,41 @@ def run(names: Sequence[str], arguments: Sequence[str]) -> int:
     return DONE
 
 
-def _stop(names: set[str], stopped: set[str]) -> None:
-    running = {one.name for one in call('list_controllers', ListControllers).controller
-               if one.state == RUNNING}
-    found = sorted(names & running)
-    if found:
-        rospy.loginfo(f'Inhibiting controllers: {", ".join(found)}')
-        switch([], found, BEST_EFFORT)
-        stopped.update(found)
+class Unspawner:
+    """Controllers that are kept stopped."""
 
+    def __init__(self, names: Sequence[str]) -> None:
+        self._names = set(names)
+        self._stopped: set[str] = set()
+        self._ending = False
+        self._stopping = threading.Lock()
 
-def _start_again(stopped: set[str]) -> None:
-    if stopped:
-        try:
-            switch(sorted(stopped), [], BEST_EFFORT)
-        except (rospy.ServiceException, rospy.ROSException) as error:
-            rospy.logwarn(f'unspawner: the controllers were not started again: {error}')
+    def stop(self) -> None:
+        """Stop those that run.
+
+        Raises:
+            rospy.ServiceException: a call failed.
+            rospy.ROSInterruptException: the node is shutting down.
+        """
+        running = {one.name for one in call('list_controllers', ListControllers).controller
+                   if one.state == RUNNING}
+        found = sorted(self._names & running)
+        with self._stopping:
+            if found and not self._ending:
+                rospy.loginfo(f'Inhibiting controllers: {", ".join(found)}')
+                switch([], found, BEST_EFFORT)
+                self._stopped.update(found)
+
+    def start_again(self) -> None:
+        """Start those that were stopped, while the node is shutting down."""
+        # What is being stopped just now is started again, too, unless that takes too long.
+        self._ending = True
+        self._stopping.acquire(timeout=_LAST_CALL)
+        if self._stopped:
+            try:
+                # Without waiting for a manager that has gone.
+                proxy = rospy.ServiceProxy(f'{MANAGER}/switch_controller', SwitchController)
+                interruptibly(lambda: proxy(
+                    start_controllers=sorted(self._stopped), strictness=BEST_EFFORT), _LAST_CALL)
+            except (rospy.ServiceException, rospy.ROSException) as error:
+                rospy.logwarn(f'unspawner: the controllers were not started again: {error}')
