@@ -3,9 +3,11 @@
 
 import json
 import math
+import re
 import signal
 import subprocess
 import sys
+import xmlrpc.client
 from itertools import pairwise
 from pathlib import Path
 
@@ -25,18 +27,24 @@ from controller_manager_msgs.srv import (
     ListControllers,
     ListControllerTypes,
     LoadController,
+    ReloadControllerLibraries,
     SwitchController,
     UnloadController,
 )
 from dynamic_reconfigure.client import Client
-from geometry_msgs.msg import Twist
+from four_wheel_steering_msgs.msg import FourWheelSteering, FourWheelSteeringStamped
+from gazebo_msgs.srv import GetJointProperties
+from geometry_msgs.msg import Twist, Vector3, WrenchStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import JointState
-from simulator import DEADLINE, SimulatorTest, wait_until
-from std_msgs.msg import Bool, Float64
+from sensor_msgs.msg import Imu, JointState
+from simulator import DEADLINE, SimulatorTest, proxy, wait_until
+from std_msgs.msg import Bool, Float64, Header
 from tf2_msgs.msg import TFMessage
-from trajectory_msgs.msg import JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from support.cars import SIDES, car
 
 DATA = Path(__file__).resolve().parents[1] / 'data'
 ROBOTS = DATA / 'gazebo' / 'robots'
@@ -44,6 +52,22 @@ RECORDED = json.loads((DATA / 'gazebo' / 'controller_interfaces.json').read_text
 ARM = (ROBOTS / 'twolink.urdf').read_text()
 BURGER = (ROBOTS / 'burger_ros_control.urdf').read_text()
 LAUNCH = DATA / 'controllers' / 'arm_control.launch'
+# With a flap that follows the steering, an IMU, and a sensor of forces at the flap.
+CAR = car(*[[side for side, _, _ in SIDES]] * 2).replace(
+    'filename="libgazebo_ros_control.so"/>',
+    'filename="libgazebo_ros_control.so"><robotNamespace>/car</robotNamespace></plugin>'
+    '<plugin name="mimic" filename="libroboticsgroup_gazebo_mimic_joint_plugin.so">'
+    '<robotNamespace>/car</robotNamespace><joint>front_left_steer</joint>'
+    '<mimicJoint>flap</mimicJoint><hasPID/></plugin>'
+    '<plugin name="wrist" filename="libgazebo_ros_ft_sensor.so"><jointName>flap</jointName>'
+    '<topicName>of_plugin</topicName></plugin>').replace('</robot>', '''
+  <link name="flap_link"><inertial><mass value="0.5"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+  <joint name="flap" type="revolute"><parent link="base_link"/><child link="flap_link"/>
+    <origin xyz="0 0 0.1"/><axis xyz="0 0 1"/><dynamics damping="0.1"/>
+    <limit lower="-1" upper="1" effort="20" velocity="20"/></joint>
+  <gazebo reference="base_link"><sensor name="imu" type="imu"><update_rate>100</update_rate>
+  </sensor></gazebo></robot>''')
 MANAGER = ('list_controller_types', 'list_controllers', 'load_controller',
            'reload_controller_libraries', 'switch_controller', 'unload_controller')
 STRICT, BEST_EFFORT = 2, 1
@@ -188,6 +212,52 @@ class ControllersTest(SimulatorTest):
                  "Error when starting ['nope'] and stopping []")):
             self.assertIn(expected, said_by(start('controller_manager', *command.split())))
 
+    def test_programs_load_stop_and_unload_controllers(self):
+        one, two = (f'joint{number}_position_controller' for number in (1, 2))
+        self.spawn_robot(parameters={
+            **RECORDED['effort_pos']['parameters'],
+            'controller_groups': {'first': [JSC, one], 'second': [JSC, two, two]}})
+        readers = start('controller_manager', 'list-types'), start('controller_group', 'list')
+        for which, command, said, states in (
+                ('manager', f'load {one} nope',
+                 f"Loaded '{one}'\nError when loading 'nope'", {one: 'initialized'}),
+                ('manager', f'spawn {two}',
+                 f"Loaded '{two}'\nStarted ['{two}'] successfully",
+                 {one: 'initialized', two: 'running'}),
+                ('manager', 'reload-libraries --restore',
+                 'Restore: True\nSuccessfully reloaded libraries\n'
+                 'Controllers restored to original state',
+                 {one: 'initialized', two: 'running'}),
+                ('manager', f'kill {two} {one}',
+                 f"Stopped ['{two}'] successfully\nError when starting [] and stopping ['{one}']\n"
+                 f"Unloaded '{two}' successfully\nUnloaded '{one}' successfully", {}),
+                ('group', 'spawn first', f"Started ['{one}'] successfully",
+                 {JSC: 'running', one: 'running'}),
+                ('group', 'switch second', f"Loaded '{two}'\nStarted ['{two}'] successfully\n"
+                 f"Stopped ['{one}'] successfully",
+                 {JSC: 'running', one: 'stopped', two: 'running'})):
+            with self.subTest(which, command=command):
+                self.assertIn(said, said_by(start(f'controller_{which}', *command.split())))
+                self.assertEqual(self.states(), states)
+        types, groups = map(said_by, readers)
+        self.assertLessEqual(set(RECORDED['effort_pos']['types']), set(types.splitlines()))
+        self.assertIn(f'Number of groups: 2\n  first\n      {JSC}\n      {one}\n  second\n',
+                      groups)
+
+    def test_libraries_are_reloaded_only_without_controllers_unless_forced(self):
+        self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
+        self.assertTrue(self.load(JSC))
+        self.assertTrue(self.switch(start=[JSC]))
+        self.assertFalse(self.call('reload_controller_libraries', ReloadControllerLibraries,
+                                   force_kill=False).ok)
+        self.assertEqual(self.states(), {JSC: 'running'})
+        self.heard_errors('Controller manager: Cannot reload controller libraries because there '
+                          'are still 1 controllers running')
+        for force_kill in (True, False):
+            self.assertTrue(self.call('reload_controller_libraries', ReloadControllerLibraries,
+                                      force_kill=force_kill).ok)
+            self.assertEqual(self.states(), {})
+
     def test_unspawner_keeps_controllers_stopped_until_it_ends(self):
         controllers = RECORDED['effort_pos']['parameters']
         self.spawn_robot(parameters=controllers)
@@ -276,6 +346,107 @@ class ControllersTest(SimulatorTest):
         self.assertLessEqual(set(RECORDED['effort_pos']['types']), set(answer.types))
         self.assertEqual(set(answer.base_classes), {'controller_interface::ControllerBase'})
 
+    def test_drives_and_sensors_of_a_car_are_on_the_wire(self):
+        wheels, steerings = ([f'{place}_{side}_{kind}' for place in ('front', 'rear')
+                              for side in ('left', 'right')] for kind in ('joint', 'steer'))
+        drive = {'pose_covariance_diagonal': [1.0] * 6, 'twist_covariance_diagonal': [1.0] * 6,
+                 'cmd_vel_timeout': 600.0}
+        controllers = {
+            'four': {'type': 'four_wheel_steering_controller/FourWheelSteeringController',
+                     'front_wheel': wheels[:2], 'rear_wheel': wheels[2:],
+                     'front_steering': steerings[:2], 'rear_steering': steerings[2:], **drive},
+            'mecanum': {'type': 'mecanum_drive_controller/MecanumDriveController',
+                        'front_left_wheel_joint': wheels[0], 'front_right_wheel_joint': wheels[1],
+                        'back_left_wheel_joint': wheels[2], 'back_right_wheel_joint': wheels[3],
+                        **drive},
+            'bicycle': {'type': 'ackermann_steering_controller/AckermannSteeringController',
+                        'rear_wheel': wheels[2], 'front_steer': steerings[0],
+                        'wheel_separation_h': 0.3, **drive},
+            'imus': {'type': 'imu_sensor_controller/ImuSensorController', 'publish_rate': 50},
+            'wrenches': {'type': 'force_torque_sensor_controller/ForceTorqueSensorController',
+                         'publish_rate': 50}}
+        gains = 'gazebo_ros_control/pid_gains/flap'
+        self.spawn_robot(CAR, '/car', {**controllers, gains: {'p': 0.0}})
+        before = graph()
+        for name in controllers:
+            self.assertTrue(self.load(name), self.errors)
+        odometry, commands = (
+            {f'/car/{name}/{topic}': kind for name in ('four', 'mecanum', 'bicycle')}
+            for topic, kind in (('odom', 'nav_msgs/Odometry'), ('cmd_vel', 'geometry_msgs/Twist')))
+        steering = 'four_wheel_steering_msgs/FourWheelSteering'
+        self.assertEqual(added(before), {
+            'publishes': {**odometry, '/car/four/odom_steer': f'{steering}Stamped',
+                          '/tf': 'tf2_msgs/TFMessage', '/car/imu': 'sensor_msgs/Imu',
+                          '/car/wrist': 'geometry_msgs/WrenchStamped'},
+            'subscribes': {**commands, '/car/four/cmd_four_wheel_steering': steering},
+            'services': {}})
+        self.assertTrue(self.switch(start=['imus', 'wrenches', 'four']), self.errors)
+        imus = self.collect('/car/imu', Imu)
+        wrenches = self.collect('/car/wrist', WrenchStamped)
+        joint = proxy('get_joint_properties', GetJointProperties)
+
+        def angle(name):
+            return joint(name).position[0]
+
+        def drives(name, kind, message, speed):
+            topic = '/car/' + name
+            odometry = self.collect(topic.rpartition('/')[0] + '/odom', Odometry)
+            self.publisher(topic, kind).publish(message)
+            wait_until(lambda: odometry and abs(speed(odometry[-1].twist.twist) - 0.2) < 0.005,
+                       f'the speed by {topic}')
+
+        drives('four/cmd_four_wheel_steering', FourWheelSteering,
+               FourWheelSteering(speed=0.2, front_steering_angle=0.5, rear_steering_angle=-0.5),
+               lambda twist: twist.linear.x)
+        steered = self.collect('/car/four/odom_steer', FourWheelSteeringStamped)
+        wait_until(lambda: steered and abs(
+            steered[-1].data.front_steering_angle - 0.5) < 0.01, 'the angle')
+        self.assertGreater(angle('front_left_steer'), 0.5)
+        # Its gains let the flap follow the steering.
+        self.assertGreater(abs(angle('flap') - angle('front_left_steer')), 0.1)
+        client = Client(f'/car/{gains}', timeout=DEADLINE)
+        self.assertEqual(client.update_configuration({'p': 2.0})['p'], 2.0)
+        wait_until(lambda: abs(angle('flap') - angle('front_left_steer')) < 0.05, 'the flap')
+        drives('four/cmd_vel', Twist, Twist(linear=Vector3(x=0.2)), lambda twist: twist.linear.x)
+        self.assertTrue(self.switch(start=['mecanum'], stop=['four']), self.errors)
+        drives('mecanum/cmd_vel', Twist, Twist(linear=Vector3(y=0.2)), lambda twist: twist.linear.y)
+        self.assertTrue(self.switch(start=['bicycle'], stop=['mecanum']), self.errors)
+        drives('bicycle/cmd_vel', Twist, Twist(linear=Vector3(x=0.2), angular=Vector3(z=0.3)),
+               lambda twist: twist.linear.x)
+        wait_until(lambda: abs(angle('front_left_steer') - 0.3) < 0.01, 'the steering')
+        self.assertEqual((imus[-1].header.frame_id, wrenches[-1].header.frame_id),
+                         ('base_link', 'flap_link'))
+        self.assertEqual((periods(imus), periods(wrenches)), ({0.02}, {0.02}))
+        self.assertTrue(any(abs(one.linear_acceleration.z - 9.8) < 0.5 for one in imus))
+        self.assertTrue(any(abs(abs(one.wrench.force.z) - 4.9) < 0.5 for one in wrenches))
+
+    def test_a_hundred_cycles_leave_nothing_behind(self):
+        controllers = {'arm_controller': RECORDED['jtc_effort']['parameters']['arm_controller']}
+        for number in range(19):
+            controllers[f'position_{number}'] = RECORDED['effort_pos']['parameters'][
+                f'joint{number % 2 + 1}_position_controller']
+        self.spawn_robot(parameters=controllers)
+        pid = xmlrpc.client.ServerProxy(rosgraph.Master('/test').lookupNode('/gazebo')).getPid(
+            '/test')[2]
+        threads = Path(f'/proc/{pid}/task')
+        before = {}
+        # Twenty controllers, five times; before, the server has not imported all yet.
+        for number in range(6):
+            for name in controllers:
+                self.assertTrue(self.load(name), self.errors)
+            for name in controllers:
+                self.assertTrue(self.switch(start=[name]), self.errors)
+                self.assertTrue(self.switch(stop=[name]), self.errors)
+            for name in controllers:
+                self.assertTrue(self.unload(name), self.errors)
+            if number == 0:
+                before = graph()
+                count = len(list(threads.iterdir()))
+        self.assertEqual(graph(), before)
+        self.assertEqual(self.states(), {})
+        wait_until(lambda: len(list(threads.iterdir())) <= count,
+                   f'{count} threads, as before')
+
     def test_goals_are_followed_violated_rejected_and_canceled(self):
         recorded = RECORDED['jtc_position']['parameters']
         self.spawn_robot(ARM.replace('EffortJointInterface', 'PositionJointInterface'),
@@ -288,8 +459,9 @@ class ControllersTest(SimulatorTest):
         self.assertTrue(client.wait_for_server(rospy.Duration(DEADLINE)))
         feedback = []
 
-        def follow(seconds, positions, names=('joint1', 'joint2'), wait=True):
+        def follow(seconds, positions, names=('joint1', 'joint2'), wait=True, start=0.0):
             goal = FollowJointTrajectoryGoal()
+            goal.trajectory.header.stamp = rospy.Time.from_sec(start)
             goal.trajectory.joint_names = list(names)
             goal.trajectory.points = [JointTrajectoryPoint(
                 positions=positions, time_from_start=rospy.Duration(seconds))]
@@ -305,6 +477,14 @@ class ControllersTest(SimulatorTest):
         now = rospy.Time.from_sec(self.world().sim_time)
         self.assertEqual([round(one, 6) for one in query(now).position], [0.5, -0.3])
         self.assertEqual(follow(1.0, [0.5], ['nope']), (GoalStatus.REJECTED, -2, ''))
+        past = 'Dropping all 1 trajectory point(s), as they occur before the current time.'
+        state, code, text = follow(0.001, [0.0, 0.0], start=0.001)
+        self.assertEqual((state, code), (GoalStatus.REJECTED, -1))
+        self.assertRegex(text, rf'^{re.escape(past)}\nLast point is \d+\.\d{{6}}s in the past\.$')
+        self.publisher('/arm/arm_controller/command', JointTrajectory).publish(JointTrajectory(
+            Header(stamp=rospy.Time.from_sec(0.001)), ['joint1', 'joint2'],
+            [JointTrajectoryPoint(positions=[0.0, 0.0])]))
+        self.heard_errors(past)
         follow(30.0, [0.0, 0.0], wait=False)
         wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 'the goal to be accepted')
         client.cancel_goal()
