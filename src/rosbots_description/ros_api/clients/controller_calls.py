@@ -98,7 +98,7 @@ def start_stop_controllers(
 
 
 def reload_libraries(force_kill: bool, restore: bool = False) -> bool:
-    """Make controllers that are loaded from now on use the code as it is now.
+    """Call the service by which upstream loads the code of controllers anew; ours keeps it.
 
     Args:
         force_kill: stop and unload all controllers first; otherwise it fails if there are any.
