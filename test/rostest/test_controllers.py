@@ -129,6 +129,14 @@ class ControllersTest(SimulatorTest):
         wait_until(made.get_num_connections, f'a subscriber of {topic}')
         return made
 
+    def start(self, name, *arguments):
+        """Return the process of a program of controller_manager, which prints to a pipe."""
+        process = subprocess.Popen(
+            ['rosrun', 'controller_manager', name, *arguments, '__ns:=/arm'],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(process.kill)  # unless it has ended
+        return process
+
     def heard_errors(self, *texts):
         wait_until(lambda: all(any(text in error for error in self.errors) for text in texts),
                    f'{texts} in {self.errors}')
@@ -210,14 +218,15 @@ class ControllersTest(SimulatorTest):
                 ('start joint2_position_controller nope',
                  "Started ['joint2_position_controller'] successfully\n"
                  "Error when starting ['nope'] and stopping []")):
-            self.assertIn(expected, said_by(start('controller_manager', *command.split())))
+            self.assertIn(expected, said_by(self.start('controller_manager', *command.split())))
 
     def test_programs_load_stop_and_unload_controllers(self):
         one, two = (f'joint{number}_position_controller' for number in (1, 2))
         self.spawn_robot(parameters={
             **RECORDED['effort_pos']['parameters'],
             'controller_groups': {'first': [JSC, one], 'second': [JSC, two, two]}})
-        readers = start('controller_manager', 'list-types'), start('controller_group', 'list')
+        readers = [self.start(f'controller_{which}', command) for which, command in (
+            ('manager', 'list-types'), ('group', 'list'))]
         for which, command, said, states in (
                 ('manager', f'load {one} nope',
                  f"Loaded '{one}'\nError when loading 'nope'", {one: 'initialized'}),
@@ -237,7 +246,7 @@ class ControllersTest(SimulatorTest):
                  f"Stopped ['{one}'] successfully",
                  {JSC: 'running', one: 'stopped', two: 'running'})):
             with self.subTest(which, command=command):
-                self.assertIn(said, said_by(start(f'controller_{which}', *command.split())))
+                self.assertIn(said, said_by(self.start(f'controller_{which}', *command.split())))
                 self.assertEqual(self.states(), states)
         types, groups = map(said_by, readers)
         self.assertLessEqual(set(RECORDED['effort_pos']['types']), set(types.splitlines()))
@@ -265,7 +274,7 @@ class ControllersTest(SimulatorTest):
             self.assertTrue(self.load(name))
         one, two = (f'joint{number}_position_controller' for number in (1, 2))
         self.assertTrue(self.switch(start=[JSC, one]))
-        unspawner = start('unspawner', one, two, 'nope')
+        unspawner = self.start('unspawner', one, two, 'nope')
         stopped = {JSC: 'running', one: 'stopped', two: 'initialized'}
         wait_until(lambda: self.states() == stopped, 'the controller to stop')
         # Whoever starts one, it is stopped again.
@@ -281,7 +290,7 @@ class ControllersTest(SimulatorTest):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
         self.assertTrue(self.load(JSC))
         self.assertTrue(self.switch(start=[JSC]))
-        unspawner = start('unspawner', JSC)
+        unspawner = self.start('unspawner', JSC)
         wait_until(lambda: self.states() == {JSC: 'stopped'}, 'the controller to stop')
         self._clean()
         wait_until(lambda: not managers(), 'the services to go')
@@ -571,13 +580,6 @@ class ControllersTest(SimulatorTest):
         changed = settings.update_configuration({'enable_odom_tf': False, 'publish_rate': 10.0})
         self.assertEqual(changed['publish_rate'], 10.0)
         wait_until(lambda: periods(odometry[-2:]) == {0.1}, 'the new rate')
-
-
-def start(name, *arguments):
-    """Return the process of a program of controller_manager, which prints to a pipe."""
-    return subprocess.Popen(
-        ['rosrun', 'controller_manager', name, *arguments, '__ns:=/arm'],
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
 def said_by(process):
