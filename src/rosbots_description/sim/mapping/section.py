@@ -4,13 +4,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core import Pose, rotate
+from ..core import Pose
+from ..core.arrays import FloatArray, rotation_matrix
 from ..description import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from ..meshes import read_mesh
 
-Floats = NDArray[np.float64]
 SIDES = 360  # of the polygon for a circle: it lies within 4e-5 radii of it
 # Regions and segments are smaller by this part of themselves, and the surfaces of meshes lie deeper
 # by this [m]: a face on the border between two cells belongs to the inner one.
@@ -21,7 +20,7 @@ _EDGES = np.array([(a, b) for a in range(8) for b in range(a) if (a ^ b).bit_cou
 class Section(NamedTuple):
     """Segments (n, 2, 2) [m]: first and last point, x and y; of a convex region, or of surfaces."""
 
-    segments: Floats
+    segments: FloatArray
     is_region: bool
 
 
@@ -62,32 +61,30 @@ def section(geometry: Geometry, pose: Pose, height: float) -> Section:
             return NOTHING
 
 
-def _circle() -> Floats:
+def _circle() -> FloatArray:
     angles = np.arange(SIDES) * 2.0 * math.pi / SIDES
     return np.column_stack((np.cos(angles), np.sin(angles)))
 
 
-def _placed(points: Floats, pose: Pose) -> Floats:
+def _placed(points: FloatArray, pose: Pose) -> FloatArray:
     """Return points (…, 3) of a frame in the world."""
-    axes = np.array([rotate(pose.orientation, axis) for axis in np.eye(3).tolist()])
-    placed: Floats = points @ axes + pose.position
-    return placed
+    return points @ rotation_matrix(pose.orientation).T + pose.position
 
 
-def _region(edges: Floats, height: float) -> Section:
+def _region(edges: FloatArray, height: float) -> Section:
     """Return the section of the convex solid that has these edges (n, 2, 3)."""
     above = edges[:, :, 2] >= height
     cut = edges[above[:, 0] != above[:, 1]]
     return _convex(_crossing(cut[:, 0], cut[:, 1], height))
 
 
-def _crossing(a: Floats, b: Floats, height: float) -> Floats:
+def _crossing(a: FloatArray, b: FloatArray, height: float) -> FloatArray:
     """Return x and y where lines from a to b (n, 3) pass a height."""
     share = (height - a[:, 2]) / (b[:, 2] - a[:, 2])
     return a[:, :2] + share[:, None] * (b - a)[:, :2]
 
 
-def _convex(points: Floats) -> Section:
+def _convex(points: FloatArray) -> Section:
     """Return the convex polygon of points (n, 2) that are all corners of it."""
     if len(points) == 0:
         return NOTHING
@@ -97,7 +94,7 @@ def _convex(points: Floats) -> Section:
     return Section(np.stack((corners, np.roll(corners, -1, axis=0)), axis=1), True)
 
 
-def _surfaces(triangles: Floats, height: float, side: float) -> Section:
+def _surfaces(triangles: FloatArray, height: float, side: float) -> Section:
     """Return the section of triangles (n, 3, 3); `side` is -1 where corners run clockwise."""
     above = triangles[:, :, 2] >= height
     cut = above.any(axis=1) & ~above.all(axis=1)

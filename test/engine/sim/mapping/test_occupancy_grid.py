@@ -98,9 +98,14 @@ def test_a_face_on_the_border_of_cells_occupies_the_inner_ones_only():
 def test_a_wall_thinner_than_a_cell_has_no_gap():
     wall = Box((4.0, 0.001, 1.0)), Pose((0.013, 0.017, 0.0), from_rpy(0.0, 0.0, 0.5))
     found = cells(grid_of(wall))
-    x, y = min(found)
-    while (x, y) != max(found):  # from cell to cell, by an edge
-        x, y = next(cell for cell in ((x + 1, y), (x, y + 1)) if cell in found)
+    ends = min(found), max(found)
+    assert math.dist(*ends) * CELL == pytest.approx(4.0, abs=2.0 * CELL)
+    reached, new = set(), {ends[0]}
+    while new:  # from cell to cell, by their edges
+        reached |= new
+        new = {(x + dx, y + dy) for x, y in new
+               for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))} & found - reached
+    assert ends[1] in reached
 
 
 def test_the_surfaces_of_a_mesh_occupy_cells(tmp_path):
