@@ -12,15 +12,16 @@ process, and cannot be taken down: its thread ends with the process.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from genpy import Message, Time
 from std_msgs.msg import Header
 
+from ...sim.controllers import ABORTED, ACTIVE, CANCELED, REJECTED, SUCCEEDED, Goal
 from ...sim.core import NANOSECONDS
-from ...sim.runtime import NEVER, Hook, Output
+from ...sim.runtime import NEVER, Hook
 from ..messages import stamp
 from ..transport import has_subscribers
 from .adapter import Adapter
@@ -30,21 +31,11 @@ QUEUE = 50  # as actionlib
 STATUS_PERIOD_NS = NANOSECONDS // 5
 REMEMBERED_NS = 5 * NANOSECONDS  # how long the status of a goal is published after its end
 MOST_REMEMBERED = 100  # goals that have ended
-_NUMBERS = {'active': GoalStatus.ACTIVE, 'succeeded': GoalStatus.SUCCEEDED,
-            'aborted': GoalStatus.ABORTED, 'canceled': GoalStatus.PREEMPTED,
-            'rejected': GoalStatus.REJECTED}
+_NUMBERS = {ACTIVE: GoalStatus.ACTIVE, SUCCEEDED: GoalStatus.SUCCEEDED,
+            ABORTED: GoalStatus.ABORTED, CANCELED: GoalStatus.PREEMPTED,
+            REJECTED: GoalStatus.REJECTED}
 _TOO_LATE = ('This goal handle was canceled by the action server because its timestamp is before '
              'the timestamp of the last cancel request')
-
-
-class Followed(Protocol):
-    """A goal that a controller follows, or has refused to follow."""
-
-    status: str  # a key of `_NUMBERS`
-
-    @property
-    def done(self) -> Output[Any]:
-        """Sent once, when it is no longer active."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +44,7 @@ class Acts:
 
     name: str  # in the namespace of the controller
     action: type[Message]
-    follow: Callable[[Any, Any], Followed]  # controller, goal message -> followed goal
+    follow: Callable[[Any, Any], Goal]  # controller, goal message -> followed goal
     cancel: Callable[[Any, Any], None]  # controller, followed goal
     result: Callable[[Any], Message]  # followed goal -> message
     # Reading of the followed goal's output `feedback` -> message; None: it has no such output.
@@ -67,7 +58,7 @@ class Acts:
 class _Goal:
     """A goal that was received; `followed` is None if it was not passed on."""
 
-    def __init__(self, status: GoalStatus, followed: Followed | None = None) -> None:
+    def __init__(self, status: GoalStatus, followed: Goal | None = None) -> None:
         self.status, self.followed = status, followed
         self.ended_ns: int | None = None
 
@@ -115,7 +106,7 @@ class ActionServer(Endpoint, Hook):
 
     def _take(self, message: Message) -> None:
         """Pass a goal on."""
-        if not self._is_scheduled:  # the robot has gone, or the controller
+        if not self._is_scheduled:  # the robot or the controller was removed
             return
         given = message.goal_id
         now_ns = self._world.clock.now_ns
@@ -134,7 +125,7 @@ class ActionServer(Endpoint, Hook):
         followed = self._declared.follow(self.adapter.plugin, message.goal)
         goal = self._goals[given.id] = _Goal(
             GoalStatus(given, GoalStatus.ACTIVE, ''), followed)
-        if followed.status == 'active':
+        if followed.is_active:
             if (convert := self._declared.feedback) is not None:
                 followed.feedback.connect(  # type: ignore[attr-defined]
                     lambda reading: self._publish(self._feedback, goal, convert(reading)))
@@ -145,9 +136,9 @@ class ActionServer(Endpoint, Hook):
 
     def _cancel(self, message: GoalID) -> None:
         """Cancel the goal of that id, those up to that time, or all if neither is given."""
+        everything = not message.id and not message.stamp
         for goal in list(self._goals.values()):
             own = goal.status.goal_id
-            everything = not message.id and not message.stamp
             if goal.ended_ns is None and goal.followed is not None and (
                     everything or own.id == message.id
                     or (message.stamp and own.stamp <= message.stamp)):

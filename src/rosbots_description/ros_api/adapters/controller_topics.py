@@ -99,13 +99,8 @@ def connects_controller(owner: type[Controller], *declared: Declaration) -> None
     connects(owner, *declared, TunesGains())
 
 
-def read_group(message: Float64MultiArray) -> tuple[Any, ...]:
-    """Return the argument of a group's `command`."""
-    return (message.data,)
-
-
-def read_number(message: Float64) -> tuple[Any, ...]:
-    """Return the argument of the `command` of one joint."""
+def read_data(message: Float64 | Float64MultiArray) -> tuple[Any, ...]:
+    """Return the argument of `command`: a number, or one for each joint."""
     return (message.data,)
 
 
@@ -158,8 +153,8 @@ def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
         cast(DiffDriveController, adapter.plugin), name, adapter.server.loop.post).close
 
 
-GROUP = Subscribes('command', Float64MultiArray, 'command', read_group)
-SINGLE = Subscribes('command', Float64, 'command', read_number)
+GROUP = Subscribes('command', Float64MultiArray, 'command', read_data)
+SINGLE = Subscribes('command', Float64, 'command', read_data)
 STATE = Publishes('state', 'state', JointControllerState, convert=pid_state_message, frame='')
 COMMAND, SIDEWAYS = (
     Subscribes(DriveController.topic_names['command'], Twist, 'command', finite(*fields))

@@ -8,7 +8,7 @@ import logging
 
 from control_msgs.msg import GripperCommandAction, GripperCommandGoal, GripperCommandResult
 
-from ...sim.controllers import GripperActionController, GripperGoal
+from ...sim.controllers import REJECTED, GripperActionController, GripperGoal
 from .actions import Acts
 from .controller_topics import connects_controller
 
@@ -22,7 +22,7 @@ def follow(controller: GripperActionController, goal: GripperCommandGoal) -> Gri
     except ValueError as error:
         logger.error('%s: %s', controller.name, error)
         rejected = GripperGoal()
-        rejected.finish('rejected')
+        rejected.finish(REJECTED)
         return rejected
 
 

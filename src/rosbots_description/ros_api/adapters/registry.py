@@ -84,7 +84,7 @@ class AdapterSet:
             self._last_change = (kind, time.monotonic())
 
     def _connect(self, made: Adapter) -> None:
-        """Connect on the world's thread, unless its owner has gone meanwhile."""
+        """Connect on the world's thread, unless its owner was removed meanwhile."""
 
         def connect() -> None:
             if self._open.get(made.plugin) is made:

@@ -124,7 +124,7 @@ class ControlEndpoint(Endpoint):
             logger.critical('Could not initialize robot simulation interface')
 
     def _wait_for_description(self) -> str | None:
-        """Return the text of the description; None if the robot has gone meanwhile."""
+        """Return the text of the description; None if the robot is deleted meanwhile."""
         plugin, told = self._plugin, False
         while not self._closed.is_set():
             name = search_parameter(plugin.namespace, plugin.robot_param)

@@ -84,7 +84,7 @@ class Unspawner:
         self._stopping.acquire(timeout=_LAST_CALL)
         if self._stopped:
             try:
-                # Without waiting for a manager that has gone.
+                # Without waiting for a manager that was deleted.
                 proxy = rospy.ServiceProxy(f'{MANAGER}/switch_controller', SwitchController)
                 interruptibly(lambda: proxy(
                     start_controllers=sorted(self._stopped), strictness=BEST_EFFORT), _LAST_CALL)

@@ -22,6 +22,7 @@ from .diff_drive import DiffDriveController
 from .drive import DriveController
 from .errors import ControllerError
 from .four_wheel_steering import FourWheelSteering, FourWheelSteeringController
+from .goal import ABORTED, ACTIVE, CANCELED, REJECTED, SUCCEEDED, Goal
 from .gripper_action import GripperActionController, GripperGoal, GripperResult
 from .hardware import EFFORT, POSITION, STATE, VELOCITY, JointHandle, SimulatedRobot
 from .joint_command import JointCommandController, JointGroupCommandController
@@ -50,11 +51,12 @@ from .trajectory import (
 )
 
 __all__ = [
-    'EFFORT', 'IMU', 'POSITION', 'STATE', 'VELOCITY', 'WRENCH', 'AckermannSteeringController',
-    'Controller', 'ControllerError', 'ControllerManager', 'ControllerParameters', 'ControllerSpec',
-    'ControllerStatus', 'DiffDriveController', 'DriveController', 'FollowedGoal',
-    'FourWheelSteering', 'FourWheelSteeringController', 'Gains', 'GripperActionController',
-    'GripperGoal', 'GripperResult', 'JointCommandController', 'JointGroupCommandController',
+    'ABORTED', 'ACTIVE', 'CANCELED', 'EFFORT', 'IMU', 'POSITION', 'REJECTED', 'STATE', 'SUCCEEDED',
+    'VELOCITY', 'WRENCH', 'AckermannSteeringController', 'Controller', 'ControllerError',
+    'ControllerManager', 'ControllerParameters', 'ControllerSpec', 'ControllerStatus',
+    'DiffDriveController', 'DriveController', 'FollowedGoal', 'FourWheelSteering',
+    'FourWheelSteeringController', 'Gains', 'Goal', 'GripperActionController', 'GripperGoal',
+    'GripperResult', 'JointCommandController', 'JointGroupCommandController',
     'JointGroupPositionController', 'JointHandle', 'JointPidState', 'JointPositionController',
     'JointStateController', 'JointTrajectoryController', 'JointVelocityController',
     'MecanumDriveController', 'MimicJointPlugin', 'Pid', 'RateGate', 'RosControl',

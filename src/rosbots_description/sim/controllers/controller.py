@@ -96,6 +96,15 @@ class Controller:
         """Return referenced objects that are not part of its state: descriptions and outputs."""
         return (self.spec, self.params, *self.outputs.values())
 
+    def require_running(self) -> None:
+        """Reject a command while it does not run.
+
+        Raises:
+            ControllerError: it does not.
+        """
+        if self.state != RUNNING:
+            raise ControllerError("Can't accept new commands. Controller is not running.")
+
     def joint(self, name: str, interface: str = '') -> JointHandle:
         """Return a joint, which it claims.
 

@@ -104,8 +104,7 @@ class DriveController(Controller):
             ControllerError: the controller does not run.
         """
         require_finite((linear_x, angular_z, linear_y))
-        if self.state != RUNNING:
-            raise ControllerError("Can't accept new commands. Controller is not running.")
+        self.require_running()
         self._command = (float(linear_x), float(angular_z), float(linear_y))
         self._commanded_ns = self.world.clock.now_ns
 
@@ -135,10 +134,7 @@ class DriveController(Controller):
             self.advance_odometry(now_ns)
         if self._gate.opens(now_ns) and self.is_read:
             self.report(self.planar.reading)
-        wanted = self._command
-        if self._commanded_ns is None or now_ns - self._commanded_ns > self._timeout_ns:
-            wanted = _AT_REST
-        self.wanted = wanted
+        self.wanted = wanted = self._command if self.is_fresh(now_ns) else _AT_REST
         last, before = self._last
         x, z, y = (limiter.limit(speed, one, other, period) for limiter, speed, one, other in zip(
             self._limiters, wanted, last, before, strict=True))
@@ -146,6 +142,10 @@ class DriveController(Controller):
         if self.limited_command is not None and self.limited_command.wanted:
             self.limited_command.send(Twist((x, y, 0.0), (0.0, 0.0, z)))
         self.drive(x, z, y)
+
+    def is_fresh(self, now_ns: int) -> bool:
+        """Tell whether there is a command that has not expired."""
+        return self._commanded_ns is not None and now_ns - self._commanded_ns <= self._timeout_ns
 
     def _brake(self) -> None:
         self._command, self._commanded_ns = _AT_REST, None

@@ -2,8 +2,7 @@
 
 Parameters, defaults and timing are those of four_wheel_steering_controller 0.22: a velocity steers
 front and rear by opposite angles; the newest command counts, of a velocity or of speed and angles.
-Odometry is the motion that fits the
-four wheels best, by the same kinematics.
+Odometry is the motion that fits the four wheels best, by the same kinematics.
 """
 
 import math
@@ -12,7 +11,7 @@ from typing import NamedTuple
 
 from ..core import NANOSECONDS
 from ..runtime import Odometry, Output
-from .controller import RUNNING, require_finite
+from .controller import require_finite
 from .drive import DriveController
 from .errors import ControllerError
 from .hardware import POSITION, VELOCITY, JointHandle
@@ -86,9 +85,7 @@ class FourWheelSteeringController(DriveController):
             ValueError: a number is not finite.
             ControllerError: the controller does not run.
         """
-        require_finite((speed, front_angle, rear_angle))
-        if self.state != RUNNING:
-            raise ControllerError("Can't accept new commands. Controller is not running.")
+        require_finite((front_angle, rear_angle))
         super().command(speed, 0.0)
         self._steering = FourWheelSteering(
             speed, *(max(-_ACROSS, min(_ACROSS, angle)) for angle in (front_angle, rear_angle)))
@@ -99,7 +96,8 @@ class FourWheelSteeringController(DriveController):
             angles = self._angles_of_velocity(linear_x, angular_z)
             speeds = self._speeds(linear_x, angular_z, (self.wheel_base / 2.0,) * 2)
         else:
-            front, rear = (math.tan(angle) for angle in self._current_angles())
+            fresh = self.is_fresh(self.world.clock.now_ns)  # else straight ahead
+            front, rear = (math.tan(angle) if fresh else 0.0 for angle in self._steering[1:])
             angles = self._angles_of_axles(front, rear)
             turn = front - rear
             lengths = (0.0, 0.0) if abs(turn) < 1e-9 else (
@@ -109,14 +107,6 @@ class FourWheelSteeringController(DriveController):
             wheel.command = speed
         for joint, angle in zip(self.steerings, angles, strict=True):
             joint.command = angle
-
-    def _current_angles(self) -> tuple[float, float]:
-        """Return the commanded angles of the axles; straight ahead when they have expired."""
-        now_ns = self.world.clock.now_ns
-        assert self._steering is not None
-        is_fresh = self._commanded_ns is not None and (
-            now_ns - self._commanded_ns <= self._timeout_ns)
-        return self._steering[1:] if is_fresh else (0.0, 0.0)
 
     def _angles_of_velocity(self, speed: float, yaw_rate: float) -> tuple[float, ...]:
         """Return the angles, front left to rear right, for a velocity."""

@@ -6,9 +6,9 @@ Parameters, defaults and results are those of gripper_action_controller 0.22.
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from ..runtime import Output
 from .controller import RUNNING, Controller, nanoseconds, require_finite
 from .errors import ControllerError, ResourceError
+from .goal import ABORTED, CANCELED, REJECTED, SUCCEEDED, Goal
 from .hardware import EFFORT, POSITION
 from .registry import register_controller
 
@@ -22,28 +22,15 @@ class GripperResult(NamedTuple):
     reached_goal: bool = False
 
 
-class GripperGoal:
-    """A command that is followed, or was.
+class GripperGoal(Goal):
+    """A command that is followed, or was."""
 
-    Attributes:
-        status: active, succeeded, aborted, canceled or rejected.
-        done: output of itself, sent once when it is no longer active.
-    """
-
-    def __init__(self) -> None:
-        self.status = 'active'
-        self.result = GripperResult(0.0, 0.0)
-        self.done: Output[GripperGoal] = Output(lambda: None)
-
-    @property
-    def is_active(self) -> bool:
-        """Whether it is still followed."""
-        return self.status == 'active'
+    result = GripperResult(0.0, 0.0)
 
     def finish(self, status: str, result: GripperResult | None = None) -> None:
         """End it."""
-        self.status, self.result = status, result or self.result
-        self.done.send(self)
+        self.result = result or self.result
+        self.end(status)
 
 
 @register_controller('effort_controllers/GripperActionController', EFFORT)
@@ -88,7 +75,7 @@ class GripperActionController(Controller):
 
     def stopping(self, now_ns: int) -> None:
         """Cancel the goal."""
-        self._finish('canceled')
+        self._finish(CANCELED)
 
     def time_reset(self, now_ns: int) -> None:
         """Begin to watch for a stall again."""
@@ -113,9 +100,9 @@ class GripperActionController(Controller):
         require_finite((position, max_effort))
         goal = GripperGoal()
         if self.state != RUNNING:
-            goal.finish('rejected')
+            goal.finish(REJECTED)
             return goal
-        self._finish('canceled')
+        self._finish(CANCELED)
         self._wanted, self._max_effort = float(position), abs(max_effort)
         self._moved_ns = self.world.clock.now_ns
         self._active = goal
@@ -125,7 +112,7 @@ class GripperActionController(Controller):
         """Hold the position, if the joint follows this goal."""
         if self._active is goal:
             self._hold()
-            self._finish('canceled')
+            self._finish(CANCELED)
 
     def update(self, now_ns: int, period: float) -> None:
         """Check the goal, and command the joint."""
@@ -142,11 +129,11 @@ class GripperActionController(Controller):
 
     def _check(self, now_ns: int, error: float, position: float, velocity: float) -> None:
         if abs(error) < self._tolerance:
-            self._finish('succeeded', GripperResult(position, self._effort, reached_goal=True))
+            self._finish(SUCCEEDED, GripperResult(position, self._effort, reached_goal=True))
         elif abs(velocity) > self._stall_velocity:
             self._moved_ns = now_ns
         elif now_ns - self._moved_ns > self._stall_ns:
-            self._finish('aborted', GripperResult(position, self._effort, stalled=True))
+            self._finish(ABORTED, GripperResult(position, self._effort, stalled=True))
 
     def _hold(self) -> None:
         self._wanted, self._max_effort = self.handle.position, self._default_effort

@@ -12,6 +12,7 @@ from ..runtime import Output
 from .angles import shortest
 from .controller import RUNNING, Controller, RateGate, require_finite
 from .errors import ControllerError, InterfaceError, ResourceError
+from .goal import ABORTED, CANCELED, REJECTED, SUCCEEDED, Goal
 from .hardware import EFFORT, POSITION, VELOCITY, JointHandle
 from .registry import register_controller
 from .trajectory import (
@@ -33,39 +34,28 @@ from .trajectory import (
 
 logger = logging.getLogger(__name__)
 
-ACTIVE, SUCCEEDED, ABORTED, CANCELED, REJECTED = (
-    'active', 'succeeded', 'aborted', 'canceled', 'rejected')
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, PATH_TOLERANCE_VIOLATED, GOAL_TOLERANCE_VIOLATED = (
     0, -1, -2, -4, -5)
-_NOT_RUNNING = "Can't accept new commands. Controller is not running."
 
 
-class FollowedGoal:
-    """A goal that is followed, or was.
+class FollowedGoal(Goal):
+    """A trajectory that is followed, or was.
 
     Attributes:
-        status: active, succeeded, aborted, canceled or rejected.
         error_code: as in control_msgs/FollowJointTrajectory; 0 without an error.
         feedback: output of states while it is active.
-        done: output of itself, sent once when it is no longer active.
     """
 
     def __init__(self, goal: TrajectoryGoal) -> None:
+        super().__init__()
         self.goal = goal
-        self.status = ACTIVE
         self.error_code, self.error_string = SUCCESSFUL, ''
         self.feedback: Output[TrajectoryState] = Output(lambda: None)
-        self.done: Output[FollowedGoal] = Output(lambda: None)
-
-    @property
-    def is_active(self) -> bool:
-        """Whether it is still followed."""
-        return self.status == ACTIVE
 
     def finish(self, status: str, code: int = SUCCESSFUL, text: str = '') -> None:
         """End it."""
-        self.status, self.error_code, self.error_string = status, code, text
-        self.done.send(self)
+        self.error_code, self.error_string = code, text
+        self.end(status)
 
 
 # The simulated hardware has no joints of the first two, as in Gazebo.
@@ -174,7 +164,7 @@ class JointTrajectoryController(Controller):
         Raises:
             ControllerError: it cannot be followed, and the one before goes on.
         """
-        self._require_running()
+        self.require_running()
         self._replace(trajectory, None, self._tolerances)
         self._preempt()
 
@@ -312,10 +302,6 @@ class JointTrajectoryController(Controller):
         self._reached.clear()
         if goal is not None:
             goal.finish(CANCELED)
-
-    def _require_running(self) -> None:
-        if self.state != RUNNING:
-            raise ControllerError(_NOT_RUNNING)
 
     def _uptime(self, time_ns: int) -> float:
         """Return a simulated time in seconds since the controller was started."""
