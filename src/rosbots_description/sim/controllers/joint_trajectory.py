@@ -28,9 +28,8 @@ from .trajectory import (
     active,
     check_points,
     coefficients,
-    joint_point,
-    unwrapped,
 )
+from .trajectory_splicing import points_to_come, rest_of, spliced
 
 logger = logging.getLogger(__name__)
 
@@ -347,71 +346,14 @@ class JointTrajectoryController(Controller):
             raise ControllerError(str(error)) from None
         now = self._uptime(self._next_ns)
         start = self._uptime(trajectory.start_ns) if trajectory.start_ns else now
-        points = self._points_to_come(trajectory, start, now)
+        points = points_to_come(trajectory, start, now)
         own = tolerances if goal is not None else (Tolerances(),) * len(self.joints)
-        replaced = [self._relabelled(segments, now, goal) for segments in self._segments]
+        replaced = [rest_of(segments, now, goal) for segments in self._segments]
         for index, name in enumerate(names):
             joint = self.joint_names.index(name)
-            replaced[joint] = self._joined(
-                joint, index, points, (start, now), goal, own[joint])
+            replaced[joint] = spliced(replaced[joint], points, index, self._wraps[joint], start,
+                                      now, goal, own[joint])
         self._segments = replaced
-
-    def _points_to_come(
-        self, trajectory: Trajectory, start: float, now: float
-    ) -> Sequence[TrajectoryPoint]:
-        """Return the points after the time `now`.
-
-        Raises:
-            ControllerError: all of them are in the past.
-        """
-        points = trajectory.points
-        past = sum(start + point.time_from_start <= now for point in points)
-        if past == len(points):
-            late = now - (start + points[-1].time_from_start)
-            raise ControllerError(
-                f'Dropping all {past} trajectory point(s), as they occur before the current time.\n'
-                f'Last point is {late:.6f}s in the past.')
-        starts_at_zero = past == 1 and not (trajectory.start_ns or points[0].time_from_start)
-        if past and not starts_at_zero:
-            logger.warning(
-                'Dropping first %d trajectory point(s) out of %d, as they occur before the current '
-                'time.\nFirst valid point will be reached in %.3fs.', past, len(points),
-                start + points[past].time_from_start - now)
-        return points[past:]
-
-    @staticmethod
-    def _relabelled(
-        segments: Sequence[SplineSegment], now: float, goal: FollowedGoal | None
-    ) -> list[SplineSegment]:
-        """Return what is left of the current trajectory, now for the sake of a goal."""
-        left = segments[max(0, active(segments, now)):]
-        return [segment._replace(goal=goal) for segment in left]
-
-    def _joined(
-        self, joint: int, index: int, points: Sequence[TrajectoryPoint],
-        times: tuple[float, float], goal: FollowedGoal | None, tolerances: Tolerances,
-    ) -> list[SplineSegment]:
-        """Return the trajectory of a joint: the current one, a bridge, and the new points.
-
-        Args:
-            index: of the joint in the points.
-            times: at which the new trajectory starts, and of the next update.
-        """
-        start, now = times
-        current = self._segments[joint]
-        last = max(start, now)
-        here, kept = active(current, now), active(current, last)
-        segments = [one._replace(goal=goal) for one in current[max(0, here):kept + 1]]
-        before = JointPoint(*current[max(0, kept)].sample(last))
-        first = points[0].positions[index]
-        offset = unwrapped(before.position, first) - first if self._wraps[joint] else 0.0
-        time, from_start = last, 0.0
-        for point in points:
-            after, end = joint_point(point, index, offset), start + point.time_from_start
-            segments.append(SplineSegment(
-                time, end, coefficients(before, after, end - time), from_start, goal, tolerances))
-            before, time, from_start = after, end, point.time_from_start
-        return segments
 
     def _goals(self) -> Iterator[FollowedGoal]:
         """Yield the goals that its state refers to, each once."""
