@@ -9,8 +9,8 @@ from ..sim.description import Visual
 from ..sim.meshes import rough_extent
 
 
-def corners(visuals: Iterable[Visual]) -> list[Vector]:
-    """Return the corners of boxes around visuals, in the frame of their link [m].
+def corners(visuals: Iterable[Visual], link: Pose = IDENTITY) -> list[Vector]:
+    """Return the corners of boxes around visuals [m], in the frame in which `link` is their link's.
 
     Eight of each, z changing first. A plane has none, nor has a mesh that cannot be read.
     """
@@ -19,6 +19,7 @@ def corners(visuals: Iterable[Visual]) -> list[Vector]:
         with contextlib.suppress(ModelError):  # it is not shown
             ends = rough_extent(visual.geometry, IDENTITY)
             if ends is not None:
-                found += [compose(visual.pose, Pose(corner)).position
+                place = compose(link, visual.pose)
+                found += [compose(place, Pose(corner)).position
                           for corner in product(*ends.T.tolist())]
     return found

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..sim.core import Pose, Vector, add, as_vector, compose, dot, rotate, subtract
+from ..sim.core import Pose, Vector, add, as_vector, dot, rotate, subtract
 from ..sim.description import SceneChange, SceneSpec
 from .bounds import corners
 from .models import Models
@@ -50,7 +50,7 @@ class StartView(Panel):
             for link in model.links:
                 pose = self._models.link_pose(link)
                 for visual in link.visuals:
-                    places = [compose(pose, Pose(c)).position for c in corners([visual])]
+                    places = corners([visual], pose)
                     if places:
                         yield name, np.array(places)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from ..sim.core import Pose, Vector, as_vector, compose
+from ..sim.core import Vector, as_vector
 from ..sim.description import ShownLink
 from .bounds import corners
 from .descriptions import chosen_links
@@ -52,8 +52,8 @@ class ViewPanel(Panel):
         return self._corners(chosen_links(model, self._selection.link)) if model else []
 
     def _corners(self, links: Iterable[ShownLink]) -> list[Vector]:
-        return [compose(self._models.link_pose(link), Pose(corner)).position
-                for link in links for corner in corners(link.visuals)]
+        return [corner for link in links
+                for corner in corners(link.visuals, self._models.link_pose(link))]
 
     @staticmethod
     def _fit(camera: viser.CameraHandle, points: list[Vector],

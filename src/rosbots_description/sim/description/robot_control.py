@@ -46,15 +46,14 @@ class ControlledJoint:
 
     Attributes:
         type: as written, e.g. 'continuous'.
-        has_limits: whether it has a <limit>; if not, the limits below are infinite.
-        lower, upper: position limits [rad or m]; infinite for a continuous joint.
+        lower, upper: position limits [rad or m]; infinite for a continuous joint, and all limits
+            without a <limit>.
         velocity: velocity limit [rad/s or m/s].
         effort: effort limit [N m or N].
         origin: of the joint in its parent link [m].
     """
 
     type: str
-    has_limits: bool = False
     lower: float = -math.inf
     upper: float = math.inf
     velocity: float = math.inf

@@ -109,7 +109,7 @@ def test_no_limit_is_no_bound():
 
 
 def test_parameters_add_and_remove_limits():
-    described = ControlledJoint('revolute', True, -1.0, 1.0, 2.0, 3.0)
+    described = ControlledJoint('revolute', -1.0, 1.0, 2.0, 3.0)
     limits = read_limits(described, ControllerParameters({
         'has_position_limits': False, 'has_velocity_limits': True, 'max_velocity': 7,
         'has_effort_limits': True, 'has_acceleration_limits': True, 'max_acceleration': 5.0}))

@@ -98,7 +98,7 @@ def _joint(element: etree._Element) -> ControlledJoint:
     lower, upper = -math.inf, math.inf
     if kind in ('revolute', 'prismatic'):
         lower, upper = sorted((_number(limit, 'lower'), _number(limit, 'upper')))
-    return ControlledJoint(kind, True, lower, upper, abs(_number(limit, 'velocity')),
+    return ControlledJoint(kind, lower, upper, abs(_number(limit, 'velocity')),
                            abs(_number(limit, 'effort')), soft, copied, place)
 
 

@@ -55,12 +55,12 @@ def test_an_incomplete_transmission_is_skipped_in_upstreams_words(old, new, faul
 def test_limits_are_read_by_type(kind, limits):
     found = joint(kind, '<limit lower="-1" upper="2" effort="3" velocity="4"/>')
     assert (found.lower, found.upper) == limits
-    assert (found.effort, found.velocity, found.has_limits) == (3.0, 4.0, True)
+    assert (found.effort, found.velocity) == (3.0, 4.0)
 
 
 def test_a_joint_without_limits_has_infinite_ones():
     found = joint('continuous')
-    assert (found.effort, found.velocity, found.has_limits) == (math.inf, math.inf, False)
+    assert (found.effort, found.velocity) == (math.inf, math.inf)
 
 
 def test_safety_mimic_and_origin_are_read():
