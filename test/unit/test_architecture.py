@@ -41,6 +41,7 @@ ARROWS = {
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
     'sim/controllers':
         'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
+    'sim/controllers/drive': 'sim/core sim/description sim/runtime sim/controllers',
     'sim/rendering':
         'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
     'sim/rendering/gl': '',
@@ -68,12 +69,16 @@ ARROWS = {
     'ros_api/adapters':
         'sim/core sim/formats sim/runtime sim/plugins sim/controllers sim/sensors '
         'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
+    'ros_api/adapters/controllers':
+        'sim/controllers sim/core sim/formats sim/runtime ros_api/adapters ros_api/messages '
+        'ros_api/reconfigure ros_api/server ros_api/transport',
     'ros_api/views':
         'sim/core sim/description sim/runtime sim/rendering '
         'ros_api/server ros_api/messages ros_api/transport',
     'ros_api/clients':
         'sim/core sim/description sim/public sim/resources sim/rendering sim/runtime '
         'ros_api/messages ros_api/transport ros_api/views batch',
+    'ros_api/controller_programs': 'ros_api/clients ros_api/transport',
     'ros_api/window':
         'sim/core sim/description sim/resources sim/formats '
         'ros_api/messages ros_api/transport ros_api/clients',
@@ -88,8 +93,8 @@ ARROWS = {
         'web',
     'gym/tasks': 'gym sim sim/description',
     'cli':
-        'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/window ros_api/node '
-        'web batch',
+        'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '
+        'ros_api/window ros_api/node web batch',
     '': '',
 }
 

@@ -21,7 +21,7 @@ _USAGE = """Commands:
     list-types           - List controller Types
     reload-libraries     - Reloads all plugin controller libraries"""
 _SHORT = {'lt': 'list-types', 'lc': 'list', 'sp': 'spawn', 'kl': 'kill'}
-# Functions of `controller_calls` that are called for each name, one function after the other.
+# Functions of `calls` that are called for each name, one function after the other.
 _BY_NAME = {
     'load': ('load_controller',),
     'unload': ('unload_controller',),
@@ -73,8 +73,8 @@ def spawner(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options = spawner_parser().parse_args(_own(arguments))
     # Imported late: help and wrong usage are fast, and need no ROS.
-    from ..ros_api.clients import controller_spawner
-    return controller_spawner.run(options, arguments)
+    from ..ros_api.controller_programs import spawner as program
+    return program.run(options, arguments)
 
 
 def unspawner(arguments: Sequence[str] | None = None) -> int:
@@ -84,8 +84,8 @@ def unspawner(arguments: Sequence[str] | None = None) -> int:
     if not names or names[0] in ('-h', '--help'):
         print(_UNSPAWNER_USAGE)
         return FAILED
-    from ..ros_api.clients import controller_unspawner
-    return controller_unspawner.run(names, arguments)
+    from ..ros_api.controller_programs import unspawner as program
+    return program.run(names, arguments)
 
 
 def manager(arguments: Sequence[str] | None = None) -> int:
@@ -98,17 +98,17 @@ def manager(arguments: Sequence[str] | None = None) -> int:
         return FAILED if command else DONE
 
     def act() -> None:
-        from ..ros_api.clients import controller_calls
+        from ..ros_api.controller_programs import calls
         if command == 'list':
-            controller_calls.list_controllers()
+            calls.list_controllers()
         elif command == 'list-types':
-            controller_calls.list_controller_types()
+            calls.list_controller_types()
         elif command == 'reload-libraries':
-            controller_calls.reload_libraries(True, restore='--restore' in names)
+            calls.reload_libraries(True, restore='--restore' in names)
         else:
             for function in _BY_NAME[command]:
                 for name in names:
-                    getattr(controller_calls, function)(name)
+                    getattr(calls, function)(name)
 
     return _run('controller_manager', arguments, act)
 
@@ -119,18 +119,18 @@ def group(arguments: Sequence[str] | None = None) -> int:
     options = group_parser().parse_args(_own(arguments))
 
     def act() -> None:
-        from ..ros_api.clients import controller_groups
+        from ..ros_api.controller_programs import groups
         if options.command == 'list':
-            controller_groups.list_groups()
+            groups.list_groups()
         else:
-            getattr(controller_groups, options.command)(options.group)
+            getattr(groups, options.command)(options.group)
 
     return _run('controller_group', arguments, act)
 
 
 def _run(node: str, arguments: Sequence[str], act: Callable[[], None]) -> int:
-    from ..ros_api.clients import controller_program
-    return controller_program.run(node, arguments, act)
+    from ..ros_api.controller_programs import program
+    return program.run(node, arguments, act)
 
 
 def _own(arguments: Sequence[str]) -> list[str]:

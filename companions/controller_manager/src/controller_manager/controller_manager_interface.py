@@ -1,6 +1,6 @@
 """The client functions that other people's scripts import from controller_manager."""
 
-from rosbots_simulator.ros_api.clients.controller_calls import (
+from rosbots_simulator.ros_api.controller_programs.calls import (
     list_controller_types,
     list_controllers,
     load_controller,

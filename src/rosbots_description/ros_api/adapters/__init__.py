@@ -3,11 +3,11 @@
 from . import (  # noqa: F401
     cameras,
     contacts,
+    controllers,
     drives,
     force,
     imus,
     ray_sensors,
-    ros_control,
     state,
     wheel_slip,
     wrenches,

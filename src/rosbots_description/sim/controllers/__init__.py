@@ -4,24 +4,16 @@ A control law (`pid`, `limits`, …) knows no interface; a controller reads para
 commands, and applies the law; the manager loads, switches and updates controllers.
 """
 
-from . import (  # noqa: F401
-    ackermann_steering,
-    diff_drive,
-    four_wheel_steering,
-    gripper_action,
-    joint_command,
-    joint_pid,
-    joint_state,
-    joint_trajectory,
-    mecanum_drive,
-    sensor_states,
-)
-from .ackermann_steering import AckermannSteeringController
 from .controller import Controller, ControllerSpec, RateGate, require_finite
-from .diff_drive import DiffDriveController
-from .drive import DriveController
+from .drive import (
+    AckermannSteeringController,
+    DiffDriveController,
+    DriveController,
+    FourWheelSteering,
+    FourWheelSteeringController,
+    MecanumDriveController,
+)
 from .errors import ControllerError
-from .four_wheel_steering import FourWheelSteering, FourWheelSteeringController
 from .goal import ABORTED, ACTIVE, CANCELED, REJECTED, SUCCEEDED, Goal
 from .gripper_action import GripperActionController, GripperGoal, GripperResult
 from .hardware import EFFORT, POSITION, STATE, VELOCITY, JointHandle, SimulatedRobot
@@ -35,7 +27,6 @@ from .joint_pid import (
 from .joint_state import JointStateController
 from .joint_trajectory import FollowedGoal, JointTrajectoryController
 from .manager import ControllerManager, ControllerStatus
-from .mecanum_drive import MecanumDriveController
 from .mimic_plugin import MimicJointPlugin
 from .parameters import ControllerParameters
 from .pid import Gains, Pid

@@ -7,6 +7,7 @@ import pytest
 
 from rosbots_description.sim.controllers import ControllerParameters, Gains, Pid, RateGate
 from rosbots_description.sim.controllers.angles import position_error, shortest, shortest_within
+from rosbots_description.sim.controllers.drive.odometry import PlanarOdometry
 from rosbots_description.sim.controllers.limits import (
     EffortSaturation,
     EffortSoftLimits,
@@ -16,7 +17,6 @@ from rosbots_description.sim.controllers.limits import (
     VelocitySoftLimits,
     read_limits,
 )
-from rosbots_description.sim.controllers.planar_odometry import PlanarOdometry
 from rosbots_description.sim.description import ControlledJoint, SoftLimits
 
 DT = 0.001

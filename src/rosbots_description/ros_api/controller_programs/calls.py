@@ -25,7 +25,7 @@ from controller_manager_msgs.srv import (
 )
 from genpy import Message
 
-from .gazebo_interface import interruptibly
+from ..clients.gazebo_interface import interruptibly
 
 RUNNING = 'running'
 STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT

@@ -38,10 +38,10 @@ from controller_manager_msgs.srv import (
     UnloadControllerResponse,
 )
 
-from ...sim.controllers import ControllerError, ControllerManager, RosControl
-from ...sim.core import SimError
-from ..server import Server
-from ..transport import is_valid_name, read_parameter, topic_name
+from ....sim.controllers import ControllerError, ControllerManager, RosControl
+from ....sim.core import SimError
+from ...server import Server
+from ...transport import is_valid_name, read_parameter, topic_name
 
 logger = logging.getLogger(__name__)
 

@@ -5,8 +5,8 @@ from typing import TypeVar
 from genpy import Duration, Message
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from ...sim.controllers import TrajectoryPoint, TrajectoryState
-from ...sim.core import NANOSECONDS
+from ....sim.controllers import TrajectoryPoint, TrajectoryState
+from ....sim.core import NANOSECONDS
 
 Filled = TypeVar('Filled', bound=Message)
 

@@ -5,16 +5,16 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from ..core import Twist
-from ..description import Cylinder, Sphere
-from ..runtime import FrameTransform, Odometry, Output
-from .controller import RUNNING, Controller, RateGate, nanoseconds, require_finite
-from .errors import ControllerError
-from .planar_odometry import PlanarOdometry
+from ...core import Twist
+from ...description import Cylinder, Sphere
+from ...runtime import FrameTransform, Odometry, Output
+from ..controller import RUNNING, Controller, RateGate, nanoseconds, require_finite
+from ..errors import ControllerError
+from .odometry import PlanarOdometry
 from .speed_limiter import SpeedLimiter
 
 if TYPE_CHECKING:
-    from .hardware import JointHandle
+    from ..hardware import JointHandle
 
 logger = logging.getLogger(__name__)
 

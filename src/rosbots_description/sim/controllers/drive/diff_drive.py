@@ -6,12 +6,12 @@ Parameters, defaults and timing are those of diff_drive_controller 0.22.
 import math
 from collections.abc import Mapping, Sequence
 
-from ..runtime import Output
-from .drive import DriveController, set_commands
-from .errors import ControllerError
-from .hardware import VELOCITY, JointHandle
-from .registry import register_controller
-from .trajectory import TrajectoryPoint, TrajectoryState
+from ...runtime import Output
+from ..errors import ControllerError
+from ..hardware import VELOCITY, JointHandle
+from ..registry import register_controller
+from ..trajectory import TrajectoryPoint, TrajectoryState
+from .base import DriveController, set_commands
 
 
 @register_controller('diff_drive_controller/DiffDriveController', VELOCITY)

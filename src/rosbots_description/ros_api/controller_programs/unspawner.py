@@ -13,9 +13,9 @@ from collections.abc import Sequence
 import rospy
 from controller_manager_msgs.srv import ListControllers, SwitchController
 
+from ..clients.gazebo_interface import interruptibly
 from ..transport import is_running, start_node
-from .controller_calls import BEST_EFFORT, MANAGER, RUNNING, call, switch
-from .gazebo_interface import interruptibly
+from .calls import BEST_EFFORT, MANAGER, RUNNING, call, switch
 
 DONE, FAILED = 0, 1  # exit codes
 _PERIOD = 3.0  # [s] between two looks for controllers that somebody has started again

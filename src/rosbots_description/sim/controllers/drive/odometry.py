@@ -3,8 +3,8 @@
 import math
 from collections import deque
 
-from ..core import NANOSECONDS, Pose, Twist, from_rpy
-from ..runtime import Odometry
+from ...core import NANOSECONDS, Pose, Twist, from_rpy
+from ...runtime import Odometry
 
 _STRAIGHT = 1e-6  # [rad] rotation below which a step counts as straight
 _LARGEST = 10_000  # steps in a mean

@@ -30,7 +30,7 @@ from control_msgs.srv import (
 )
 from trajectory_msgs.msg import JointTrajectory
 
-from ...sim.controllers import (
+from ....sim.controllers import (
     FollowedGoal,
     JointTrajectoryController,
     Tolerance,
@@ -38,11 +38,11 @@ from ...sim.controllers import (
     TrajectoryGoal,
     TrajectoryPoint,
 )
-from ...sim.core import SimError
+from ....sim.core import SimError
+from ..adapter import Adapter
+from ..declarations import Offers, Publishes, Subscribes
 from .actions import Acts
-from .adapter import Adapter
-from .controller_topics import connects_controller
-from .declarations import Offers, Publishes, Subscribes
+from .topics import connects_controller
 from .trajectory_messages import fill_state
 
 logger = logging.getLogger(__name__)

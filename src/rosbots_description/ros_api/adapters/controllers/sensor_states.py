@@ -11,13 +11,13 @@ from typing import cast
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import Imu
 
-from ...sim.controllers import IMU, SensorController
-from ..messages import ImuLayout
-from ..transport import is_valid_name, topic_name
-from .adapter import Adapter, where
-from .controller_topics import connects_controller
-from .declarations import Endpoint, PublishedTopic, Publishes
-from .wrenches import wrench_message
+from ....sim.controllers import IMU, SensorController
+from ...messages import ImuLayout
+from ...transport import is_valid_name, topic_name
+from ..adapter import Adapter, where
+from ..declarations import Endpoint, PublishedTopic, Publishes
+from ..wrenches import wrench_message
+from .topics import connects_controller
 
 logger = logging.getLogger(__name__)
 

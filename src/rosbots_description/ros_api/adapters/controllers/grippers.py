@@ -8,9 +8,9 @@ import logging
 
 from control_msgs.msg import GripperCommandAction, GripperCommandGoal, GripperCommandResult
 
-from ...sim.controllers import REJECTED, GripperActionController, GripperGoal
+from ....sim.controllers import REJECTED, GripperActionController, GripperGoal
 from .actions import Acts
-from .controller_topics import connects_controller
+from .topics import connects_controller
 
 logger = logging.getLogger(__name__)
 

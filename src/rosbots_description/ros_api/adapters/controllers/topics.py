@@ -31,7 +31,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
 from tf2_msgs.msg import TFMessage
 
-from ...sim.controllers import (
+from ....sim.controllers import (
     Controller,
     DiffDriveController,
     DriveController,
@@ -46,14 +46,14 @@ from ...sim.controllers import (
     MecanumDriveController,
     Pid,
 )
-from ...sim.controllers import FourWheelSteering as AxleSteering
-from ...sim.core import Twist as Velocity
-from ..messages import OdometryLayout, TransformLayout, fill_twist
-from ..transport import topic_name
-from .adapter import Adapter, where
-from .declarations import Declaration, Endpoint, Offers, Pack, Publishes, Subscribes, finite
-from .packs import JointStatesPack
-from .registry import connects
+from ....sim.controllers import FourWheelSteering as AxleSteering
+from ....sim.core import Twist as Velocity
+from ...messages import OdometryLayout, TransformLayout, fill_twist
+from ...transport import topic_name
+from ..adapter import Adapter, where
+from ..declarations import Declaration, Endpoint, Offers, Pack, Publishes, Subscribes, finite
+from ..packs import JointStatesPack
+from ..registry import connects
 from .trajectory_messages import fill_state
 
 logger = logging.getLogger(__name__)
@@ -79,7 +79,7 @@ class GainsEndpoint(Endpoint):
 
 def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
     """Advertise gains, by their paths in the namespace; called on the registrar's thread."""
-    from ..reconfigure.gains import GainsReconfigure
+    from ...reconfigure.gains import GainsReconfigure
 
     if adapter.is_closed:
         return
@@ -147,7 +147,7 @@ def _frames(drive: DriveController) -> tuple[str, str]:
 
 def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
     """Offer the settings of a diff_drive_controller to dynamic_reconfigure."""
-    from ..reconfigure.diff_drive import DiffDriveReconfigure
+    from ...reconfigure.diff_drive import DiffDriveReconfigure
 
     return DiffDriveReconfigure(
         cast(DiffDriveController, adapter.plugin), name, adapter.server.loop.post).close

@@ -6,9 +6,9 @@ steer_drive_controller, its former name. As upstream, `angular_z` is the angle o
 
 import math
 
-from .drive import DriveController
-from .hardware import POSITION, VELOCITY, JointHandle
-from .registry import register_controller
+from ..hardware import POSITION, VELOCITY, JointHandle
+from ..registry import register_controller
+from .base import DriveController
 
 
 @register_controller('ackermann_steering_controller/AckermannSteeringController', VELOCITY)

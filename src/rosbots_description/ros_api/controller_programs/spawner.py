@@ -30,8 +30,8 @@ from controller_manager_msgs.srv import (
 from genpy import Message
 from std_msgs.msg import Bool
 
+from ..clients.gazebo_interface import interruptibly
 from ..transport import is_running, start_node
-from .gazebo_interface import interruptibly
 
 DONE, FAILED = 0, 1  # exit codes
 

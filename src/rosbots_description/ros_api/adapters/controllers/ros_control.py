@@ -3,7 +3,7 @@
 Subscribes:
     <ns>/<eStopTopic> (std_msgs/Bool), if the tag is given: true takes the effort from all joints.
 Services:
-    <ns>/controller_manager/..., see `controller_services`
+    <ns>/controller_manager/..., see `services`
 Parameters:
     <robotParam> (robot_description), searched from the namespace upward: read once; the controllers
         wait for it, and the world goes on.
@@ -21,13 +21,13 @@ from typing import cast
 import rospy
 from std_msgs.msg import Bool
 
-from ...sim.controllers import Gains, MimicJointPlugin, Pid, RosControl
-from ...sim.core import SimError
-from ...sim.formats import load_robot_control
-from ..transport import is_valid_name, read_parameter, search_parameter, topic_name
-from .adapter import Adapter, where
-from .declarations import Endpoint
-from .registry import AdapterSet, connects
+from ....sim.controllers import Gains, MimicJointPlugin, Pid, RosControl
+from ....sim.core import SimError
+from ....sim.formats import load_robot_control
+from ...transport import is_valid_name, read_parameter, search_parameter, topic_name
+from ..adapter import Adapter, where
+from ..declarations import Endpoint
+from ..registry import AdapterSet, connects
 
 logger = logging.getLogger(__name__)
 
@@ -89,9 +89,9 @@ class ControlEndpoint(Endpoint):
     def _configure(self) -> None:
         """Wait for the description, and bring the controller manager up."""
         from . import (  # noqa: F401  register them
-            controller_topics,
             grippers,
             sensor_states,
+            topics,
             trajectories,
         )
 
@@ -140,8 +140,8 @@ class ControlEndpoint(Endpoint):
 
     def _offer(self) -> None:
         """Offer the services; called on the registrar's thread."""
-        from .controller_services import ManagerServices
-        from .controller_topics import open_gains
+        from .services import ManagerServices
+        from .topics import open_gains
 
         if self._closed.is_set():
             return
@@ -180,7 +180,7 @@ class MimicGains(Endpoint):
 
     def open(self) -> None:
         """Read the gains; the plugin has them between two steps."""
-        from .controller_topics import open_gains
+        from .topics import open_gains
 
         adapter, plugin = self.adapter, self._plugin
         path = plugin.gains_path

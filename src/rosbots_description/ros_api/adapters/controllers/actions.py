@@ -19,13 +19,13 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from genpy import Message, Time
 from std_msgs.msg import Header
 
-from ...sim.controllers import ABORTED, ACTIVE, CANCELED, REJECTED, SUCCEEDED, Goal
-from ...sim.core import NANOSECONDS
-from ...sim.runtime import NEVER, Hook
-from ..messages import stamp
-from ..transport import has_subscribers
-from .adapter import Adapter
-from .declarations import Endpoint
+from ....sim.controllers import ABORTED, ACTIVE, CANCELED, REJECTED, SUCCEEDED, Goal
+from ....sim.core import NANOSECONDS
+from ....sim.runtime import NEVER, Hook
+from ...messages import stamp
+from ...transport import has_subscribers
+from ..adapter import Adapter
+from ..declarations import Endpoint
 
 QUEUE = 50  # as actionlib
 STATUS_PERIOD_NS = NANOSECONDS // 5

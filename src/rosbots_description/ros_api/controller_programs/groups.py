@@ -12,7 +12,7 @@ from typing import cast
 import rospy
 from controller_manager_msgs.srv import ListControllers
 
-from .controller_calls import (
+from .calls import (
     RUNNING,
     call,
     load_controller,

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from .parameters import ControllerParameters
+from ..parameters import ControllerParameters
 
 
 class Bounds(NamedTuple):

@@ -9,13 +9,13 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ..core import NANOSECONDS
-from ..runtime import Odometry, Output
-from .controller import require_finite
-from .drive import DriveController
-from .errors import ControllerError
-from .hardware import POSITION, VELOCITY, JointHandle
-from .registry import register_controller
+from ...core import NANOSECONDS
+from ...runtime import Odometry, Output
+from ..controller import require_finite
+from ..errors import ControllerError
+from ..hardware import POSITION, VELOCITY, JointHandle
+from ..registry import register_controller
+from .base import DriveController
 
 _SLOW = 0.001  # [m/s] below which the wheels stand
 _ACROSS = math.pi / 2.0

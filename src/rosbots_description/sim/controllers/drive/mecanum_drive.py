@@ -4,10 +4,10 @@ Parameters are those of mecanum_drive_controller for ROS 1: the speed of a wheel
 (x -+ y -+ k yaw rate) / radius, with k = half of the wheelbase and of the track together.
 """
 
-from .drive import DriveController
-from .errors import ControllerError
-from .hardware import VELOCITY, JointHandle
-from .registry import register_controller
+from ..errors import ControllerError
+from ..hardware import VELOCITY, JointHandle
+from ..registry import register_controller
+from .base import DriveController
 
 # Signs of the velocity to the left and of the yaw rate in the speed of each wheel.
 _WHEELS = (('front_left', -1.0, -1.0), ('back_left', 1.0, -1.0), ('back_right', -1.0, 1.0),
