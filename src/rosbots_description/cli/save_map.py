@@ -10,9 +10,9 @@ from .gzserver import split_remappings
 def parser() -> argparse.ArgumentParser:
     """Return the parser of save_map's options."""
     made = argparse.ArgumentParser(
-        prog='save_map', description='Write what stands in a world at a height as NAME.pgm and '
-                                     'NAME.yaml, which map_server reads. Models with joints, such '
-                                     'as robots, are left out.')
+        prog='save_map', description='Write the occupancy grid of a world at a height as '
+                                     'NAME.pgm and NAME.yaml, which map_server reads. Models with '
+                                     'joints, such as robots, are left out.')
     made.add_argument('name', metavar='NAME', help='of the files; may end in .yaml')
     made.add_argument('--world', metavar='FILE',
                       help='a world file, as gzserver takes it (default: the running world)')
