@@ -4,14 +4,16 @@ Publishes:
     the topics of `drive` (geometry_msgs/Twist), each from its first command on.
 """
 
-import time
+import threading
+from collections import deque
+from collections.abc import Callable
 
 import rospy
 from geometry_msgs.msg import Twist
 
 from .topic_graph import TopicGraph
 
-CONNECTION = 0.5  # [s, wall] that the first command waits for its robot
+LATEST = 2  # commands that wait for a robot: one, and the stop after it
 
 
 class RosRobots:
@@ -19,7 +21,7 @@ class RosRobots:
 
     def __init__(self, topics: TopicGraph) -> None:
         self._topics = topics
-        self._publishers: dict[str, rospy.Publisher] = {}
+        self._commands: dict[str, Commands] = {}
 
     def drive_topics(self) -> list[str]:
         """Return the topics of velocity commands that other nodes subscribe to; [] if unknown."""
@@ -28,11 +30,35 @@ class RosRobots:
 
     def drive(self, topic: str, forward: float, left: float) -> None:
         """Publish a velocity command: forward [m/s], and turning left [rad/s]."""
-        if topic not in self._publishers:
-            made = self._publishers[topic] = rospy.Publisher(topic, Twist, queue_size=1)
-            end = time.monotonic() + CONNECTION
-            while not made.get_num_connections() and time.monotonic() < end:
-                time.sleep(0.01)
+        if topic not in self._commands:
+            self._commands[topic] = Commands(topic)
         command = Twist()
         command.linear.x, command.angular.z = forward, left
-        self._publishers[topic].publish(command)
+        self._commands[topic].publish(command)
+
+
+class Commands(rospy.SubscribeListener):
+    """The commands to one topic; the first wait until a robot has connected."""
+
+    def __init__(self, topic: str) -> None:
+        super().__init__()
+        self._lock = threading.Lock()
+        self._waiting: deque[Twist] = deque(maxlen=LATEST)
+        self._publisher = rospy.Publisher(topic, Twist, self, queue_size=LATEST)
+
+    def publish(self, command: Twist) -> None:
+        """Publish a command, or keep it for the robot that connects first."""
+        with self._lock:
+            self._waiting.append(command)
+            if self._publisher.get_num_connections():
+                self._pass_on(self._publisher.publish)
+
+    def peer_subscribe(self, _topic: str, _publish: Callable[[Twist], None],
+                       peer_publish: Callable[[Twist], None]) -> None:
+        """Publish what has waited; rospy calls it when a robot has connected."""
+        with self._lock:
+            self._pass_on(peer_publish)
+
+    def _pass_on(self, publish: Callable[[Twist], None]) -> None:
+        while self._waiting:
+            publish(self._waiting.popleft())
