@@ -149,6 +149,7 @@ class GzwebTest(unittest.TestCase):
     def change_a_ball(self, browser):
         browser.click('ball')
         browser.wait_until(lambda: f'{LINK}/selected' in browser.nodes)
+        browser.wait_until(lambda: browser.value('Mass [kg]') == 1.0)  # the fields are filled in
         browser.choose('Position [m]', [2.0, 1.0, 4.0])
         browser.click('Set pose')
         browser.wait_until(lambda: browser.nodes[LINK][1][:2] == [2.0, 1.0])

@@ -57,6 +57,7 @@ class Bar(Panel):
             'Reset world', hint='models return to where they were spawned; time is kept')
         self._reset = gui.add_button('Reset time and world', hint='everything starts again')
         self._paused = False
+        self._target = 1.0  # real-time factor that the simulator last told
         self._play.on_click(lambda _: self._toggle())
         self._speed.on_update(self._choose)
         self._step.on_click(lambda _: self._do(lambda: time.step(int(self._steps.value))))
@@ -65,11 +66,14 @@ class Bar(Panel):
         gui.add_command('Play or pause', hotkey='space').on_trigger(lambda _: self._toggle())
 
     def apply(self, change: SceneChange) -> None:
-        """Show the target speed."""
+        """Show the target speed when it is another; what was chosen just now may not be set yet."""
         factor = change.max_update_rate * change.step_size
-        name = next((name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None)
-        if name is not None and self._speed.value != name:
-            fill(self._speed, name)
+        if factor != self._target:
+            self._target = factor
+            name = next(
+                (name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None)
+            if name is not None:
+                fill(self._speed, name)
 
     def move(self, motion: ShownMotion) -> None:
         """Show times, and whether time runs."""

@@ -12,7 +12,7 @@ from .descriptions import chosen_links, friction, scoped_name
 from .history import History
 from .inspector import States
 from .models import Models
-from .panel import Panel, attempt, fill
+from .panel import Panel, Value, attempt, fill
 from .selection import Selection
 
 NONE: Vector = (0.0, 0.0, 0.0)
@@ -44,6 +44,7 @@ class ChangePanel(Panel):
     ) -> None:
         self._inspection, self._history, self._complain = inspection, history, complain
         self._models, self._selection = models, selection
+        self._properties: dict[str, object] = {}  # by fields, as last filled in
         self._folder = gui.add_folder('Change', expand_by_default=False, visible=False)
         with self._folder:
             self._position = gui.add_vector3('Position [m]', NONE, step=STEP)
@@ -91,6 +92,7 @@ class ChangePanel(Panel):
             fill(self._angles, to_rpy(pose.orientation))
             fill(self._linear, NONE)
             fill(self._angular, NONE)
+            self._properties.clear()
             self._fill_properties()
 
     def _fill_properties(self) -> None:
@@ -100,13 +102,19 @@ class ChangePanel(Panel):
         self._motion.visible = not model.static
         self._body.visible = body is not None and not model.static
         if body is not None and body.inertial is not None:
-            fill(self._mass, float(body.inertial.mass))
-            fill(self._gravity, body.gravity)
+            self._fill(self._mass, float(body.inertial.mass))
+            self._fill(self._gravity, body.gravity)
         pairs = friction(chosen_links(model, link))
         self._surface.visible = bool(pairs)
         if pairs:
             for field, value in zip((self._mu, self._mu2), min(pairs), strict=True):
-                fill(field, float(value))  # viser casts what is typed to the type that is there
+                self._fill(field, float(value))  # viser casts what is typed to the type there
+
+    def _fill(self, field: viser.GuiInputHandle[Value], value: Value) -> None:
+        """Fill in a property when it is another; what is typed into the field meanwhile stays."""
+        if self._properties.get(field.label) != value:
+            self._properties[field.label] = value
+            fill(field, value)
 
     def _set_pose(self, model: ShownModel, link: str | None) -> None:
         pose = Pose(self._position.value, from_rpy(*self._angles.value))

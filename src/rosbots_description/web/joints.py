@@ -53,7 +53,7 @@ class JointPanel(Panel):
         self._gui, self._joints, self._models, self._complain = gui, joints, models, complain
         self._lock = threading.RLock()
         self._topics: Sequence[str] = ()
-        self._shown: Sequence[str] = ()  # the joints or topics that have sliders
+        self._shown: object = None  # what the sliders are of
         self._sliders: list[viser.GuiSliderHandle[float]] = []
         self._folder = gui.add_folder('Joints', visible=False)
         with self._folder:
@@ -65,9 +65,9 @@ class JointPanel(Panel):
                 'a velocity is kept with at most this effort [N m, N]'))
             self._release = gui.add_button(
                 'Release', hint='switches motors off and ends efforts of these joints')
-        self._of.on_update(self._build)
+        self._of.on_update(self._show)
         for control in (self._what, self._range):
-            control.on_update(lambda _: self._build())
+            control.on_update(lambda _: self._show())
         self._release.on_click(lambda _: self._let_go())
 
     def refresh(self) -> None:
@@ -80,30 +80,35 @@ class JointPanel(Panel):
             if options != self._of.names:
                 self._of.offer(options)
                 self._folder.visible = len(options) > 1
-            wanted = tuple(joint.name for joint in self._specs()) or (
-                self._topics if self._of.value == TOPICS else ())
-            if wanted != self._shown:
-                self._build()
+            self._show()
 
     def _specs(self) -> Sequence[JointSpec]:
         model = self._models.all.get(self._of.value)
         return model.joints[:MOST] if model else ()
 
+    def _show(self) -> None:
+        """Show the sliders of what is chosen; those that are there stay, for they may be in use."""
+        with self._lock:
+            model = self._of.value
+            names = self._topics[:MOST] if model == TOPICS else tuple(
+                joint.name for joint in self._specs())
+            wanted = model, names, self._what.value, self._range.value
+            if wanted != self._shown:
+                self._shown = wanted
+                self._build()
+
     def _build(self) -> None:
-        """Make the sliders of what is chosen."""
+        """Make the sliders of what is chosen, each at rest."""
         with self._lock:
             for slider in self._sliders:
                 slider.remove()
             self._sliders.clear()
             model, what, limit = self._of.value, self._what.value, float(self._range.value)
             if model == TOPICS:
-                self._shown = self._topics[:MOST]
-                for topic in self._shown:
+                for topic in self._topics[:MOST]:
                     self._add(topic, (-limit, limit), 0.0, partial(self._joints.command, topic))
                 return
-            specs = self._specs()
-            self._shown = tuple(joint.name for joint in specs)
-            for joint in specs:
+            for joint in self._specs():
                 unit = UNITS[what][joint.type != PRISMATIC]
                 self._add(f'{joint.name} [{unit}]', *self._range_of(model, joint, what, limit),
                           self._setter(model, joint.name, what))

@@ -97,6 +97,17 @@ def _gone(*_):
     raise SimError('it does not answer')
 
 
+def test_what_is_typed_stays_while_other_properties_change(world, simulator, page):
+    page.selection.choose('cart', 'base')
+    world.wait_until(lambda: world.value('mu') == 0.5)
+    world.choose('mu', 0.75)
+    heavier = replace(BASE, inertial=Inertial(8.0))
+    simulator.change(SceneChange(models=(replace(CART, links=(heavier, WHEEL)),)))
+    world.wait_until(lambda: world.value('Mass [kg]') == 8.0)
+    world.click('Set friction')
+    world.wait_until(lambda: ('set_friction', 'cart::base', 0.75, 0.25) in simulator.told)
+
+
 def test_pose_and_velocity_are_set_one_without_the_other_and_undone(world, simulator, page):
     now = Pose((1.0, 2.0, 3.0)), Twist((0.5, 0.0, 0.0))
     simulator.where = now

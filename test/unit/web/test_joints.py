@@ -132,6 +132,22 @@ def test_a_model_that_is_deleted_takes_its_sliders_along(browser, models, panel)
     browser.wait_until(lambda: not browser.control('elbow [rad]'))
 
 
+def test_sliders_stay_while_nothing_else_is_chosen(browser, panel):
+    choose(browser, 'arm', 'elbow [rad]')
+    slider = browser.control('elbow [rad]')
+    panel.refresh()
+    browser.choose('Sliders set', 'velocity')
+    browser.wait_until(lambda: browser.control('elbow [rad/s]'))
+    assert slider not in browser.controls
+    slider = browser.control('elbow [rad/s]')
+    panel._show()  # as the callback does, when the page has looked again before it
+    browser.choose('Range', 3.0)
+    browser.wait_until(lambda: browser.control('elbow [rad/s]') not in (None, slider))
+    made = [message for message in browser.messages if message['type'] == 'GuiSliderMessage'
+            and message['props']['label'] == 'elbow [rad/s]']
+    assert len(made) == 2
+
+
 def test_a_refusal_is_told(browser, joints, complaints):
     choose(browser, 'arm', 'elbow [rad]')
     joints.fault = 'SetModelConfiguration: model does not exist'

@@ -186,6 +186,19 @@ def test_the_speed_of_the_simulator_is_shown_and_not_told_to_it(browser, simulat
     assert simulator.told == []
 
 
+def test_a_speed_that_was_chosen_stays_until_the_simulator_has_another(browser, simulator):
+    simulator.change(SceneChange(True))
+    browser.choose('Speed', '10x')
+    browser.wait_until(lambda: simulator.told)
+    simulator.change(SceneChange())  # on its way since before
+    simulator.change(SceneChange(max_update_rate=100.0))
+    browser.wait_until(lambda: browser.value('Speed') == '0.1x')
+    shown = [message['updates']['value'] for message in browser.messages
+             if message['type'] == 'GuiUpdateMessage' and 'value' in message['updates']
+             and message['uuid'] == browser.control('Speed')]
+    assert shown == ['0.1x']
+
+
 def test_a_browser_that_has_gone_before_it_is_let_in_opens_nothing(simulator, page):
     page._enter(SimpleNamespace(client_id=99))
     assert simulator.change is None
