@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = (ROOT / '.ws').resolve() / 'test_results'  # rostest needs a path without spaces
 OUTPUT_LINES = 60  # of a failed check's output, shown when it ends
+REASON_LINES = 12  # of a failed test's report, shown at the very end
 _printing = threading.Lock()
 
 
@@ -20,6 +21,7 @@ class Failure:
     name: str
     command: str
     log: Path
+    reason: str = ''  # what the tests reported
 
 
 @dataclass(frozen=True)
@@ -38,11 +40,20 @@ class Count:
 
 
 @dataclass(frozen=True)
+class FailedCase:
+    """A test case that failed, as a junit file names it, and why."""
+
+    class_name: str
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class Report:
-    """A junit file: the numbers, and the cases that failed as (class name, name)."""
+    """A junit file: the numbers, and the cases that failed."""
 
     count: Count
-    failed: tuple[tuple[str, str], ...] = ()
+    failed: tuple[FailedCase, ...] = ()
 
 
 def say(*lines: str) -> None:
@@ -62,15 +73,16 @@ def read_report(path: Path) -> Report:
     except (OSError, ElementTree.ParseError):
         return Report(Count(failed=1))
     cases = list(report.iter('testcase'))
-    bad = [case for case in cases
-           if any(case.find(tag) is not None for tag in ('failure', 'error'))]
+    bad = [(case, fault) for case in cases
+           for fault in [*case.findall('failure'), *case.findall('error')][:1]]
     told = [line for output in report.iter('system-out')
             for line in (output.text or '').splitlines() if line.startswith('SKIPPED ')]
     if told:
         say(*told)
     skipped = len(told) + sum(case.find('skipped') is not None for case in cases)
     return Report(Count(len(cases) - len(bad) - skipped, len(bad), skipped),
-                  tuple((case.get('classname', ''), case.get('name', '')) for case in bad))
+                  tuple(FailedCase(case.get('classname', ''), case.get('name', ''),
+                                   fault.text or '') for case, fault in bad))
 
 
 def with_exit_code(count: Count, code: int) -> Count:
@@ -95,9 +107,10 @@ def end_of(log: Path) -> list[str]:
 
 
 def say_failures(failures: tuple[Failure, ...], seed: int) -> None:
-    """Print how each failure is repeated."""
+    """Print why each failed, and how it is repeated."""
     for failure in failures:
         has_seed = failure.command.startswith('./rosbots test ')
         say('', f'FAILED {failure.name}',
             f'    repeat: {failure.command}{f" --seed {seed}" if has_seed else ""}',
-            f'    log:    {failure.log}')
+            f'    log:    {failure.log}',
+            *(f'        {line}' for line in failure.reason.splitlines()[-REASON_LINES:]))

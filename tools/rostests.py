@@ -68,14 +68,16 @@ def run_rostest(path: Path) -> Count:
                               check=False).returncode
     reports = [read_report(report) for report in results.rglob('rosunit-*.xml')]
     count = with_exit_code(sum((report.count for report in reports), Count()), code)
-    cases = [name for report in reports for _, name in report.failed]
+    failed = [case for report in reports for case in report.failed]
+    cases = [case.name for case in failed]
     logged = unexpected([log, *results.rglob('log/**/*.log')], read_expected(path.stem))
     if not count.failed:  # else they may be for that
         count, cases = count + Count(failed=len(logged)), logged
     if count.failed:
         name = ', '.join([f'{path.name}: {cases[0]}', *cases[1:]]) if cases else path.name
         command = f'./rosbots test {path.relative_to(ROOT)}'
-        count += Count(failures=(Failure(name, command, log),))
+        reason = '\n'.join(case.reason for case in failed[:1])
+        count += Count(failures=(Failure(name, command, log, reason),))
     say_result('rostest', path.name, count, time.monotonic() - start,
                *(end_of(log) if count.failed else ()), *(f'    {error}' for error in logged))
     return count

@@ -103,10 +103,12 @@ def run_pytest(phase: str, options: list[str]) -> Count:
             say(line.rstrip('\n'))
     read = read_report(report)
     count = with_exit_code(read.count, process.returncode)
-    again = [node for case in read.failed if (node := node_of(*case))] or [f'test/{phase}']
+    again = {node: case.reason for case in read.failed
+             if (node := node_of(case.class_name, case.name))} or {f'test/{phase}': ''}
     if count.failed:
         count += Count(failures=tuple(
-            Failure(node, f'./rosbots test {shlex.quote(node)}', log) for node in again))
+            Failure(node, f'./rosbots test {shlex.quote(node)}', log, reason)
+            for node, reason in again.items()))
     say_result(phase, f'test/{phase}', count, time.monotonic() - start)
     return count
 

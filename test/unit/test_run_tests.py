@@ -13,7 +13,8 @@ HOPELESS = 900.0  # [s, wall]
 ROOT = Path(__file__).resolve().parents[2]
 JUNIT = """<testsuites><testsuite>
 <testcase classname="test.unit.test_robot" name="test_a"/>
-<testcase classname="test.unit.test_robot" name="test_b[x-1]"><failure/></testcase>
+<testcase classname="test.unit.test_robot" name="test_b[x-1]"><failure>Traceback:
+  line 7</failure></testcase>
 <testcase classname="test.unit.test_robot" name="test_c"><skipped/></testcase>
 </testsuite></testsuites>"""
 
@@ -47,8 +48,10 @@ def test_failures_are_named_as_pytest_names_them(modules, tmp_path):
     path.write_text(JUNIT)
     report = results.read_report(path)
     assert (report.count.passed, report.count.failed, report.count.skipped) == (1, 1, 1)
-    assert [run_tests.node_of(*case) for case in report.failed] == [
-        'test/unit/test_robot.py::test_b[x-1]']
+    case, = report.failed
+    node = run_tests.node_of(case.class_name, case.name)
+    assert node == 'test/unit/test_robot.py::test_b[x-1]'
+    assert case.reason == 'Traceback:\n  line 7'
 
 
 def test_a_report_that_cannot_be_read_is_a_failure(modules, tmp_path):
@@ -84,11 +87,15 @@ def test_success_is_exit_code_0(modules, monkeypatch, capsys):
     assert 'repeat' not in capsys.readouterr().out
 
 
-def test_a_failed_test_is_repeated_with_its_seed(modules, capsys):
+def test_a_failed_test_is_repeated_with_its_seed_and_says_why(modules, capsys):
     results, _, _ = modules
+    reason = '\n'.join(f'line {number}' for number in range(99))
     results.say_failures(
-        (results.Failure('x', './rosbots test test/rostest/frames.test', Path('log')),), 7)
-    assert 'repeat: ./rosbots test test/rostest/frames.test --seed 7\n' in capsys.readouterr().out
+        (results.Failure('x', './rosbots test test/rostest/frames.test', Path('log'), reason),), 7)
+    printed = capsys.readouterr().out
+    assert 'repeat: ./rosbots test test/rostest/frames.test --seed 7\n' in printed
+    assert printed.endswith('        line 97\n        line 98\n')  # where the cause is
+    assert 'line 80\n' not in printed
 
 
 def test_unknown_phases_and_files_are_named(modules, capsys):
