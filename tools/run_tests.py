@@ -69,7 +69,7 @@ def type_checks() -> dict[str, list[str]]:
     return {
         'mypy': mypy,
         'mypy --strict': [*mypy, '--strict', '--cache-dir=.ws/mypy_cache/strict',
-                          'src/rosbots_description/sim'],
+                          'src/rosbots_description'],
     }
 
 

@@ -46,11 +46,12 @@ def private_environment() -> Iterator[None]:
 def _read_environment() -> None:
     """Let Ray read the environment again, as its own tests do."""
     from ray import _raylet
-    from ray._private import ray_constants
+    from ray._private import ray_constants as constants
 
+    ray_constants: Any = constants  # untyped, as the next
     ray_constants.ENABLE_RAY_CLUSTER = ray_constants.env_bool(
         ray_constants.ENABLE_RAY_CLUSTERS_ENV_VAR, True)
-    inner: Any = _raylet  # compiled, without types
+    inner: Any = _raylet
     inner.Config.initialize('')
     inner.AuthenticationTokenLoader.instance().reset_cache()
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
+from numpy.typing import NDArray
 
 from ..ros_api.clients.planar_sample import PlanarSample
 from .demo_report import Segment
@@ -16,7 +17,7 @@ from .demo_report import Segment
 _ARROW = 0.35  # [m] length of the arrow that shows a heading
 
 
-def save_picture(path: Path, pixels: np.ndarray) -> None:
+def save_picture(path: Path, pixels: NDArray[np.uint8]) -> None:
     """Write RGB bytes (height, width, 3) as PNG.
 
     Raises:

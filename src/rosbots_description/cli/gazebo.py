@@ -61,7 +61,7 @@ def _on_signals(react: Callable[[int, FrameType | None], object]) -> None:
         signal.signal(number, react)
 
 
-def _end(child: subprocess.Popen, number: signal.Signals) -> None:
+def _end(child: subprocess.Popen[bytes], number: signal.Signals) -> None:
     """Signal a child to end; kill it after a timeout."""
     if child.poll() is None:
         child.send_signal(number)

@@ -123,7 +123,7 @@ def _run_window(command: Sequence[str], environment: Mapping[str, str]) -> int:
     from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
 
     received: list[int | None] = []
-    window: subprocess.Popen | None = None
+    window: subprocess.Popen[bytes] | None = None
 
     def end(number: int | None = None, _frame: object = None) -> None:
         received.append(number)

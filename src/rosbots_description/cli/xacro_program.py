@@ -84,7 +84,7 @@ def _dotted(value: object) -> object:
     return value
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # yaml has no types
     """A YAML loader that supports units: !degrees 90."""
 
 

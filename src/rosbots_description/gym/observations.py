@@ -115,7 +115,8 @@ def _depths(sensor: Any) -> Observed:  # noqa: ANN401  a depth camera
     lens = sensor.cameras[0].lens
 
     def read() -> Array:
-        return np.minimum(sensor.read().depths, np.float32(lens.far))
+        near: Array = np.minimum(sensor.read().depths, np.float32(lens.far))
+        return near
 
     return Observed(sensor.name, spaces.Box(0.0, lens.far, (lens.height, lens.width), np.float32),
                     read)

@@ -167,7 +167,7 @@ def _outline(make: MakeEnv) -> _Outline:
     process.start()
     theirs.close()
     try:
-        found = pickle.loads(ours.recv_bytes())
+        found: _Outline | BaseException = pickle.loads(ours.recv_bytes())
     except EOFError:
         process.join()
         raise WorkerError('the process of the first environment ended with code '

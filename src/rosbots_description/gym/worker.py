@@ -74,7 +74,7 @@ class Worker:
         if self._has_step:
             return self._steps.pop(0), True
         try:
-            return self._pipe.recv()
+            return self._answer()
         except (EOFError, ConnectionError):
             return self._replaced()
 
@@ -100,7 +100,7 @@ class Worker:
         """Return the answer of a worker that was just started, and has no episode yet."""
         name, data = self._request
         self._pass_on(('reset', data if name == 'reset' else {'seed': self._new_seed()}))
-        answer, fulfilled = self._pipe.recv()
+        answer, fulfilled = self._answer()
         if not fulfilled:
             return None, False
         observation, info = answer
@@ -110,7 +110,11 @@ class Worker:
         if name == 'step':
             return self._steps.pop(0), True
         self._pass_on(self._request)
-        return self._pipe.recv()
+        return self._answer()
+
+    def _answer(self) -> tuple[Any, bool]:
+        answer, fulfilled = self._pipe.recv()
+        return answer, fulfilled
 
     def _first_steps(self, observation: Any, info: dict[str, Any]) -> list[Any]:  # noqa: ANN401
         """Return the steps that end the episode of the worker that died, and begin the next one."""

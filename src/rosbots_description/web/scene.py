@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from ..sim.core import UP, ModelError
 from ..sim.description import Plane, SceneChange, SceneSpec, ShownLink, ShownModel, ShownMotion
@@ -156,7 +157,7 @@ def _looks(a: ShownModel, b: ShownModel) -> bool:
         (link.name, link.visuals) for link in b.links]
 
 
-def _sky(scene: SceneSpec) -> np.ndarray:
+def _sky(scene: SceneSpec) -> NDArray[np.uint8]:
     """Return an image (n, 1, 3) of what is behind everything, from the top."""
     if scene.background != SceneSpec().background:
         return np.full((1, 1, 3), rgb_bytes(scene.background[:3]), np.uint8)

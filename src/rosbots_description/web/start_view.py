@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..sim.core import Pose, Vector, add, as_vector, dot, rotate, subtract
 from ..sim.description import SceneChange, SceneSpec
@@ -19,7 +20,8 @@ ELEVATIONS = tuple(map(math.radians, (25.0, 40.0, 60.0, 80.0)))
 AROUND = 8  # azimuths at each
 ENOUGH = 0.95  # of what is seen from the best place
 MOST = 200  # shapes that are looked for, and that may hide others
-Placed = tuple[str, np.ndarray]  # model, and eight corners in the world [m]
+Points = NDArray[np.float64]
+Placed = tuple[str, Points]  # model, and eight corners in the world [m]
 
 
 class StartView(Panel):
@@ -77,7 +79,7 @@ def _best(boxes: list[Placed], middle: Vector, distance: float) -> Vector:
     return next(eye for eye, share in zip(eyes, seen, strict=True) if share >= ENOUGH * max(seen))
 
 
-def _seen(boxes: list[Placed], eye: np.ndarray) -> float:
+def _seen(boxes: list[Placed], eye: Points) -> float:
     """Return the share of boxes whose middle no box of another model hides."""
     if not boxes:
         return 1.0

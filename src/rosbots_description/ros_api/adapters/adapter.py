@@ -113,7 +113,7 @@ class Adapter:
 
     def text(self, template: str) -> str:
         """Return `template` with `<tag>` replaced by the plugin's value of that tag."""
-        return self.plugin.params.fill(template)
+        return str(self.plugin.params.fill(template))
 
     @cached_property
     def tf_prefix(self) -> str:
@@ -137,7 +137,7 @@ class Adapter:
         return publisher
 
     def subscribe(
-        self, topic: str, message_class: type[Message], take: Callable, queue_size: int
+        self, topic: str, message_class: type[Message], take: Callable[[Any], None], queue_size: int
     ) -> rospy.Subscriber | None:
         """Subscribe to a topic; None, with an error, if this node subscribes to another type."""
         if not self._is_free(topic, message_class, subscribed_types()):
@@ -160,7 +160,7 @@ class Adapter:
                 '%s: the topic %s is not opened as %s: this node uses it as %s; rename it',
                 where(self.plugin), topic, message_class._type, there,
             )
-        return there == message_class._type
+        return bool(there == message_class._type)
 
 
 def where(plugin: HasTopics) -> str:

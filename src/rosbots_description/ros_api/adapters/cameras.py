@@ -111,7 +111,8 @@ def set_camera_info(channel: int) -> Callable[[Adapter, str], Callable[[], None]
                 adapter.server.loop.call(lambda: plugin.set_info(info, channel))
             return SetCameraInfoResponse(success=True)
 
-        return rospy.Service(name, SetCameraInfo, answer).shutdown
+        shutdown: Callable[[], None] = rospy.Service(name, SetCameraInfo, answer).shutdown
+        return shutdown
 
     return offer
 
@@ -126,7 +127,9 @@ def reconfigure(adapter: Adapter, name: str) -> Callable[[], None]:
     return CameraReconfigure(plugin, name, adapter.server.loop.post).close
 
 
-def channel_topics(side: str, image: str, info: str, folder: str, number: int) -> tuple:
+def channel_topics(
+    side: str, image: str, info: str, folder: str, number: int
+) -> tuple[Publishes | Offers, ...]:
     """Return the topics and services of one camera.
 
     Args:

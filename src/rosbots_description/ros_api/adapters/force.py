@@ -28,7 +28,7 @@ WORLD = 'world'
 _numbers = finite(*(f'{part}.{axis}' for part in ('force', 'torque') for axis in 'xyz'))
 
 
-def read_wrench(message: Wrench) -> tuple:
+def read_wrench(message: Wrench) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return force [N] and torque [N m].
 
     Raises:

@@ -39,7 +39,8 @@ def calibration(adapter: Adapter, name: str) -> Callable[[], None]:
         adapter.server.loop.call(plugin.calibrate)
         return EmptyResponse()
 
-    return rospy.Service(name, Empty, answer).shutdown
+    shutdown: Callable[[], None] = rospy.Service(name, Empty, answer).shutdown
+    return shutdown
 
 
 def fix_message(fix: Fix) -> NavSatFix:

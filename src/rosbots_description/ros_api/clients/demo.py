@@ -11,6 +11,7 @@ import rospy
 from gazebo_msgs.srv import DeleteModel, GetModelState, GetModelStateResponse
 from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
+from numpy.typing import NDArray
 from sensor_msgs.msg import Image
 
 from ...sim.core import yaw_of
@@ -83,11 +84,11 @@ class DemoClient:
 
     def present(self) -> bool:
         """Tell whether the model is in the world."""
-        return self._state().success
+        return bool(self._state().success)
 
     def height(self) -> float:
         """Return z of the model's origin in the world [m]; 0 if there is no such model."""
-        return self._state().pose.position.z
+        return float(self._state().pose.position.z)
 
     def delete(self) -> str:
         """Delete the model and return the simulator's status message.
@@ -101,7 +102,7 @@ class DemoClient:
             raise ConnectionError(f'the model could not be deleted: {error}') from error
         if not response.success:
             raise ConnectionError(f'the model could not be deleted: {response.status_message}')
-        return response.status_message
+        return str(response.status_message)
 
     def wait_for_plugin(self) -> None:
         """Wait until the robot subscribes to commands and publishes odometry.
@@ -143,7 +144,7 @@ class DemoClient:
         wait_until(is_done, duration / _SLOWEST, f'{duration:g} s of simulated time')
         return truth, list(self._odometry)
 
-    def look_at_robot(self) -> np.ndarray:
+    def look_at_robot(self) -> NDArray[np.uint8]:
         """Return an overview picture of the robot: (height, width, 3) RGB bytes.
 
         Raises:

@@ -83,7 +83,7 @@ def _spawn(service: str, *, model_name: str, model_xml: str, robot_namespace: st
     if response is None:
         return None
     rospy.loginfo('Spawn status: %s', response.status_message)
-    return response.success
+    return bool(response.success)
 
 
 def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
@@ -133,4 +133,4 @@ def set_model_configuration_client(model_name: str, model_param_name: str,
     if response is None:
         return None
     rospy.loginfo('Set model configuration status: %s', response.status_message)
-    return response.success
+    return bool(response.success)

@@ -41,11 +41,11 @@ class VelocityPublisher:
     @property
     def topic(self) -> str:
         """Name of the topic after remapping."""
-        return self._publisher.name
+        return str(self._publisher.name)
 
     def has_subscribers(self) -> bool:
         """Tell whether the topic has subscribers."""
-        return self._publisher.get_num_connections() > 0
+        return bool(self._publisher.get_num_connections())
 
     def send(self, linear: tuple[float, float, float], angular: float) -> None:
         """Publish a command: linear [m/s] along x, y, z and angular [rad/s] about z."""

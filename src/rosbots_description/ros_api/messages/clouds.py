@@ -41,7 +41,8 @@ def old_cloud_points(message: PointCloud) -> Points:
     """Return the points that are finite."""
     sampled = message.points[::max(1, -(-len(message.points) // MAX_POINTS))]
     points = np.array([read_vector(point) for point in sampled], np.float32).reshape(-1, 3)
-    return points[np.isfinite(points).all(axis=1)]
+    finite: Points = points[np.isfinite(points).all(axis=1)]
+    return finite
 
 
 def _layout(message: PointCloud2, fields: dict[str, PointField]) -> np.dtype[np.void]:

@@ -23,11 +23,11 @@ def find_package(name: str) -> str | None:
         NotFoundError: a manifest on the path is not XML, so that no package can be looked up.
     """
     try:
-        return _packages().get_path(name)
+        return str(_packages().get_path(name))
     except rospkg.ResourceNotFound:
         _packages.cache_clear()
     try:
-        return _packages().get_path(name)
+        return str(_packages().get_path(name))
     except rospkg.ResourceNotFound:
         return None
 

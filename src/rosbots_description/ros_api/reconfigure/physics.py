@@ -57,7 +57,7 @@ def advertise_reconfigure(server: Server) -> None:
     logger.info('Physics dynamic reconfigure ready.')
 
 
-class PhysicsReconfigure(ReconfigureServer):
+class PhysicsReconfigure(ReconfigureServer):  # type: ignore[misc]  # it has no types
     """Lets dynamic_reconfigure show and change the physics; called from ROS's threads."""
 
     config: Config

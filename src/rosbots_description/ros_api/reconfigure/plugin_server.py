@@ -13,7 +13,7 @@ from .parameters import Parameter, description
 Post = Callable[[Callable[[], None]], None]  # passes a command to the thread that owns the world
 
 
-class PluginReconfigure(Server):
+class PluginReconfigure(Server):  # type: ignore[misc]  # it has no types
     """Advertises parameters of a plugin; a subclass applies them in `apply`."""
 
     def __init__(self, parameters: Sequence[Parameter], name: str) -> None:

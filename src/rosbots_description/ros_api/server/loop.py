@@ -44,7 +44,7 @@ class Loop:
     def __init__(
         self,
         world: 'World',
-        batch: Callable[[], AbstractContextManager] = contextlib.nullcontext,
+        batch: Callable[[], AbstractContextManager[None]] = contextlib.nullcontext,
     ) -> None:
         """Create the loop; `run` starts it.
 

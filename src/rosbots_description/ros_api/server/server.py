@@ -25,7 +25,7 @@ class Server:
     sandbox: CrashSandbox
     find_file: FileSearch = field(default_factory=FileSearch)
     static_frames: StaticFrames = field(default_factory=StaticFrames)  # of other nodes
-    lookups: Counter = field(default_factory=Counter)  # per model: found by get_model_state
+    lookups: Counter[str] = field(default_factory=Counter)  # per model: found by get_model_state
     physics_listeners: list[Callable[[], None]] = field(default_factory=list)
     parameters: list[Callable[[], None]] = field(default_factory=list)  # write those that are ours
     stepping: threading.Lock = field(default_factory=threading.Lock)  # one caller of step at a time

@@ -31,7 +31,7 @@ def delete_model(server: Server, request: DeleteModelRequest) -> DeleteModelResp
     return DeleteModelResponse(True, 'DeleteModel: successfully deleted model')
 
 
-class _CountedState(GetModelStateResponse):
+class _CountedState(GetModelStateResponse):  # type: ignore[misc]  # messages have none
     """A response with our own header.seq; rospy would set the number of the call."""
 
     _has_header = False

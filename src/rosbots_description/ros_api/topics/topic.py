@@ -9,7 +9,7 @@ from ..server import Server
 QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
 
 
-class _Subscribers(rospy.SubscribeListener):
+class _Subscribers(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no types
     """Reschedules a topic, on the world's thread, when its subscribers change."""
 
     def __init__(self, server: Server, topic: 'Topic') -> None:

@@ -54,7 +54,7 @@ def accept_connections(server: TCPServer) -> None:
             time.sleep(_SHORTAGE)
 
 
-def _receive(server: TCPServer, connection: socket.socket, address: tuple) -> None:
+def _receive(server: TCPServer, connection: socket.socket, address: tuple[str, int]) -> None:
     """Hand a connection to rospy if it speaks TCPROS, else close it."""
     if speaks_tcpros(connection):
         server.inbound_handler(connection, address)

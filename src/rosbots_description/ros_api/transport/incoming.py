@@ -45,7 +45,7 @@ def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
     Raises:
         TransportTerminated: the connection is closed, or the message is too long.
     """
-    count = recv_buff(connection, buffer, size)
+    count: int = recv_buff(connection, buffer, size)
     if buffer.tell() >= _LENGTH.size:
         with buffer.getbuffer() as content:
             (length,) = _LENGTH.unpack_from(content)

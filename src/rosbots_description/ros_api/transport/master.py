@@ -54,7 +54,7 @@ def node_address(node: str, asking: str) -> str | None:
         asking: global name of the caller.
     """
     try:
-        return rosgraph.Master(asking).lookupNode(node)
+        return str(rosgraph.Master(asking).lookupNode(node))
     except (*NO_MASTER, rosgraph.MasterException):
         return None
 

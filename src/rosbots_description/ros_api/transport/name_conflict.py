@@ -40,8 +40,8 @@ class RunningNode:
 
 def node_name(name: str, arguments: Sequence[str]) -> str:
     """Return the global name of a node with these ROS arguments, such as `__name:=gazebo`."""
-    return ns_join(
-        get_ros_namespace(argv=arguments), load_mappings(arguments).get('__name', name).strip('/'))
+    own = load_mappings(arguments).get('__name', name).strip('/')
+    return str(ns_join(get_ros_namespace(argv=arguments), own))
 
 
 def running_node(name: str) -> RunningNode | None:

@@ -19,7 +19,7 @@ def topic_name(namespace: str, topic: str) -> str:
     Repeated slashes collapse, and a leading one is kept; ~ stands for this node's namespace.
     """
     given = topic if topic.startswith('/') else f'{namespace}/{topic}'
-    return resolve_name(re.sub('/+', '/', given), rospy.get_name())
+    return str(resolve_name(re.sub('/+', '/', given), rospy.get_name()))
 
 
 def is_valid_name(name: str) -> bool:

@@ -44,7 +44,7 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
 
 def is_node() -> bool:
     """Tell whether this process has become a node."""
-    return rospy.core.is_initialized()
+    return bool(rospy.core.is_initialized())
 
 
 def _address_without_name() -> str | None:

@@ -102,4 +102,4 @@ def _first_service() -> str:
     A master that knows it has the other registrations, too, or is about to get them. Other topics
     may have been registered by a model spawned before the new master was noticed.
     """
-    return rospy.resolve_name('~get_loggers')  # rospy registers it before anything else
+    return str(rospy.resolve_name('~get_loggers'))  # rospy registers it before anything else

@@ -6,7 +6,7 @@ from genpy import Message
 
 def sender_of(message: Message) -> str:
     """Return the name of the node that sent a received message."""
-    return message._connection_header['callerid']
+    return str(message._connection_header['callerid'])
 
 
 def publisher_names(subscriber: rospy.Subscriber) -> set[str]:

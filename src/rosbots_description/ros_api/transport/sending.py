@@ -129,7 +129,7 @@ class BatchedConnection:
                 self._waiting.clear()
 
 
-class SubscriberWatch(rospy.SubscribeListener):
+class SubscriberWatch(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no types
     """Calls `changed()` when a subscriber connects or disconnects, on any thread."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
@@ -177,7 +177,7 @@ def next_number(publisher: rospy.Publisher) -> int:
     if topic is None:  # the node is shutting down
         return 0
     topic.seq = (topic.seq + 1) & _MAX_SEQ
-    return topic.seq
+    return int(topic.seq)
 
 
 def publish_serialized(publisher: rospy.Publisher, messages: bytes) -> None:

@@ -140,7 +140,7 @@ class IncrementalView(Protocol):
         """Publish everything at the next update."""
 
 
-class Viewers(rospy.SubscribeListener):
+class Viewers(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no types
     """Lets a view publish everything for a new subscriber."""
 
     def __init__(self, server: Server, view: IncrementalView) -> None:

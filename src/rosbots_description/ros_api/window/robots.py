@@ -37,7 +37,7 @@ class RosRobots:
         self._commands[topic].publish(command)
 
 
-class Commands(rospy.SubscribeListener):
+class Commands(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no types
     """The commands to one topic; the first wait until a robot has connected."""
 
     def __init__(self, topic: str) -> None:

@@ -13,7 +13,7 @@ update is done; here services are answered while the world is paused, too.
 import logging
 import threading
 from collections.abc import Callable, Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import rospy
 from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
@@ -50,6 +50,7 @@ STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BE
 BASE = 'controller_interface::ControllerBase'
 
 Result = TypeVar('Result')
+Handler = Callable[[Any], object]  # of requests of one service
 
 
 class ManagerServices:
@@ -65,7 +66,7 @@ class ManagerServices:
         self._namespace = plugin.namespace
         self._one_at_a_time = threading.Lock()
         self._services: list[rospy.Service] = []
-        handlers: dict[type, Callable] = {
+        handlers: dict[type, Handler] = {
             ListControllers: self._list,
             ListControllerTypes: self._types,
             LoadController: self._load,
@@ -89,7 +90,7 @@ class ManagerServices:
         for service in self._services:
             service.shutdown()
 
-    def _guarded(self, handler: Callable) -> Callable:
+    def _guarded(self, handler: Handler) -> Handler:
         def handle(request: object) -> object:
             with self._one_at_a_time:
                 try:

@@ -93,7 +93,8 @@ def offer_query(adapter: Adapter, name: str) -> Callable[[], None]:
         return QueryTrajectoryStateResponse(
             list(controller.joint_names), *map(list, point[:3]))
 
-    return rospy.Service(name, QueryTrajectoryState, answer).shutdown
+    shutdown: Callable[[], None] = rospy.Service(name, QueryTrajectoryState, answer).shutdown
+    return shutdown
 
 
 def _play_arguments(message: JointTrajectory) -> tuple[Any, ...]:
