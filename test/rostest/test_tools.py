@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The ROS tools listed in the README are found by rosrun and work with the simulator."""
+"""The ROS tools listed in doc/interface.md are found by rosrun and work with the simulator."""
 
 import re
 import subprocess
@@ -12,8 +12,8 @@ import rostest
 from simulator import DEADLINE, SimulatorTest, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
-README = (ROOT / 'README.md').read_text(encoding='utf-8')
-# Documented in the README as missing, or as part of further packages.
+TOOLS = (ROOT / 'doc' / 'interface.md').read_text(encoding='utf-8')
+# Documented there as missing, or as part of further packages.
 NOT_THERE = {'rqt_graph'}
 OPTIONAL = {'image_view': ('ros-image-view', 'libimage-view-dev'),
             'topic_tools': ('topic-tools', 'libtopic-tools-dev')}
@@ -30,8 +30,8 @@ def succeeds(*command):
 
 class ToolsTest(SimulatorTest):
 
-    def test_rosrun_finds_every_program_of_the_readme(self):
-        named = set(re.findall(r'rosrun (\w+) ([\w.]+)', README))
+    def test_rosrun_finds_every_program_that_is_listed(self):
+        named = set(re.findall(r'rosrun (\w+) ([\w.]+)', TOOLS))
         self.assertLessEqual({('tf', 'tf_echo'), ('dynamic_reconfigure', 'dynparam')}, named)
         for package, program in sorted(named):
             if package in OPTIONAL and not succeeds('dpkg', '-s', *OPTIONAL[package]):

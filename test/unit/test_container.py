@@ -67,8 +67,8 @@ def test_action_runs_commands_with_all_its_inputs():
         assert '${{' not in step['run']
 
 
-def test_example_of_the_readme_uses_the_action_and_a_container_of_debian():
-    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+def test_example_of_the_documents_uses_the_action_and_a_container_of_debian():
+    text = (ROOT / 'doc' / 'setup.md').read_text(encoding='utf-8')
     (block,) = re.findall('```yaml\n(.*?)```', text, re.S)
     (job,) = yaml.safe_load(block)['jobs'].values()
     assert job['container'] in ('debian:12', 'debian:13')
