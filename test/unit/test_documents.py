@@ -30,3 +30,23 @@ def test_every_link_has_an_existing_target(document):
 def test_the_readme_names_the_tutorial():
     text = ' '.join((ROOT / 'README.md').read_text(encoding='utf-8').split())
     assert '"ROS truck trolley, part 4: creating a robot simulation in rviz and gazebo"' in text
+
+
+def test_the_architecture_names_files_that_exist():
+    text = (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8')
+    package = ROOT / 'src' / 'rosbots_description'
+    names = set(re.findall(r'`([\w./]+\.py)`', text)) - {'__init__.py'}
+    assert len(names) > 20
+    assert not [name for name in sorted(names)
+                if not (ROOT / name).is_file() and not list(package.glob(f'**/{name}'))]
+
+
+def test_the_architecture_names_rooms_that_exist():
+    text = (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8')
+    package = ROOT / 'src' / 'rosbots_description'
+    (drawing,) = re.findall('```\n(.*?)```', text, re.S)
+    rooms = {name for line in drawing.splitlines() for name in re.findall(
+        r'([a-z_]+/(?:[a-z_]+/)*)', line.partition('  #')[0]) if not line.startswith('launch')}
+    assert len(rooms) > 25
+    assert not [name for name in sorted(rooms) if not any(
+        path.is_dir() for path in [package / name, *package.glob(f'**/{name.rstrip("/")}')])]
