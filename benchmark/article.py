@@ -28,7 +28,7 @@ def robot_urdf(**arguments: str) -> str:
     os.environ.setdefault('ROS_PACKAGE_PATH', str(ROOT))
     document = import_xacro().process_file(str(ROOT / 'urdf' / 'rosbots.xacro'), mappings=arguments)
     text = document.toprettyxml(indent=' ')
-    return text.replace('package://rosbots_description', str(ROOT))
+    return str(text.replace('package://rosbots_description', str(ROOT)))
 
 
 def robot_spec() -> ModelSpec:

@@ -32,6 +32,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from article import ROOT
+from numpy.typing import NDArray
 from windows import Steps, WindowedLoop, answer
 
 TASKS = 'rosbots_description.gym:rosbots/'
@@ -55,7 +56,7 @@ class EnvironmentLoop(WindowedLoop):
         super().__init__(__file__, kind, 'cmd_vel:=/part2_cmr/cmd_vel')
 
 
-def steer(goal: np.ndarray) -> np.ndarray:
+def steer(goal: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the actions (..., 2) that turn towards the goal and drive, for goals (..., 3)."""
     return np.stack([np.maximum(goal[..., 1], 0.0), np.clip(2.0 * goal[..., 2], -1.0, 1.0)], -1)
 

@@ -182,7 +182,7 @@ def main(arguments: Sequence[str]) -> int:
                 return code
     except InterruptedPart as interruption:
         end_all()  # the signal may have interrupted it
-        return 128 + interruption.args[0]
+        return 128 + int(interruption.args[0])
     return 0
 
 

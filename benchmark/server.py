@@ -109,7 +109,7 @@ class Server:
 
     def simulated(self) -> float:
         """Return the simulated time [s]."""
-        return self._world().sim_time
+        return float(self._world().sim_time)
 
     def unthrottle(self) -> None:
         """Step as fast as possible."""

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 
 import numpy as np
-from mesh_shapes import Surface, corner_normals
+from mesh_shapes import Array, Surface, corner_normals
+from numpy.typing import NDArray
 
 _add = ElementTree.SubElement
 
@@ -91,7 +92,7 @@ def _add_mesh(geometry: ElementTree.Element, name: str, surfaces: dict[Colour, S
         start = end
 
 
-def _add_source(mesh: ElementTree.Element, identity: str, vectors: np.ndarray) -> np.ndarray:
+def _add_source(mesh: ElementTree.Element, identity: str, vectors: Array) -> NDArray[np.intp]:
     """Add each distinct vector once; return the index of every input vector."""
     rows, index = np.unique(np.round(vectors, 6) + 0.0, axis=0, return_inverse=True)
     source = _add(mesh, 'source', id=identity)
@@ -101,7 +102,8 @@ def _add_source(mesh: ElementTree.Element, identity: str, vectors: np.ndarray) -
                               source=f'#{identity}-array', count=str(len(rows)), stride='3')
     for axis in 'XYZ':
         _add(accessor, 'param', name=axis, type='float')
-    return index.reshape(-1)
+    numbers: NDArray[np.intp] = index.reshape(-1)
+    return numbers
 
 
 def _add_scene(root: ElementTree.Element, name: str, colours: Iterable[Colour]) -> None:

@@ -54,7 +54,7 @@ def errors(lines: Iterable[str]) -> Iterator[str]:
 
 def read_expected(test: str) -> dict[str, str]:
     """Return the patterns that a .test file expects, or any may have, with their reasons."""
-    lists = yaml.safe_load(EXPECTED.read_text())
+    lists: dict[str, dict[str, str]] = yaml.safe_load(EXPECTED.read_text())
     return lists['any'] | lists.get(test, {})
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from dae_writer import Colour, collada
 from mesh_shapes import (
+    Array,
     Surface,
     along_first_axis,
     at_height,
@@ -29,6 +30,7 @@ from mesh_shapes import (
 )
 
 Profile = list[tuple[float, float]]
+Parts = list[tuple[Colour, Surface]]
 
 STEEL = Colour('steel', (0.76, 0.79, 0.82), 0.5)
 BLUE = Colour('blue', (0.16, 0.47, 0.86), 0.25)
@@ -43,7 +45,7 @@ RED = Colour('red', (0.78, 0.08, 0.07), 0.3)
 GLASS = Colour('glass', (0.12, 0.22, 0.42), 0.9)
 
 
-def base() -> list:
+def base() -> Parts:
     """Return a deck, 1.1 x 1.0 x 0.05 m, corner at the origin: a perforated panel in a frame."""
     size, height, border, corner = (1.1, 1.0), 0.05, 0.035, 0.06
     bevel, panel_recess = 0.004, 0.003
@@ -68,7 +70,7 @@ def base() -> list:
     return [(STEEL, frame), (BLUE, panel), *bosses]
 
 
-def wheel() -> list:
+def wheel() -> Parts:
     """Return a wheel about z, symmetric: radius 0.029 m, z 0.0017 to 0.0337 m."""
     radius, low, high, half = 0.0290, 0.0017, 0.0337, 0.0160
     # (radius [m], distance from the middle as a part of half the width), outside to inside
@@ -100,14 +102,14 @@ def wheel() -> list:
     return [(colour, moved(surface, middle)) for colour, surface in parts]
 
 
-def _tread(radius: float, half: float, width: float, sign: float) -> np.ndarray:
+def _tread(radius: float, half: float, width: float, sign: float) -> Array:
     """Return one tread block of a tractor tyre, slanting back from the middle to the side `sign`.
 
     `width` is the angle it covers; its front inner corner lies on the first axis at `radius`.
     """
     root, shoulder, slant = 0.0262, 0.0279, 0.7 * width
 
-    def section(crown: float, start: float, height: float) -> np.ndarray:
+    def section(crown: float, start: float, height: float) -> Array:
         corners = ((root, start), (crown, start), (crown, start + width), (root, start + width))
         return np.array([(r * math.cos(turn), r * math.sin(turn), height) for r, turn in corners])
 
@@ -115,7 +117,7 @@ def _tread(radius: float, half: float, width: float, sign: float) -> np.ndarray:
     return loft(ends[::int(sign)])
 
 
-def rasp() -> list:
+def rasp() -> Parts:
     """Return a single-board computer: x 6.8 to 10.2, y 4.4 to 6.7, z from 0.
 
     Its parts are listed in millimetres from the board's corner; `top` is its upper side.
@@ -154,12 +156,12 @@ def rasp() -> list:
     return [(colour, moved(surface * per_mm, origin)) for colour, surface in parts]
 
 
-def battery() -> list:
+def battery() -> Parts:
     """Return a battery pack, long in x and up in y, to be scaled by 13, 6, 6 in the URDF."""
     low, high = (-0.2846, 0.0019, -0.0340), (-0.2136, 0.0259, 0.0)
     cap_length, terminal = 0.0050, 0.0012
 
-    def section(grow: float) -> np.ndarray:
+    def section(grow: float) -> Array:
         return rectangle((low[1] - grow, low[2] - grow), (high[1] + grow, high[2] + grow),
                          0.0060 + grow, 4)
 
@@ -181,7 +183,7 @@ def battery() -> list:
     return parts
 
 
-def camera() -> list:
+def camera() -> Parts:
     """Return a camera that looks along x: 0.0197 deep, 0.0709 wide along y, 0.0472 high along z."""
     depth, width, height, body = 0.0197, 0.0709, 0.0472, 0.0135
     outline = rectangle((0.0, 0.0), (width, height), 0.009, 4)

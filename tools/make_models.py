@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from dae_writer import Colour, collada
 from mesh_shapes import (
+    Array,
     Surface,
     along_first_axis,
     at_height,
@@ -122,13 +123,14 @@ def cone(bands: Sequence[tuple[float, float, Rgb]], top: tuple[float, float]
             for (_, _, colour), low, high in zip(bands, rims, rims[1:], strict=False)]
 
 
-def rotation(turn: Point) -> np.ndarray:
+def rotation(turn: Point) -> Array:
     """Return the matrix of roll, pitch and yaw."""
     (a, b, c), (d, e, f) = np.cos(turn), np.sin(turn)
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, a, -d], [0.0, d, a]])
     about_y = np.array([[b, 0.0, e], [0.0, 1.0, 0.0], [-e, 0.0, b]])
     about_z = np.array([[c, -f, 0.0], [f, c, 0.0], [0.0, 0.0, 1.0]])
-    return about_z @ about_y @ about_x
+    matrix: Array = about_z @ about_y @ about_x
+    return matrix
 
 
 def barrier(length: float, profile: Sequence[tuple[float, float]]) -> Surface:

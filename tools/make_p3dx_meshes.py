@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from dae_writer import Colour, collada
 from mesh_shapes import (
+    Array,
     Surface,
     along_first_axis,
     at_height,
@@ -44,7 +45,7 @@ def chassis() -> Surface:
     return surface[:, :, [1, 2, 0]]
 
 
-def bow(width: float, depth: float, sign: float) -> np.ndarray:
+def bow(width: float, depth: float, sign: float) -> Array:
     """Return the outline of half an ellipse that bulges towards x times `sign`, centred in x."""
     angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 17)
     x = sign * depth * (np.cos(angles) - 0.5)

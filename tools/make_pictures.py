@@ -22,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 from chromium import chromium, picture
+from numpy.typing import NDArray
 from PIL import Image
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
@@ -93,7 +94,7 @@ def display(folder: Path) -> Iterator[tuple[str, Path]]:
         server.wait()
 
 
-def screen(file: Path) -> np.ndarray:
+def screen(file: Path) -> NDArray[np.uint8]:
     """Return the pixels of an XWD file, rows by columns by (red, green, blue)."""
     content = file.read_bytes()
     header = struct.unpack_from('>25I', content)
@@ -103,7 +104,7 @@ def screen(file: Path) -> np.ndarray:
     return rows[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1]
 
 
-def window(pixels: np.ndarray) -> np.ndarray:
+def window(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return the part of the screen that is not black."""
     rows, columns = (np.flatnonzero(pixels.any(axis=axes)) for axes in ((1, 2), (0, 2)))
     if not len(rows):
@@ -111,7 +112,7 @@ def window(pixels: np.ndarray) -> np.ndarray:
     return pixels[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
 
 
-def steady(file: Path) -> np.ndarray:
+def steady(file: Path) -> NDArray[np.uint8]:
     """Return the window when it is complete and steady."""
     deadline, before, alike = time.monotonic() + START, None, 1
     while time.monotonic() < deadline:
@@ -127,7 +128,7 @@ def steady(file: Path) -> np.ndarray:
     raise PictureError(f'no steady window within {START:g} s')
 
 
-def picture_of(steps: Steps, folder: Path) -> np.ndarray:
+def picture_of(steps: Steps, folder: Path) -> NDArray[np.uint8]:
     """Open windows by launch files; return the pixels."""
     with display(folder) as (name, pixels), started(steps, folder, DISPLAY=name):
         return steady(pixels)
@@ -146,7 +147,8 @@ def picture_in_browser(steps: Steps, query: str, folder: Path) -> Image.Image:
 
 def address_in(folder: Path) -> str:
     """Return the address that the first launch file has printed."""
-    return re.findall(r'the world is at (\S+)', (folder / '0.log').read_text(errors='replace'))[-1]
+    printed = (folder / '0.log').read_text(errors='replace')
+    return str(re.findall(r'the world is at (\S+)', printed)[-1])
 
 
 @contextmanager

@@ -11,20 +11,24 @@ from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-Surface = np.ndarray
+Array = NDArray[np.float64]
+Surface = Array
 
 CREASE = math.radians(38.0)  # faces at a greater angle keep a sharp edge
 
 
-def circle(radius: float, points: int, centre: Sequence[float] = (0.0, 0.0)) -> np.ndarray:
+def circle(radius: float, points: int, centre: Sequence[float] = (0.0, 0.0)) -> Array:
     """Return the outline of a regular polygon whose first corner lies on the first axis."""
     angles = 2.0 * math.pi * np.arange(points) / points
-    return np.column_stack([np.cos(angles), np.sin(angles)]) * radius + np.asarray(centre)
+    outline: Array = np.column_stack(
+        [np.cos(angles), np.sin(angles)]) * radius + np.asarray(centre)
+    return outline
 
 
 def rectangle(low: Sequence[float], high: Sequence[float], corner: float = 0.0,
-              steps: int = 3) -> np.ndarray:
+              steps: int = 3) -> Array:
     """Return the outline of a rectangle, its corners rounded with radius `corner`."""
     (left, bottom), (right, top) = low, high
     if corner == 0.0:
@@ -38,46 +42,47 @@ def rectangle(low: Sequence[float], high: Sequence[float], corner: float = 0.0,
     return np.array(points)
 
 
-def inset(outline: np.ndarray, distance: float) -> np.ndarray:
+def inset(outline: Array, distance: float) -> Array:
     """Return a convex outline moved inwards by `distance`, edges staying parallel to themselves."""
     edges = np.roll(outline, -1, axis=0) - outline
     inward = np.column_stack([-edges[:, 1], edges[:, 0]])
     inward /= np.linalg.norm(inward, axis=1, keepdims=True)
     before = np.roll(inward, 1, axis=0)
     cosine = np.sum(before * inward, axis=1, keepdims=True)
-    return outline + distance * (before + inward) / (1.0 + cosine)
+    moved_by: Array = distance * (before + inward) / (1.0 + cosine)
+    return outline + moved_by
 
 
-def at_height(outline: np.ndarray, height: float) -> np.ndarray:
+def at_height(outline: Array, height: float) -> Array:
     """Return the loop that lies above an outline at `height` along the third axis."""
     return np.column_stack([outline, np.full(len(outline), height)])
 
 
-def bridge(lower: np.ndarray, upper: np.ndarray) -> Surface:
+def bridge(lower: Array, upper: Array) -> Surface:
     """Return the band between two loops of equally many points; `upper` by the right-hand rule."""
     next_lower, next_upper = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
     return np.concatenate([np.stack([lower, next_lower, next_upper], axis=1),
                            np.stack([lower, next_upper, upper], axis=1)])
 
 
-def cap(loop: np.ndarray) -> Surface:
+def cap(loop: Array) -> Surface:
     """Return the fan that closes a flat convex loop."""
     return np.stack([np.stack([loop[0], loop[i], loop[i + 1]]) for i in range(1, len(loop) - 1)])
 
 
-def loft(loops: Sequence[np.ndarray]) -> Surface:
+def loft(loops: Sequence[Array]) -> Surface:
     """Return the solid through loops of equally many points, first to last, closed at both ends."""
     bands = [bridge(lower, upper) for lower, upper in itertools.pairwise(loops)]
     return np.concatenate([cap(loops[0][::-1]), *bands, cap(loops[-1])])
 
 
-def ring(loops: Sequence[np.ndarray]) -> Surface:
+def ring(loops: Sequence[Array]) -> Surface:
     """Return the ring-shaped solid whose last loop joins its first, outer loops upwards first."""
     return np.concatenate([bridge(lower, upper)
                            for lower, upper in zip(loops, [*loops[1:], loops[0]], strict=True)])
 
 
-def prism(outline: np.ndarray, bottom: float, top: float, bevel: float = 0.0) -> Surface:
+def prism(outline: Array, bottom: float, top: float, bevel: float = 0.0) -> Surface:
     """Return an outline extruded along the third axis, both rims broken by a 45 degree bevel."""
     if bevel == 0.0:
         return loft([at_height(outline, bottom), at_height(outline, top)])
@@ -115,7 +120,7 @@ def perforated(columns: Sequence[float], rows: Sequence[float], bottom: float, t
     return np.concatenate(faces)
 
 
-def _cell_with_hole(corners: np.ndarray, radius: float, bottom: float, top: float) -> Surface:
+def _cell_with_hole(corners: Array, radius: float, bottom: float, top: float) -> Surface:
     """Return both faces of a rectangular cell round an octagonal hole, and the hole's wall."""
     # The octagon starts at its lower left corner: each cell corner then faces two of its points.
     octagon = np.roll(circle(radius, 8, corners.mean(axis=0)), 3, axis=0)
@@ -132,21 +137,25 @@ def _cell_with_hole(corners: np.ndarray, radius: float, bottom: float, top: floa
 
 def along_first_axis(surface: Surface) -> Surface:
     """Rotate a surface: axis 3 becomes axis 1, axis 1 becomes 2, and 2 becomes 3."""
-    return surface[:, :, [2, 0, 1]]
+    rotated: Surface = surface[:, :, [2, 0, 1]]
+    return rotated
 
 
 def moved(surface: Surface, offset: Sequence[float]) -> Surface:
     """Return a surface shifted by `offset`."""
-    return surface + np.asarray(offset, float)
+    shifted: Surface = surface + np.asarray(offset, float)
+    return shifted
 
 
 def turned(surface: Surface, angle: float) -> Surface:
     """Return a surface rotated about the third axis by `angle`, counter-clockwise."""
     cosine, sine = math.cos(angle), math.sin(angle)
-    return surface @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    rotated: Surface = surface @ np.array(
+        [[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    return rotated
 
 
-def corner_normals(surface: Surface) -> np.ndarray:
+def corner_normals(surface: Surface) -> Array:
     """Return a unit normal for each corner, shaped as the surface: smooth, but sharp at creases.
 
     A corner's normal is the mean of the faces that share its point, weighted by area, leaving out
