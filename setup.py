@@ -1,5 +1,6 @@
 """Install the Python packages: by catkin, here and in the companion that links here, or by pip."""
 
+import re
 from glob import glob
 from pathlib import Path
 from xml.etree import ElementTree
@@ -15,11 +16,15 @@ def told(tag: str) -> str:
 
 
 def required(name: str) -> list[str]:
-    """Return the requirements of a set, without those of the sets that it includes."""
+    """Return the requirements of a set, without those of the sets that it includes.
+
+    The files have the versions that are tested; pip may take later ones that only mend these.
+    """
     folder = Path(__file__).resolve().parent / 'requirements'
     lines = (folder / f'{name}.pip').read_text(encoding='utf-8').splitlines()
     entries = (line.partition('#')[0].strip() for line in lines)
-    return [entry for entry in entries if entry and not entry.startswith('-r ')]
+    return [re.sub(r'^([\w.-]+)==', r'\1~=', entry)
+            for entry in entries if entry and not entry.startswith('-r ')]
 
 
 setup(
