@@ -11,12 +11,11 @@ from .engine import (
     JointState,
     Motion,
     PhysicsEngine,
-    RayHits,
     Snapshot,
     Wrench,
 )
 
 __all__ = [
     'CollisionName', 'CompiledModel', 'Contact', 'CrashSandbox', 'EngineBody', 'EngineFactory',
-    'JointState', 'Motion', 'PhysicsEngine', 'RayHits', 'Snapshot', 'Wrench', 'make_engine',
+    'JointState', 'Motion', 'PhysicsEngine', 'Snapshot', 'Wrench', 'make_engine',
 ]

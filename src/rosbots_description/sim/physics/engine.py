@@ -9,11 +9,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from ..core import Pose, Twist, Vector
-from ..core.arrays import FloatArray
 from ..description import ModelSpec, PhysicsSettings
 from .compiled_model import CompiledModel
-
-Points = FloatArray | Sequence[Vector]  # (n, 3) [m]
 
 
 class JointState(NamedTuple):
@@ -87,18 +84,6 @@ class Contact(NamedTuple):
     normal: Vector
     depth: float
     force: Vector
-
-
-class RayHits(NamedTuple):
-    """The first hits of rays.
-
-    Attributes:
-        distances: (n,) from the start of each ray [m]; inf if it hit nothing (REP-117).
-        collisions: what each ray hit, None for nothing; empty unless requested.
-    """
-
-    distances: FloatArray
-    collisions: Sequence[CollisionName | None]
 
 
 class Wrench(NamedTuple):
@@ -188,6 +173,8 @@ class PhysicsEngine(Protocol):
     def settle_poses(self, body: EngineBody) -> Mapping[str, Pose]:
         """Move a model by rounding errors to poses that `match_poses` restores to the last bit.
 
+        World files need both.
+
         Returns:
             the poses of the principal axes of inertia of root links, which it needs to that end.
         """
@@ -244,7 +231,10 @@ class PhysicsEngine(Protocol):
         """Multiply the friction of each contact of a link by a factor."""
 
     def can_slip(self, body: EngineBody, link: str, axis: Vector) -> bool:
-        """Tell whether a link can have a slip compliance along a unit vector of its frame."""
+        """Tell whether a link can have a slip compliance along a unit vector of its frame.
+
+        The wheel slip plugin asks it, to leave out a wheel with an error.
+        """
 
     def set_slip_compliance(
         self, body: EngineBody, link: str, axis: Vector, compliances: tuple[float, float]
@@ -272,16 +262,6 @@ class PhysicsEngine(Protocol):
 
     def touching(self, body: EngineBody) -> Collection[EngineBody]:
         """Return the models that touched a model in the last step; not itself."""
-
-    def cast_rays(
-        self, starts: Points, ends: Points, named: bool = False
-    ) -> RayHits:
-        """Return the first hits of straight rays, on all collisions including the caster's own.
-
-        Args:
-            starts, ends: (n, 3) [m].
-            named: whether to return the collisions, too, which takes time.
-        """
 
     def measure_reaction(self, body: EngineBody, joint: str, wanted: bool = True) -> None:
         """Start or stop measuring a joint's reaction wrench, from the next step on."""

@@ -1,27 +1,25 @@
-"""Contacts and ray casts in one PyBullet world, with the collision names of the ModelSpec."""
+"""Contacts in one PyBullet world, with the collision names of the ModelSpec."""
 
 import itertools
 import math
 from collections.abc import Callable, Iterable
-from typing import Any
 
 import numpy as np
 
-from ...core import Pose, SimError, Vector, conjugate, rotate, subtract
+from ...core import Pose, Vector, conjugate, rotate, subtract
 from ...core.arrays import FloatArray
 from ...description import Box, Collision, Cylinder, Mesh, Plane, Sphere
 from ...meshes import read_stl
-from ..engine import CollisionName, Contact, Points, RayHits
+from ..engine import CollisionName, Contact
 from .body import Body, Place
 from .client import pybullet
 from .generated_urdf import MeshFile
 
-_MAX_RAYS = 8192  # in one call; PyBullet accepts 16384, but drops the last one
 _MARGIN = 0.02  # by which a contact point may be beside the surface of its shape [m]
 
 
 class ContactQueries:
-    """Reports contacts and casts rays in a PyBullet world."""
+    """Reports the contacts in a PyBullet world."""
 
     def __init__(
         self, client: int, link_pose: Callable[[Body, str], Pose], mesh_file: MeshFile
@@ -98,26 +96,6 @@ class ContactQueries:
     def _is_of(self, place: Place, body: Body | None, link: str | None) -> bool:
         owner, name = self._owners[place]
         return (body is None or owner is body) and link in (None, name)
-
-    def cast_rays(self, starts: Points, ends: Points, named: bool) -> RayHits:
-        """Return the first hits of rays; see `PhysicsEngine.cast_rays`."""
-        starts, ends = (np.asarray(points, dtype=float) for points in (starts, ends))
-        if starts.ndim != 2 or starts.shape[1] != 3 or starts.shape != ends.shape:
-            raise SimError(f'rays take starts and ends of one shape (n, 3), not {starts.shape} and '
-                           f'{ends.shape}')
-        if not (np.isfinite(starts).all() and np.isfinite(ends).all()):
-            raise SimError('rays take finite starts and ends')
-        hits: list[tuple[Any, ...]] = []
-        for first in range(0, len(starts), _MAX_RAYS):
-            batch = slice(first, first + _MAX_RAYS)
-            hits += pybullet.rayTestBatch(starts[batch].tolist(), ends[batch].tolist(),
-                                          physicsClientId=self._client)
-        numbers = np.array([hit[0] for hit in hits], dtype=int)
-        shares = np.array([hit[2] for hit in hits], dtype=float)
-        lengths = np.sqrt(((ends - starts) ** 2).sum(axis=1))
-        names = [self._name(Place(*hit[:2]), hit[3]) if hit[0] >= 0 else None
-                 for hit in hits] if named else ()
-        return RayHits(np.where(numbers >= 0, shares * lengths, math.inf), names)
 
     def _name(self, place: Place, position: Vector) -> CollisionName:
         """Return the collision of a part at a point of its surface, in the world."""

@@ -11,7 +11,7 @@ from typing import Any, cast
 from ...core import Pose, Vector
 from ...description import ModelSpec, PhysicsSettings
 from ...meshes import EngineFiles
-from ..engine import Contact, PhysicsEngine, Points, RayHits, Wrench
+from ..engine import Contact, PhysicsEngine, Wrench
 from .body import Body
 from .body_maker import BodyMaker
 from .body_states import BodyStates
@@ -281,10 +281,6 @@ class Engine(BodyStates):
                    for contact in self.contacts(body, names[link])]
         frame = self.link_pose(body, names[index])
         return with_stop(self._client, number, beyond, frame, axis, measured, touches)
-
-    def cast_rays(self, starts: Points, ends: Points, named: bool = False) -> RayHits:
-        """Return the first hits of rays."""
-        return self._queries.cast_rays(starts, ends, named)
 
     def snapshot(self) -> BulletSnapshot:
         """Return a snapshot of the whole state, between two steps."""

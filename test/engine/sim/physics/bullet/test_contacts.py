@@ -1,4 +1,4 @@
-"""Contacts and ray hits by the names of the description, and joint reactions."""
+"""Contacts by the names of the description, and joint reactions."""
 
 import math
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
 
-from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, Twist
 
 WEIGHT = 9.8
@@ -120,33 +119,6 @@ def test_touching_links_of_a_model_give_one_contact():
         assert {contact.one.link, contact.other.link} == {'a', 'b'}
         assert mirrored.one == contact.other
         assert mirrored.force == pytest.approx([-x for x in contact.force])
-
-
-def test_rays_give_distance_and_name_or_no_hit():
-    with empty_world() as world:
-        thing = world.spawn(urdf_spec(TWO), 'thing', Pose((0.0, 0.0, 1.1)))
-        starts = [(0.5, 0.0, 5.0), (-0.5, 0.3, 5.0), (-0.5, -0.3, 5.0), (3.0, 0.0, 5.0),
-                  (3.0, 0.0, 5.0)]
-        ends = [(x, y, -5.0) for x, y, _ in starts[:-1]] + [(9.0, 0.0, 5.0)]
-        distances, met = world.engine.cast_rays(starts, np.array(ends), named=True)
-        assert distances[:4] == pytest.approx([3.8, 3.8, 3.8, 5.0], abs=2e-3)
-        assert distances[4] == math.inf
-        assert [hit.collision for hit in met[:3]] == [
-            name for key in ('ball', 'can', 'crate')
-            for name in thing.links['body'].collisions if key in name]
-        assert met[3].body is world.models['ground_plane'].body
-        assert met[4] is None
-        many = world.engine.cast_rays(np.tile(starts[0], (20000, 1)), np.tile(ends[0], (20000, 1)))
-        assert (many.distances == distances[0]).all()
-        assert len(many.collisions) == 0
-        assert len(world.engine.cast_rays(np.empty((0, 3)), np.empty((0, 3))).distances) == 0
-
-
-@pytest.mark.parametrize(('starts', 'message'), [
-    ([0.0, 0.0, 1.0], 'shape'), ([(0.0, 0.0)], 'shape'), ([(0.0, 0.0, math.nan)], 'finite')])
-def test_invalid_rays_are_rejected_with_a_message(starts, message):
-    with empty_world() as world, pytest.raises(SimError, match=message):
-        world.engine.cast_rays(starts, starts)
 
 
 @pytest.mark.parametrize('lift', [0.0, 2.0])
