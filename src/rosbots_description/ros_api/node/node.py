@@ -23,7 +23,7 @@ import rospy
 
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
-from ...sim.physics import CrashSandbox, make_engine
+from ...sim.physics import CrashSandbox, EngineFactory, make_engine
 from ...sim.runtime import World, populate
 from .. import adapters, services  # noqa: F401  both register what they hold
 from ..adapters import Adapters
@@ -79,12 +79,16 @@ class Options:
     seed: int = 0  # of the noise of sensors
 
 
-def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
+def run(
+    options: Options, ros_arguments: Sequence[str] = (),
+    make_engine: EngineFactory = make_engine,
+) -> int:
     """Run the node until it is stopped; return the exit code.
 
     Args:
         options: what to simulate and how.
         ros_arguments: ROS name remappings and parameters, e.g. `__name:=gazebo`.
+        make_engine: makes the physics engine.
 
     Raises:
         SimError: the world cannot be read, the address of the master is invalid, or a simulator is
@@ -97,7 +101,8 @@ def run(options: Options, ros_arguments: Sequence[str] = ()) -> int:
         spec = read_world(options.world)
     try:
         # The sandbox forks this process before it has threads and connections.
-        with closing(World()) as world, CrashSandbox(world.engine, make_engine) as sandbox:
+        with closing(World(make_engine=make_engine)) as world, \
+                CrashSandbox(world.engine, make_engine) as sandbox:
             _wait_for_master()
             _take_name(node_name(NAME, ros_arguments), options.replace)
             guard_handshakes()

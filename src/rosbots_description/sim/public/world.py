@@ -20,7 +20,7 @@ from ..core import (
 from ..description import ModelSpec, PhysicsSettings
 from ..formats import open_world, sdf_of_world
 from ..mapping import OccupancyGrid, occupancy_grid, write_map
-from ..physics import CompiledModel
+from ..physics import CompiledModel, EngineFactory, make_engine
 from ..resources import find_world, path_directories, write_world
 from ..runtime import Joint, Link, Model, add_empty_world, describe, populate
 from .descriptions import Description, Descriptions, Paths
@@ -42,6 +42,7 @@ class World(runtime.World):
         *,
         package_path: Paths = (),
         model_path: Paths = (),
+        make_engine: EngineFactory = make_engine,
     ) -> None:
         """Open an empty world, without even a ground.
 
@@ -50,10 +51,11 @@ class World(runtime.World):
             package_path: folders to search for package:// addresses, before ROS_PACKAGE_PATH and
                 after the package that a description's own file lies in.
             model_path: folders to search for model:// addresses, before GAZEBO_MODEL_PATH.
+            make_engine: makes the physics engine.
         """
         self._closed = False
         self._descriptions = Descriptions(package_path, model_path)
-        super().__init__(physics)
+        super().__init__(physics, make_engine)
 
     @classmethod
     def empty(
@@ -62,12 +64,14 @@ class World(runtime.World):
         *,
         package_path: Paths = (),
         model_path: Paths = (),
+        make_engine: EngineFactory = make_engine,
     ) -> Self:
         """Return Gazebo's empty world: a ground plane at z = 0, and the sun.
 
         The arguments are those of `World`.
         """
-        world = cls(physics, package_path=package_path, model_path=model_path)
+        world = cls(physics, package_path=package_path, model_path=model_path,
+                    make_engine=make_engine)
         add_empty_world(world)
         return world
 
@@ -79,6 +83,7 @@ class World(runtime.World):
         package_path: Paths = (),
         model_path: Paths = (),
         seed: int = 0,
+        make_engine: EngineFactory = make_engine,
     ) -> Self:
         """Return the world that an SDF file describes.
 
@@ -90,13 +95,14 @@ class World(runtime.World):
             package_path: see `World`.
             model_path: see `World`.
             seed: of the noise of sensors.
+            make_engine: see `World`.
         Raises:
             NotFoundError: there is no such file.
             ModelError: it is not SDF with a <world>, or a number of the world is not valid.
         """
         places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_LIBRARY)]
         file = find_world(os.fspath(path), places)
-        world = cls(package_path=package_path, model_path=model_path)
+        world = cls(package_path=package_path, model_path=model_path, make_engine=make_engine)
         world.seed = seed
         try:
             populate(world, open_world(
