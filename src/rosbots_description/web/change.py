@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import viser
 
@@ -44,7 +44,7 @@ class ChangePanel(Panel):
     ) -> None:
         self._inspection, self._history, self._complain = inspection, history, complain
         self._models, self._selection = models, selection
-        self._properties: dict[str, object] = {}  # by fields, as last filled in
+        self._properties: dict[str, object] = {}  # by fields, as last filled in or set
         self._folder = gui.add_folder('Change', expand_by_default=False, visible=False)
         with self._folder:
             self._position = gui.add_vector3('Position [m]', NONE, step=STEP)
@@ -116,6 +116,10 @@ class ChangePanel(Panel):
             self._properties[field.label] = value
             fill(field, value)
 
+    def _note(self, *fields: viser.GuiInputHandle[Any]) -> None:
+        """Note what is being set: when the simulator shows it, it is nothing to fill in."""
+        self._properties |= {field.label: field.value for field in fields}
+
     def _set_pose(self, model: ShownModel, link: str | None) -> None:
         pose = Pose(self._position.value, from_rpy(*self._angles.value))
         self._set_state(model.name, link, 'pose', pose, None)
@@ -135,6 +139,7 @@ class ChangePanel(Panel):
     def _set_mass(self, model: ShownModel, link: str | None) -> None:
         body = _only_link(model, link)
         if body is not None and body.inertial is not None:
+            self._note(self._mass, self._gravity)
             self._inspection.set_mass(
                 model.name, body.name, self._mass.value, self._gravity.value)
             self._history.add(
@@ -151,6 +156,7 @@ class ChangePanel(Panel):
                 self._inspection.set_friction(*one)
 
         name = scoped_name(model.name, link)
+        self._note(self._mu, self._mu2)
         self._inspection.set_friction(name, self._mu.value, self._mu2.value)
         self._history.add(f"friction of '{name}'", undo)
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from support.browser import Browser
 from support.window import clock
 
 from rosbots_description.sim.core import Pose, SimError, Twist, from_rpy
@@ -97,15 +98,37 @@ def _gone(*_):
     raise SimError('it does not answer')
 
 
-def test_what_is_typed_stays_while_other_properties_change(world, simulator, page):
+def type_in(browser, site, label, value):
+    """Type into a field; return when the page knows it."""
+    browser.choose(label, value)
+    with Browser(site.address) as another:
+        another.wait_until(lambda: another.control(label) and another.value(label) == value)
+
+
+def test_what_is_typed_stays_while_other_properties_change(world, site, simulator, page):
     page.selection.choose('cart', 'base')
     world.wait_until(lambda: world.value('mu') == 0.5)
-    world.choose('mu', 0.75)
+    type_in(world, site, 'mu', 0.75)
     heavier = replace(BASE, inertial=Inertial(8.0))
     simulator.change(SceneChange(models=(replace(CART, links=(heavier, WHEEL)),)))
     world.wait_until(lambda: world.value('Mass [kg]') == 8.0)
     world.click('Set friction')
     world.wait_until(lambda: ('set_friction', 'cart::base', 0.75, 0.25) in simulator.told)
+
+
+def test_what_was_set_is_not_filled_in_again_when_the_simulator_shows_it(
+        world, site, simulator, page):
+    page.selection.choose('cart', 'base')
+    world.wait_until(lambda: world.value('Mass [kg]') == 4.0)
+    world.choose('Mass [kg]', 8.0)
+    world.click('Set mass')
+    world.wait_until(lambda: ('set_mass', 'cart', 'base', 8.0, True) in simulator.told)
+    type_in(world, site, 'Mass [kg]', 3.0)
+    heavier = replace(BASE, inertial=Inertial(8.0), gravity=False)
+    simulator.change(SceneChange(models=(replace(CART, links=(heavier, WHEEL)),)))
+    world.wait_until(lambda: world.value('Gravity') is False)
+    world.click('Set mass')
+    world.wait_until(lambda: ('set_mass', 'cart', 'base', 3.0, False) in simulator.told)
 
 
 def test_pose_and_velocity_are_set_one_without_the_other_and_undone(world, simulator, page):
