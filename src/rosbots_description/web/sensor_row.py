@@ -21,11 +21,12 @@ class SensorRow:
     """Shows a sensor while its box is checked; not thread-safe."""
 
     def __init__(self, site: viser.ViserServer, topic: str, kind: str, checked: bool,
-                 choose: Callable[[bool], None]) -> None:
+                 choose: Callable[[], None]) -> None:
         """Add the box; `choose` is called when somebody changes it."""
         self._site, self._topic = site, topic
-        self._box = site.gui.add_checkbox(plain(topic), checked, hint=plain(kind))
-        self._box.on_update(lambda _: choose(self._box.value))
+        with site.atomic():  # nobody clicks before it is listened to
+            self._box = site.gui.add_checkbox(plain(topic), checked, hint=plain(kind))
+            self._box.on_update(lambda _: choose())
         self._folder = site.gui.add_folder(plain(kind), visible=False)
         with self._folder:
             self._words = Words(site.gui)
@@ -34,6 +35,15 @@ class SensorRow:
         self._points: viser.PointCloudHandle | None = None
         self._lines: viser.LineSegmentsHandle | None = None
         self._next = 0.0  # when more may be sent [s, monotonic]
+
+    @property
+    def is_checked(self) -> bool:
+        """Tell whether the box is checked."""
+        return bool(self._box.value)
+
+    def rank(self, number: int) -> None:
+        """Be the row of that number, from 0."""
+        self._box.order, self._folder.order = 2.0 * number, 2.0 * number + 1.0
 
     @property
     def is_ready(self) -> bool:

@@ -73,25 +73,30 @@ class SensorPanel(ReadingPanel):
             self._read_chosen()
 
     def _offer(self, topics: Mapping[str, str]) -> None:
-        for topic in [one for one in self._open if topics.get(one) != self._topics[one]]:
-            self._end(topic)
-            self._open.remove(topic)
-        for row in self._rows.values():
-            row.remove()
+        """Offer topics; boxes that remain are kept: a click on one made anew would be lost."""
+        for topic in [one for one in self._rows if topics.get(one) != self._topics[one]]:
+            if topic in self._open:
+                self._end(topic)
+                self._open.remove(topic)
+            self._rows.pop(topic).remove()
         self._topics = topics
         self._note.visible = not topics or len(self._offered) > MOST
         self._note.show(f'The first {MOST} of {len(self._offered)} sensors are listed.'
                         if topics else NONE)
         with self._folder:
-            self._rows = {
-                topic: SensorRow(self._site, topic, kind, topic in self._checked,
-                                 partial(self._choose, topic))
-                for topic, kind in topics.items()}
+            for number, (topic, kind) in enumerate(topics.items()):
+                if topic not in self._rows:
+                    self._rows[topic] = SensorRow(self._site, topic, kind, topic in self._checked,
+                                                  partial(self._choose, topic))
+                self._rows[topic].rank(number)
 
-    def _choose(self, topic: str, checked: bool) -> None:
+    def _choose(self, topic: str) -> None:
         with self._lock:
-            self._checked = self._checked | {topic} if checked else self._checked - {topic}
-            self._read_chosen()
+            row = self._rows.get(topic)
+            if row is not None:  # it has not gone meanwhile
+                self._checked = (self._checked | {topic} if row.is_checked
+                                 else self._checked - {topic})
+                self._read_chosen()
 
     def _chosen(self) -> set[str]:
         return self._checked & self._topics.keys()

@@ -94,6 +94,24 @@ def test_a_sensor_that_returns_is_read_again(browser, sensors, panel):
     browser.wait_until(lambda: browser.control(EYE) and NONE not in browser.texts())
 
 
+def test_boxes_stay_in_order_when_other_sensors_come_and_go(browser, sensors, panel):
+    check(browser, sensors, SCAN)
+    box = browser.control(SCAN)
+    sensors.readings[SCAN] = ShownReading(words='one ray')
+    browser.wait_until(lambda: 'one ray' in browser.texts())
+    sensors.topics = {'/imu': 'sensor_msgs/Imu', SCAN: sensors.topics[SCAN]}
+    panel.refresh()
+    browser.wait_until(lambda: browser.control('/imu') and not browser.control(EYE))
+
+    def place(topic):
+        return browser.controls[browser.control(topic)][1]['order']
+
+    browser.wait_until(lambda: place('/imu') < place(SCAN))
+    assert browser.control(SCAN) == box
+    assert 'one ray' in browser.texts()
+    assert sensors.open_topics == {SCAN}
+
+
 def test_shapes_are_where_the_robot_is(browser, sensors, models):
     models.move(ShownMotion(0.0, 0.0, 0, False, {1: Pose((5.0, 0.0, 0.0))}))
     check(browser, sensors, SCAN)
