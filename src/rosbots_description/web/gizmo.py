@@ -59,9 +59,9 @@ class Drag:
 class Gizmo(Panel):
     """One for all browsers. The browser that has grabbed it last moves the model."""
 
-    def __init__(self, scene: viser.SceneApi, models: Models, selection: Selection, hands: Hands,
+    def __init__(self, site: viser.ViserServer, models: Models, selection: Selection, hands: Hands,
                  history: History, complain: Callable[[str], None]) -> None:
-        self._scene, self._models, self._selection = scene, models, selection
+        self._site, self._models, self._selection = site, models, selection
         self._hands, self._history, self._complain = hands, history, complain
         self._lock = threading.Lock()  # of the drag
         self._drag: Drag | None = None
@@ -95,10 +95,11 @@ class Gizmo(Panel):
             self._handle = None
         if self._model is not None:
             pose = self._models.pose(self._model)
-            self._handle = self._scene.add_transform_controls(
-                NODE, 1.0, fixed=False, depth_test=False, opacity=0.8,
-                position=pose.position, wxyz=wxyz(pose))
-            self._handle.on_update(self._dragged)
+            with self._site.atomic():  # nobody grabs it before it is listened to
+                self._handle = self._site.scene.add_transform_controls(
+                    NODE, 1.0, fixed=False, depth_test=False, opacity=0.8,
+                    position=pose.position, wxyz=wxyz(pose))
+                self._handle.on_update(self._dragged)
 
     async def _dragged(self, event: viser.TransformControlsEvent) -> None:
         """Take in what a browser does; on viser's own thread, so it must not wait."""

@@ -48,13 +48,15 @@ class Joints(Protocol):
 class JointPanel(Panel):
     """A slider for each joint of the model that is chosen."""
 
-    def __init__(self, gui: viser.GuiApi, joints: Joints, models: Models,
+    def __init__(self, site: viser.ViserServer, joints: Joints, models: Models,
                  complain: Callable[[str], None]) -> None:
-        self._gui, self._joints, self._models, self._complain = gui, joints, models, complain
+        self._site, self._joints, self._models, self._complain = site, joints, models, complain
         self._lock = threading.RLock()
         self._topics: Sequence[str] = ()
-        self._shown: object = None  # what the sliders are of
+        # Of the sliders: the model, its joints or the topics, what they set, and the range.
+        self._shown: tuple[str, Sequence[str], str, float] = (NOTHING, (), POSITION, 0.0)
         self._sliders: list[viser.GuiSliderHandle[float]] = []
+        gui = site.gui
         self._folder = gui.add_folder('Joints', visible=False)
         with self._folder:
             self._of = Choice(gui, 'Of', [NOTHING], hint='a model, or topics of controllers')
@@ -82,8 +84,8 @@ class JointPanel(Panel):
                 self._folder.visible = len(options) > 1
             self._show()
 
-    def _specs(self) -> Sequence[JointSpec]:
-        model = self._models.all.get(self._of.value)
+    def _specs(self, name: str) -> Sequence[JointSpec]:
+        model = self._models.all.get(name)
         return model.joints[:MOST] if model else ()
 
     def _show(self) -> None:
@@ -91,24 +93,24 @@ class JointPanel(Panel):
         with self._lock:
             model = self._of.value
             names = self._topics[:MOST] if model == TOPICS else tuple(
-                joint.name for joint in self._specs())
-            wanted = model, names, self._what.value, self._range.value
+                joint.name for joint in self._specs(model))
+            wanted = model, names, self._what.value, float(self._range.value)
             if wanted != self._shown:
                 self._shown = wanted
                 self._build()
 
     def _build(self) -> None:
-        """Make the sliders of what is chosen, each at rest."""
+        """Make the sliders of what is to be shown, each at rest."""
         with self._lock:
             for slider in self._sliders:
                 slider.remove()
             self._sliders.clear()
-            model, what, limit = self._of.value, self._what.value, float(self._range.value)
+            model, names, what, limit = self._shown  # what is chosen may be another meanwhile
             if model == TOPICS:
-                for topic in self._topics[:MOST]:
+                for topic in names:
                     self._add(topic, (-limit, limit), 0.0, partial(self._joints.command, topic))
                 return
-            for joint in self._specs():
+            for joint in self._specs(model):
                 unit = UNITS[what][joint.type != PRISMATIC]
                 self._add(f'{joint.name} [{unit}]', *self._range_of(model, joint, what, limit),
                           self._setter(model, joint.name, what))
@@ -142,23 +144,25 @@ class JointPanel(Panel):
     def _add(self, label: str, limits: tuple[float, float], value: float,
              command: Callable[[float], None]) -> None:
         low, high = limits
-        with self._folder:
-            slider = self._gui.add_slider(plain(label), low, high, (high - low) / STEPS,
-                                          min(max(value, low), high))
-        sent = [slider.value]
+        sent = [min(max(value, low), high)]
 
         def send(event: viser.GuiEvent[viser.GuiSliderHandle[float]]) -> None:
             with self._lock:  # one after the other, and of those that wait the newest
-                if event.client is not None and slider.value != sent[0]:
-                    sent[0] = slider.value
-                    attempt(lambda: command(float(slider.value)), self._complain)
-        slider.on_update(send)
+                now = event.target.value
+                if event.client is not None and now != sent[0]:
+                    sent[0] = now
+                    attempt(lambda: command(float(now)), self._complain)
+
+        with self._folder, self._site.atomic():  # nobody moves it before it is listened to
+            slider = self._site.gui.add_slider(
+                plain(label), low, high, (high - low) / STEPS, sent[0])
+            slider.on_update(send)
         self._sliders.append(slider)
 
     def _let_go(self) -> None:
         with self._lock:
-            model = self._of.value
-            for joint in self._specs():
+            model = self._shown[0]
+            for joint in self._specs(model):
                 attempt(partial(self._joints.set_velocity, model, joint.name, 0.0, 0.0),
                         self._complain)
                 attempt(partial(self._joints.set_effort, model, joint.name, 0.0), self._complain)

@@ -148,7 +148,7 @@ class Page:
                 self._panels += [drive, Joystick(site, drive.steer)]
                 if simulator.joints is not None:
                     self._panels.append(
-                        JointPanel(site.gui, simulator.joints, models, self._notify))
+                        JointPanel(site, simulator.joints, models, self._notify))
         with tabs.add_tab('Models', viser.Icon.LIST_TREE):
             if simulator.inspection is not None:
                 self._panels += [
@@ -157,7 +157,7 @@ class Page:
                     ChangePanel(
                         site.gui, simulator.inspection, models, self.selection, history,
                         self._notify)]
-            self._panels.append(ModelTree(site.gui, models, self.selection, self._lock))
+            self._panels.append(ModelTree(site, models, self.selection, self._lock))
         if simulator.hands is not None:
             with tabs.add_tab('Edit', viser.Icon.TOOL):
                 HandsPanel(
@@ -167,7 +167,7 @@ class Page:
                         site, simulator.library, simulator.hands, self.selection, history,
                         self._notify))
             self._panels.append(Gizmo(
-                site.scene, models, self.selection, simulator.hands, history, self._notify))
+                site, models, self.selection, simulator.hands, history, self._notify))
         with tabs.add_tab('Show', viser.Icon.EYE):
             ViewPanel(site.gui, models, self.selection, self._start)
             self._panels += [
@@ -180,7 +180,7 @@ class Page:
                 self._panels.append(SensorPanel(site, simulator.sensors, models))
         if simulator.signals is not None:
             with tabs.add_tab('Plot', viser.Icon.CHART_LINE):
-                self._panels.append(PlotPanel(site.gui, simulator.signals, self._notify))
+                self._panels.append(PlotPanel(site, simulator.signals, self._notify))
         with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
             # First, as a recording stamps what moves after it.
             self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))

@@ -54,10 +54,11 @@ class Signals(Protocol):
 class PlotPanel(ReadingPanel):
     """Chooses curves and draws them."""
 
-    def __init__(self, gui: viser.GuiApi, signals: Signals,
+    def __init__(self, site: viser.ViserServer, signals: Signals,
                  complain: Callable[[str], None]) -> None:
         super().__init__(PERIOD)
-        self._gui, self._signals, self._complain = gui, signals, complain
+        self._site, self._signals, self._complain = site, signals, complain
+        gui = site.gui
         self._chart = Chart()
         self._topics: Mapping[str, Sequence[str]] = {}
         self._clock: deque[tuple[float, float]] = deque(maxlen=MOTIONS)
@@ -144,9 +145,9 @@ class PlotPanel(ReadingPanel):
         if self._plot is not None:
             self._plot.remove()
             self._plot = None
-        with self._folder:
+        with self._folder, self._site.atomic():  # no box is shown before it is listened to
             if curves:
-                self._plot = self._gui.add_uplot(
+                self._plot = self._site.gui.add_uplot(
                     self._chart.table(self._now()),
                     (uplot.Series(label='simulated time [s]'), *(
                         uplot.Series(label=plain(curve), stroke=colour, width=1.5)
@@ -154,7 +155,7 @@ class PlotPanel(ReadingPanel):
                     scales={'x': {'time': False}}, height=HEIGHT, padding=PADDING, order=FIRST)
             for curve in curves:
                 if curve not in self._boxes:
-                    self._boxes[curve] = box = self._gui.add_checkbox(
+                    self._boxes[curve] = box = self._site.gui.add_checkbox(
                         plain(curve), initial_value=True, hint='uncheck to remove')
                     box.on_update(partial(self._uncheck, curve))
 

@@ -31,9 +31,10 @@ class ModelTree(Panel):
     """A button for each model, and below the selected one a button for each of its links."""
 
     def __init__(
-        self, gui: viser.GuiApi, models: Models, selection: Selection, lock: threading.RLock
+        self, site: viser.ViserServer, models: Models, selection: Selection, lock: threading.RLock
     ) -> None:
-        self._gui, self._models, self._selection, self._lock = gui, models, selection, lock
+        self._site, self._models, self._selection, self._lock = site, models, selection, lock
+        gui = site.gui
         self._rows: dict[TreeRow, viser.GuiButtonHandle] = {}
         # Used again: if a button is changed and removed between two frames of a browser, viser's
         # page removes it first and then complains of the change.
@@ -72,9 +73,9 @@ class ModelTree(Panel):
             button = self._hidden.pop()
             button.label, button.visible = text, True
         else:
-            with self._folder:
-                button = self._gui.add_button(text)
-            button.on_click(self._choose)
+            with self._folder, self._site.atomic():  # not shown before it is listened to
+                button = self._site.gui.add_button(text)
+                button.on_click(self._choose)
         return button
 
     def _wanted(self) -> Iterator[TreeRow]:

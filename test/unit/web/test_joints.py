@@ -43,7 +43,7 @@ def complaints():
 
 @pytest.fixture
 def panel(site, joints, models, complaints):
-    panel = JointPanel(site.gui, joints, models, complaints.append)
+    panel = JointPanel(site, joints, models, complaints.append)
     panel.refresh()
     return panel
 

@@ -24,7 +24,7 @@ def complaints():
 
 @pytest.fixture
 def panel(site, signals, complaints):
-    panel = PlotPanel(site.gui, signals, complaints.append)
+    panel = PlotPanel(site, signals, complaints.append)
     panel.open()
     panel.refresh()
     panel.move(clock(10.0))
