@@ -44,13 +44,15 @@ class InOrder:
 
     Each topic is read by a thread of its own, and a scene takes longer to read than a motion.
     Links are numbered in the order in which they come: a motion of a link with a higher number
-    than those of the scene is early. It waits, and so do those after it.
+    than those of the scene is early. It waits, and so do those after it. Changes of
+    what others were shown may come before the first whole scene; they are left out.
     """
 
     def __init__(self, change: Callable[[SceneChange], None],
                  motion: Callable[[ShownMotion], None]) -> None:
         self._show_change, self._show_motion = change, motion
         self._lock = threading.Lock()
+        self._is_begun = False  # whether a whole scene has come
         self._newest = -1  # number of a link of the scene
         self._early: list[ShownMotion] = []  # one for each change that is missing
 
@@ -58,6 +60,9 @@ class InOrder:
         """Pass on a change, then the motions that waited for it."""
         numbers = [link.number for model in change.models for link in model.links]
         with self._lock:
+            self._is_begun |= change.reset
+            if not self._is_begun:
+                return
             self._newest = max(numbers, default=-1 if change.reset else self._newest)
             self._show_change(change)
             while self._early and _newest(self._early[0]) <= self._newest:

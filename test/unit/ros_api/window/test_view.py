@@ -19,6 +19,18 @@ class Shown(list):
     def __init__(self):
         super().__init__()
         self.order = InOrder(self.append, self.append)
+        self.order.change(change(reset=True))
+        self.clear()
+
+
+def test_changes_for_others_before_the_whole_scene_are_left_out():
+    shown = []
+    order = InOrder(shown.append, shown.append)
+    order.change(change(7))
+    assert shown == []
+    order.change(whole := change(8, reset=True))
+    order.change(further := change(9))
+    assert shown == [whole, further]
 
 
 def test_motion_waits_for_the_change_that_brings_its_links():
