@@ -48,7 +48,7 @@ class FakeSimulator:
     def close(self):
         self.change = self.motion = None
 
-    def state(self, model, link):
+    def state(self, model, link, _patience=None):
         self.told.append(('state', model, link))
         return self.where
 

@@ -14,17 +14,21 @@ from .panel import Panel
 from .selection import Selection
 from .text import Words
 
+SOON = 1.0  # [s, wall] for a state that is asked for again soon
+
 
 class States(Protocol):
     """Where models and links are, and how they move."""
 
-    def state(self, model: str, link: str | None) -> tuple[Pose, Twist]:
+    def state(self, model: str, link: str | None,
+              patience: float | None = None) -> tuple[Pose, Twist]:
         """Return pose and velocity of a model, or of one of its links, in the world.
 
+        Args:
+            patience: for an answer [s, wall]; None: as long as for any other one.
         Raises:
             SimError: there is none of that name, or no simulator.
         """
-
 
     def omissions(self, model: str) -> Sequence[str]:
         """Return the parts that a model was spawned without, each in a few words.
@@ -61,7 +65,7 @@ class Inspector(Panel):
             return
         shown = self._models.all.get(model)
         try:
-            pose, twist = self._states.state(model, link)
+            pose, twist = self._states.state(model, link, SOON)
             if shown is not self._examined:
                 omissions = self._states.omissions(model)
         except SimError:

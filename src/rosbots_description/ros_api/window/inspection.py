@@ -13,21 +13,22 @@ from rosbots_msgs.srv import SetFriction
 
 from ...sim.core import Pose, Twist
 from ..messages import fill_pose, fill_twist, read_pose, read_twist
-from .calls import call, model_omissions
+from .calls import TIMEOUT, call, model_omissions
 
-PATIENCE = 1.0  # for a state that is shown again soon [s, wall]
 _MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 
 
 class RosInspection:
     """Reads and changes a model, or one of its links; each raises SimError if it is refused."""
 
-    def state(self, model: str, link: str | None) -> tuple[Pose, Twist]:
-        """Return pose and velocity in the world."""
+    def state(self, model: str, link: str | None,
+              patience: float | None = None) -> tuple[Pose, Twist]:
+        """Return pose and velocity in the world; `patience` is for the answer [s, wall]."""
+        patience = TIMEOUT if patience is None else patience
         if link is None:
-            answer = call('get_model_state', GetModelState, PATIENCE, model_name=model)
+            answer = call('get_model_state', GetModelState, patience, model_name=model)
             return read_pose(answer.pose), read_twist(answer.twist)
-        state = call('get_link_state', GetLinkState, PATIENCE,
+        state = call('get_link_state', GetLinkState, patience,
                      link_name=f'{model}::{link}').link_state
         return read_pose(state.pose), read_twist(state.twist)
 
