@@ -15,7 +15,7 @@ from controller_manager_msgs.srv import (
     UnloadController,
 )
 from rosgraph_msgs.msg import Log
-from simulator import SimulatorTest, wait_until
+from simulator import SimulatorTest, hears, wait_until
 
 DATA = Path(__file__).resolve().parents[1] / 'data'
 ROBOTS = DATA / 'gazebo' / 'robots'
@@ -34,7 +34,9 @@ class ControllersTest(SimulatorTest):
     def setUp(self):
         super().setUp()
         self.errors = []
-        self._connections.append(rospy.Subscriber('/rosout', Log, self._hear))
+        log = rospy.Subscriber('/rosout', Log, self._hear)
+        self._connections.append(log)
+        wait_until(lambda: hears(log), 'the log of the simulator')
         self.parameters = set()
 
     def tearDown(self):

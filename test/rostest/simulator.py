@@ -5,7 +5,10 @@ import subprocess
 import sys
 import time
 import unittest
+from xmlrpc.client import ServerProxy
 
+import rosgraph
+import rosnode
 import rospy
 from gazebo_msgs.srv import (
     DeleteModel,
@@ -37,6 +40,20 @@ def wait_until(condition, what, deadline=DEADLINE):
 def proxy(name, service_type):
     rospy.wait_for_service(f'/gazebo/{name}', DEADLINE)
     return rospy.ServiceProxy(f'/gazebo/{name}', service_type)
+
+
+def hears(subscriber, node='/gazebo'):
+    """Tell whether a node sends to a subscriber: what it publishes from now on arrives.
+
+    The subscriber's own number of connections tells only that the node has answered it.
+    """
+    try:
+        address = rosnode.get_api_uri(rosgraph.Master('/test'), node, skip_cache=True)
+        connections = ServerProxy(address).getBusInfo('/test')[2]
+    except (OSError, rosgraph.MasterError, TypeError):  # it has not started yet
+        return False
+    return any((other, way, topic) == (rospy.get_name(), 'o', subscriber.resolved_name)
+               for _, other, way, _, topic, *_ in connections)
 
 
 def pose(x=0.0, y=0.0, z=0.5):
@@ -95,8 +112,7 @@ class SimulatorTest(unittest.TestCase):
         self._clean()
 
     def tearDown(self):
-        for connection in self._connections:
-            connection.unregister()
+        self.disconnect()
         self._clean()
 
     def _clean(self):
@@ -110,12 +126,23 @@ class SimulatorTest(unittest.TestCase):
         return self.spawn_service(name, xml, namespace, at or pose(), frame)
 
     def collect(self, topic, message_class):
-        """Return a list to which the messages of a topic are appended; waits for a publisher."""
+        """Return a list to which the messages of a topic are appended; waits for a publisher.
+
+        To be unregistered before that publisher comes anew: rospy stays without a connection if it
+        hears of the new one before it has closed the old one.
+        """
         messages = []
         subscriber = rospy.Subscriber(topic, message_class, messages.append, tcp_nodelay=True)
         self._connections.append(subscriber)
-        wait_until(subscriber.get_num_connections, f'a publisher of {topic}')
+        wait_until(lambda: subscriber.get_num_connections() and all(
+            hears(subscriber, one.callerid_pub) for one in subscriber.impl.connections),
+            f'a publisher of {topic}')
         return messages
+
+    def disconnect(self):
+        """Unregister what was connected so far."""
+        while self._connections:
+            self._connections.pop().unregister()
 
     def driver(self):
         """Return a function that sends a velocity command to the robot."""

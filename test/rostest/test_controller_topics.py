@@ -200,7 +200,6 @@ class ControllerTopicsTest(ControllersTest):
             return (client.get_state(), result.error_code, result.error_string) if wait else None
 
         self.assertEqual(follow(0.5, [0.5, -0.3]), (GoalStatus.SUCCEEDED, 0, ''))
-        self.assertEqual(feedback[-1].joint_names, ['joint1', 'joint2'])
         query = rospy.ServiceProxy('/arm/arm_controller/query_state', QueryTrajectoryState)
         now = rospy.Time.from_sec(self.world().sim_time)
         self.assertEqual([round(one, 6) for one in query(now).position], [0.5, -0.3])
@@ -215,6 +214,9 @@ class ControllerTopicsTest(ControllersTest):
         self.heard_errors(past)
         follow(30.0, [0.0, 0.0], wait=False)
         wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 'the goal to be accepted')
+        feedback.clear()
+        wait_until(lambda: feedback, 'feedback')
+        self.assertEqual(feedback[-1].joint_names, ['joint1', 'joint2'])
         client.cancel_goal()
         wait_until(lambda: client.get_state() == GoalStatus.PREEMPTED, 'the goal to be canceled')
         state, code, text = follow(0.02, [2.5, -2.0])
@@ -274,8 +276,8 @@ class ControllerTopicsTest(ControllersTest):
         command.linear.x, command.angular.z = 0.2, 0.5
         publisher = self.publisher('/diff_cont/cmd_vel', Twist)
         publisher.publish(command)
-        wait_until(lambda: odometry and abs(odometry[-1].twist.twist.linear.x - 0.2) < 0.002,
-                   'the speed')
+        wait_until(lambda: any(abs(one.twist.twist.linear.x - 0.2) < 0.002
+                               for one in list(odometry)), 'the speed')
         driving = odometry[-1]
         self.assertEqual((driving.header.frame_id, driving.child_frame_id),
                          ('odom', 'base_footprint'))

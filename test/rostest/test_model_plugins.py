@@ -105,7 +105,8 @@ class ModelPluginsTest(SimulatorTest):
         positions = [(0.3 * k, -0.2 * k) for k in range(1, 4)]
         play(JointTrajectory(Header(frame_id='world'), ['shoulder', 'elbow'], [
             JointTrajectoryPoint(positions=point, time_from_start=HALF) for point in positions]))
-        wait_until(lambda: states and abs(states[-1].position[0] - 0.9) < 1e-9, 'the last point')
+        wait_until(lambda: any(abs(state.position[0] - 0.9) < 1e-9 for state in list(states)),
+                   'the last point')
         wait_until(lambda: abs(states[-1].position[0] - 0.9) > 1e-3, 'physics again')
         for point in positions:
             held = [state for state in states if state.position == point]

@@ -29,6 +29,7 @@ class SpawnDeleteTest(SimulatorTest):
                 self._drive_a_bit()
             elif cycle % 2:
                 self._send_commands()
+            self.disconnect()
             self.assertTrue(self.delete('rosbots').success)
             if cycle == WARM_UP:
                 before = self._memory(process), self._threads(process)
