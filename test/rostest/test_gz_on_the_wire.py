@@ -50,8 +50,9 @@ class GzTest(SimulatorTest):
         self.assertFalse(running().pause)
 
     def test_stats_and_topics_are_those_of_the_simulator(self):
-        lines = gz('stats', '-d', '0.7').splitlines()
-        self.assertGreaterEqual(len(lines), 1)
+        with subprocess.Popen(['gz', 'stats'], stdout=subprocess.PIPE, text=True) as shown:
+            lines = [shown.stdout.readline().rstrip('\n') for _ in range(3)]
+            shown.terminate()
         for line in lines:
             self.assertRegex(
                 line, r'^Factor\[\d+\.\d\d\] SimTime\[[\d.]+\] RealTime\[[\d.]+\] Paused\[F\]$')

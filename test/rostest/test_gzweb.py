@@ -180,6 +180,7 @@ class GzwebTest(unittest.TestCase):
         browser.look_at([2.0, 3.0, 1.0])
         browser.click('Insert shape')
         browser.wait_until(lambda: '/models/box/link' in browser.nodes)
+        browser.wait_until(lambda: browser.control("Undo: insert 'box'"))  # and it is selected
         at = state('box', '').pose.position
         for found, wanted in ((at.x, 2.0), (at.y, 3.0), (at.z, 0.25)):
             self.assertAlmostEqual(found, wanted, places=3)
@@ -188,6 +189,7 @@ class GzwebTest(unittest.TestCase):
                                        for note in browser.notes()))
         browser.upload(UPLOAD, 'ball.urdf', BALL.encode())  # another one is there
         browser.wait_until(lambda: '/models/ball_0/body' in browser.nodes)
+        browser.wait_until(lambda: browser.control("Undo: insert 'ball_0'"))
         ball = state('ball_0', '').pose.position
         self.assertGreater(ball.z, 0.49)
         self.wait_for_gizmo(browser, ball)  # the newest is selected

@@ -317,7 +317,7 @@ class ChromiumTest(unittest.TestCase):
         self.page.select(Eye(), 'rosbots', TOP)
         self.page.click('Delete')
         wait_until(lambda: 'rosbots' not in models(), 'a deletion', SLOW)
-        self.page.click('Undo')
+        self.page.click("Undo: delete 'rosbots'")  # before, the button undoes the upload
         wait_until(lambda: 'rosbots' in models(), 'the robot', SLOW)
 
     def test_restarted_simulator_is_told_of(self):

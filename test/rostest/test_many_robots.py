@@ -60,9 +60,9 @@ class ManyRobotsTest(unittest.TestCase):
         subscriber = rospy.Subscriber(f'/{DRIVEN}/odom', Odometry, heard.append)
         before = {robot: self._x_of(robot) for robot in ROBOTS}
         self._drive(DRIVEN)
+        wait_until(lambda: heard and heard[-1].twist.twist.linear.x > 0.1, 'its odometry')
         self.assertEqual((heard[-1].header.frame_id, heard[-1].child_frame_id),
                          (f'{DRIVEN}/odom', f'{DRIVEN}/base_link'))
-        self.assertGreater(heard[-1].twist.twist.linear.x, 0.1)
         subscriber.unregister()
         for robot in set(ROBOTS) - {DRIVEN}:
             self.assertAlmostEqual(self._x_of(robot), before[robot], delta=STILL)

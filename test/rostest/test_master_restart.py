@@ -22,7 +22,7 @@ from gazebo_msgs.srv import (
 )
 from raw_client import answer, request_bytes, service_connection
 from server_process import MasterProcess, ServerProcess
-from simulator import BOX, DEADLINE, pose, wait_until
+from simulator import BOX, DEADLINE, LAST_TOPICS, pose, wait_until
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 from support.browser import Browser
@@ -41,7 +41,7 @@ class MasterRestartTest(unittest.TestCase):
         self.graph = rosgraph.Master('/test', address)
         self.server.wait_ready()
         self._spawn('rosbots', rospy.get_param('robot_description'))
-        wait_until(lambda: self._has('/gazebo/set_parameters'), 'dynamic_reconfigure')
+        wait_until(lambda: self._of_server()[0] >= LAST_TOPICS, 'dynamic_reconfigure')
 
     def _spawn(self, name, xml):
         with ServerProcess('-urdf', '-stdin', '-model', name, program='spawn_model',
@@ -53,9 +53,6 @@ class MasterRestartTest(unittest.TestCase):
         """Run a ROS program with the server's master; return what it prints."""
         return subprocess.run(command, env=self.server.environment, capture_output=True, text=True,
                               timeout=DEADLINE, check=True).stdout
-
-    def _has(self, service):
-        return any(service == name for name, _ in self.graph.getSystemState()[2])
 
     def _of_server(self):
         """Return the server's registrations: published topics, subscribed topics, services."""

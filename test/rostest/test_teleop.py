@@ -71,7 +71,7 @@ class TeleopTest(unittest.TestCase):
 
     def test_keys_publish_on_the_articles_topic(self):
         self._listen('/part2_cmr/cmd_vel')
-        self._start('/part2_cmr/cmd_vel')
+        self._start('/part2_cmr/cmd_vel', '_key_timeout:=0')
         self.assertTrue(wait_for(lambda: 'currently:\tspeed 0.5\tturn 1.0' in
                                  self._terminal.shown()), self._terminal.shown())
         self.assertTrue(wait_for(lambda: self._heard()[:1] == [(0.0, 0.0)]), self._heard())
@@ -81,11 +81,16 @@ class TeleopTest(unittest.TestCase):
         self._press('l', 0.0, -1.0)
         self._press(',', -0.5, 0.0)
         self._press('q', -0.55, 0.0)
-        # The robot stops when no key is pressed.
-        self.assertTrue(wait_for(lambda: self._heard()[-1] == (0.0, 0.0)), self._heard())
         self._press('u', 0.55, 1.1)
         self._terminal.type('\x03')
         self._assert_ends_well()
+        self.assertTrue(wait_for(lambda: self._heard()[-1] == (0.0, 0.0)), self._heard())
+
+    def test_robot_stops_when_no_key_is_pressed(self):
+        self._listen('/part2_cmr/cmd_vel')
+        self._start('/part2_cmr/cmd_vel')
+        self.assertTrue(wait_for(lambda: 'currently:' in self._terminal.shown()))
+        self._press('i', 0.5, 0.0)
         self.assertTrue(wait_for(lambda: self._heard()[-1] == (0.0, 0.0)), self._heard())
 
     def test_waits_with_a_message_without_a_subscriber(self):
