@@ -17,7 +17,7 @@ FORCES = {'apply_wrench', 'apply_joint_effort', 'scale_mass', 'scale_friction', 
 
 
 class KinematicBody:
-    """A model: where its roots and joints are, and what its motors are told."""
+    """A model: where its roots and joints are, and the targets of its motors."""
 
     mass_scale, friction_scales = 1.0, {}
 

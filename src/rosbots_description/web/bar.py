@@ -57,7 +57,7 @@ class Bar(Panel):
             'Reset world', hint='models return to where they were spawned; time is kept')
         self._reset = gui.add_button('Reset time and world', hint='everything starts again')
         self._paused = False
-        self._target = 1.0  # real-time factor that the simulator last told
+        self._target = 1.0  # real-time factor that the simulator reported last
         self._play.on_click(lambda _: self._toggle())
         self._speed.on_update(self._choose)
         self._step.on_click(lambda _: self._do(lambda: time.step(int(self._steps.value))))

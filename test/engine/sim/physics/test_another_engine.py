@@ -10,7 +10,7 @@ from rosbots_description.sim import World, yaw_of
 
 ROBOT = ROOT / 'urdf' / 'rosbots.xacro'
 RADIUS, SEPARATION = 0.23, 0.88  # of the wheels' shapes [m]
-DIAMETER, TOLD_SEPARATION = 0.52, 1.1  # as the plugin is told [m]
+DIAMETER, TRACK = 0.52, 1.1  # wheelDiameter and wheelSeparation of the plugin [m]
 
 
 @pytest.fixture
@@ -33,7 +33,7 @@ def test_the_robot_of_the_tutorial_drives_as_its_wheels_roll(world):
     world.run(seconds=0.5)
     before = yaw_of(robot.pose.orientation)
     world.run(seconds=1.0)
-    turned = 0.4 * TOLD_SEPARATION / DIAMETER * 2.0 * RADIUS / SEPARATION  # [rad]
+    turned = 0.4 * TRACK / DIAMETER * 2.0 * RADIUS / SEPARATION  # [rad]
     assert yaw_of(robot.pose.orientation) - before == pytest.approx(turned, rel=1e-3)
     assert robot.twist.linear[2] == 0.0
 
