@@ -124,7 +124,7 @@ def test_what_was_only_grabbed_has_not_moved(chosen, simulator):
     assert chosen.control('Undo')
 
 
-def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, monkeypatch):
+def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, site, monkeypatch):
     answer, calls = threading.Event(), []
 
     def hold(_name, pose, _duration):
@@ -136,9 +136,10 @@ def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, monkeypatch
     chosen.wait_until(lambda: calls)
     for x in range(100):
         chosen.drag(NODE, [float(x), 0.0, 0.0])
-    chosen.choose('Steps', 7)  # the page is not blocked
     chosen.let_go(NODE)
-    chosen.read(0.3)
+    chosen.choose('Steps', 7)  # the page is not blocked
+    with Browser(site.address) as other:  # and has taken in all that
+        other.wait_until(lambda: other.control('Steps') and other.value('Steps') == 7)
     assert len(calls) == 1
     answer.set()
     chosen.wait_until(lambda: chosen.control("Undo: move 'a'"))

@@ -5,7 +5,7 @@ import weakref
 from types import SimpleNamespace
 
 from support.browser import Browser
-from support.patience import wait_until
+from support.patience import PATIENCE, wait_until
 from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
@@ -212,6 +212,7 @@ def test_a_refusal_is_shown(browser, simulator):
 
 
 def test_a_simulator_that_has_gone_and_returns_is_told_of(browser, simulator, page, monkeypatch):
+    monkeypatch.setattr(page_module, 'SILENCE', PATIENCE)
     simulator.motion(clock())
     page.poll()
     browser.read()
