@@ -9,13 +9,13 @@ from typing import Protocol
 import viser
 
 from ..sim.core import SimError
-from ..sim.description import PRISMATIC, JointSpec
+from ..sim.description import PRISMATIC, CommandTopic, JointSpec
 from .choice import Choice
 from .models import Models
 from .panel import Panel, attempt
 from .text import plain
 
-NOTHING, TOPICS = '', 'topics of std_msgs/Float64'
+NOTHING, TOPICS = '', 'topics of controllers'
 POSITION, VELOCITY, EFFORT = 'position', 'velocity', 'effort'
 MOST = 40  # sliders
 STEPS = 1000  # of a slider
@@ -38,11 +38,11 @@ class Joints(Protocol):
     def set_effort(self, model: str, joint: str, effort: float) -> None:
         """Apply an effort [N m or N] from now on."""
 
-    def command_topics(self) -> Sequence[str]:
-        """Return the topics of numbers that somebody subscribes to."""
+    def command_topics(self) -> Sequence[CommandTopic]:
+        """Return the topics of commands that somebody subscribes to."""
 
-    def command(self, topic: str, value: float) -> None:
-        """Publish a number."""
+    def command(self, topic: CommandTopic, values: Sequence[float]) -> None:
+        """Publish a value for each joint of a topic, or its one number."""
 
 
 class JointPanel(Panel):
@@ -52,9 +52,9 @@ class JointPanel(Panel):
                  complain: Callable[[str], None]) -> None:
         self._site, self._joints, self._models, self._complain = site, joints, models, complain
         self._lock = threading.RLock()
-        self._topics: Sequence[str] = ()
+        self._topics: Sequence[CommandTopic] = ()
         # Of the sliders: the model, its joints or the topics, what they set, and the range.
-        self._shown: tuple[str, Sequence[str], str, float] = (NOTHING, (), POSITION, 0.0)
+        self._shown: tuple[str, Sequence[object], str, float] = (NOTHING, (), POSITION, 0.0)
         self._sliders: list[viser.GuiSliderHandle[float]] = []
         gui = site.gui
         self._folder = gui.add_folder('Joints', visible=False)
@@ -92,7 +92,7 @@ class JointPanel(Panel):
         """Show the sliders of what is chosen; those that are there stay, for they may be in use."""
         with self._lock:
             model = self._of.value
-            names = self._topics[:MOST] if model == TOPICS else tuple(
+            names: Sequence[object] = self._topics if model == TOPICS else tuple(
                 joint.name for joint in self._specs(model))
             wanted = model, names, self._what.value, float(self._range.value)
             if wanted != self._shown:
@@ -105,15 +105,43 @@ class JointPanel(Panel):
             for slider in self._sliders:
                 slider.remove()
             self._sliders.clear()
-            model, names, what, limit = self._shown  # what is chosen may be another meanwhile
+            model, _, what, limit = self._shown  # what is chosen may be another meanwhile
             if model == TOPICS:
-                for topic in names:
-                    self._add(topic, (-limit, limit), 0.0, partial(self._joints.command, topic))
+                for topic in self._topics:
+                    self._add_topic(topic, limit)
                 return
             for joint in self._specs(model):
                 unit = UNITS[what][joint.type != PRISMATIC]
                 self._add(f'{joint.name} [{unit}]', *self._range_of(model, joint, what, limit),
                           self._setter(model, joint.name, what))
+
+    def _add_topic(self, topic: CommandTopic, limit: float) -> None:
+        """Add the sliders of a topic, if there is room for all; a command has all their values.
+
+        Positions begin where the joints stand, so that the first command moves one joint only.
+        """
+        names = topic.joints or ('',)
+        if len(self._sliders) + len(names) > MOST:
+            return
+        model, specs = self._model_of(topic.joints) if topic.are_positions else ('', {})
+        places = [self._range_of(model, specs[name], POSITION, limit) if name in specs
+                  else ((-limit, limit), 0.0) for name in names]
+        values = [value for _, value in places]
+
+        def command(index: int, value: float) -> None:
+            values[index] = value
+            self._joints.command(topic, tuple(values))
+
+        for index, (name, (limits, value)) in enumerate(zip(names, places, strict=True)):
+            self._add(f'{topic.name} {name}'.rstrip(), limits, value, partial(command, index))
+
+    def _model_of(self, joints: Sequence[str]) -> tuple[str, dict[str, JointSpec]]:
+        """Return the first model with these joints, and its joints by name; else '', {}."""
+        for model in tuple(self._models.all.values()):
+            specs = {joint.name: joint for joint in model.joints}
+            if specs.keys() >= set(joints):
+                return model.name, specs
+        return '', {}
 
     def _range_of(self, model: str, joint: JointSpec, what: str,
                   limit: float) -> tuple[tuple[float, float], float]:

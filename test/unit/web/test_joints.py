@@ -10,16 +10,20 @@ from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import (
     PRISMATIC,
     REVOLUTE,
+    CommandTopic,
     JointSpec,
     SceneChange,
     ShownLink,
     ShownModel,
 )
-from rosbots_description.web.joints import TOPICS, JointPanel
+from rosbots_description.web.joints import MOST, TOPICS, JointPanel
 from rosbots_description.web.models import Models
 
 LIMITED = JointSpec('elbow', REVOLUTE, 'a', 'b', lower=-1.0, upper=2.0, effort=5.0)
 FREE = JointSpec('wheel', REVOLUTE, 'a', 'c')
+ELBOW = CommandTopic('/elbow_controller/command')
+ARM = CommandTopic('/arm_controller/command', ('elbow', 'lift'), are_positions=True)
+FORCES = CommandTopic('/forces/command', ('elbow', 'lift'))
 LIFT = JointSpec('lift', PRISMATIC, 'a', 'd', lower=0.0)
 
 
@@ -112,17 +116,43 @@ def test_release_ends_motors_and_efforts(browser, joints):
 
 
 def test_topics_of_controllers_have_sliders(browser, joints, panel):
-    joints.topics = ('/elbow_controller/command',)
+    joints.topics = (ELBOW,)
     panel.refresh()
     browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
     browser.choose('Range', 3.0)
     choose(browser, TOPICS, '/elbow_controller/command')
     assert props(browser, '/elbow_controller/command')['max'] == 3.0
     browser.choose('/elbow_controller/command', -1.0)
-    browser.wait_until(lambda: joints.told == [('command', '/elbow_controller/command', -1.0)])
+    browser.wait_until(lambda: joints.told == [('command', ELBOW, (-1.0,))])
     joints.topics = ()
     panel.refresh()
     browser.wait_until(lambda: not browser.control('/elbow_controller/command'))
+
+
+@pytest.mark.parametrize(('topic', 'limits', 'told'), [
+    (ARM, (-1.0, 2.0), (1.5, 0.25)),  # the other joint stays where it stands
+    (FORCES, (-10.0, 10.0), (1.5, 0.0)),
+])
+def test_a_controller_of_several_joints_has_a_slider_for_each(
+        browser, joints, panel, topic, limits, told):
+    elbow, lift = (f'{topic.name} {name}' for name in topic.joints)
+    joints.topics = (topic,)
+    panel.refresh()
+    browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
+    choose(browser, TOPICS, elbow, lift)
+    assert (props(browser, elbow)['min'], props(browser, elbow)['max']) == limits
+    browser.choose(elbow, 1.5)
+    browser.wait_until(lambda: joints.told)
+    assert joints.told == [('command', topic, told)]
+
+
+def test_a_topic_whose_joints_have_no_room_is_left_out(browser, joints, panel):
+    many = CommandTopic('/many/command', tuple(f'joint{number}' for number in range(MOST)))
+    joints.topics = (ELBOW, many, FORCES)
+    panel.refresh()
+    browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
+    choose(browser, TOPICS, ELBOW.name, '/forces/command lift')
+    assert not browser.control('/many/command joint0')
 
 
 def test_a_model_that_is_deleted_takes_its_sliders_along(browser, models, panel):

@@ -1,8 +1,11 @@
 """Joints of robots, by the simulator's services; and commands to controllers of joints.
 
 Publishes:
-    the topics of `command` (std_msgs/Float64), each from its first command on.
+    the topics of `command` (std_msgs/Float64, std_msgs/Float64MultiArray or
+    trajectory_msgs/JointTrajectory), each from its first command on.
 """
+
+from collections.abc import Callable, Mapping, Sequence
 
 import rospy
 from gazebo_msgs.msg import ODEJointProperties
@@ -13,12 +16,39 @@ from gazebo_msgs.srv import (
     SetJointProperties,
     SetModelConfiguration,
 )
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from ...sim.description import CommandTopic
+from ..transport import NO_MASTER
 from .calls import call
 from .topic_graph import TopicGraph
 
 ENDLESS = rospy.Duration(-1)
+MOTION = rospy.Duration(1)  # in which a trajectory goes to where its sliders are
+COMMAND = '/command'  # the end of the topics of controllers
+POSITIONS = 'Position', 'Trajectory'  # in the types of controllers whose commands are positions
+
+
+def number(_joints: Sequence[str], values: Sequence[float]) -> Float64:
+    """Return the command of a controller of one joint."""
+    return Float64(values[0])
+
+
+def array(_joints: Sequence[str], values: Sequence[float]) -> Float64MultiArray:
+    """Return the command of a group of joints."""
+    return Float64MultiArray(data=values)
+
+
+def trajectory(joints: Sequence[str], values: Sequence[float]) -> JointTrajectory:
+    """Return a motion of joints to positions, that begins at once."""
+    return JointTrajectory(joint_names=joints, points=[
+        JointTrajectoryPoint(positions=values, time_from_start=MOTION)])
+
+
+COMMANDS: Mapping[str, tuple[type, Callable[[Sequence[str], Sequence[float]], object]]] = {
+    kind._type: (kind, message) for kind, message in (
+        (Float64, number), (Float64MultiArray, array), (JointTrajectory, trajectory))}
 
 
 class RosJoints:
@@ -27,6 +57,7 @@ class RosJoints:
     def __init__(self, topics: TopicGraph) -> None:
         self._topics = topics
         self._publishers: dict[str, rospy.Publisher] = {}
+        self._kinds: Mapping[str, str] = {}  # message types of the topics offered last
 
     def position(self, model: str, joint: str) -> float:
         """Return a position [rad or m]."""
@@ -53,12 +84,37 @@ class RosJoints:
             call('apply_joint_effort', ApplyJointEffort, joint_name=f'{model}::{joint}',
                  effort=effort, duration=ENDLESS)
 
-    def command_topics(self) -> list[str]:
-        """Return the topics of numbers (std_msgs/Float64) that other nodes subscribe to."""
-        return [name for name, kind in self._topics.subscribed().items() if kind == Float64._type]
+    def command_topics(self) -> list[CommandTopic]:
+        """Return the topics of commands that other nodes subscribe to.
 
-    def command(self, topic: str, value: float) -> None:
-        """Publish a number, latched, so that it arrives also if it is the first."""
-        if topic not in self._publishers:
-            self._publishers[topic] = rospy.Publisher(topic, Float64, latch=True, queue_size=1)
-        self._publishers[topic].publish(value)
+        They are all of std_msgs/Float64, and those of controllers with a list of `joints`.
+        """
+        self._kinds = {name: kind for name, kind in self._topics.subscribed().items()
+                       if kind in COMMANDS}
+        found = (CommandTopic(name) if kind == Float64._type else _of_joints(name)
+                 for name, kind in self._kinds.items())
+        return [topic for topic in found if topic]
+
+    def command(self, topic: CommandTopic, values: Sequence[float]) -> None:
+        """Publish values, latched, so that they arrive also if they are the first."""
+        kind, message = COMMANDS[self._kinds.get(topic.name, Float64._type)]
+        publisher = self._publishers.get(topic.name)
+        if publisher is None or publisher.data_class is not kind:
+            if publisher is not None:
+                publisher.unregister()
+            publisher = rospy.Publisher(topic.name, kind, latch=True, queue_size=1)
+            self._publishers[topic.name] = publisher
+        publisher.publish(message(topic.joints, values))
+
+
+def _of_joints(name: str) -> CommandTopic | None:
+    """Return the topic of a controller with the parameter `joints`, else None."""
+    try:
+        parameters = rospy.get_param(name.removesuffix(COMMAND), None)
+    except NO_MASTER:
+        return None
+    joints = parameters.get('joints') if isinstance(parameters, dict) else None
+    if not name.endswith(COMMAND) or not isinstance(joints, list) or not joints:
+        return None
+    kind = str(parameters.get('type', ''))
+    return CommandTopic(name, tuple(map(str, joints)), any(word in kind for word in POSITIONS))

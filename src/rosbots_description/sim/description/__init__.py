@@ -29,6 +29,7 @@ from .model_text import ModelText
 from .physics_settings import PhysicsSettings, check_physics
 from .robot_control import (
     CONTINUOUS,
+    CommandTopic,
     ControlledJoint,
     Mimic,
     RobotControl,
@@ -57,11 +58,11 @@ from .world_spec import (
 
 __all__ = [
     'CONTINUOUS', 'DIRECTIONAL', 'FIXED', 'GROUND_PLANE', 'POINT', 'PRISMATIC', 'REVOLUTE', 'SPOT',
-    'SUN', 'WORLD', 'Box', 'Collision', 'Colour', 'ControlledJoint', 'Cylinder', 'Element',
-    'Geometry', 'Inertial', 'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh', 'Mimic',
-    'ModelSpec', 'ModelState', 'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec', 'Reflection',
-    'RobotControl', 'SceneChange', 'SceneSpec', 'SensorSpec', 'ShownContact', 'ShownLink',
-    'ShownModel', 'ShownMotion', 'ShownReading', 'ShownSensor', 'SoftLimits', 'Sphere', 'Surface',
-    'Transmission', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
+    'SUN', 'WORLD', 'Box', 'Collision', 'Colour', 'CommandTopic', 'ControlledJoint', 'Cylinder',
+    'Element', 'Geometry', 'Inertial', 'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh',
+    'Mimic', 'ModelSpec', 'ModelState', 'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec',
+    'Reflection', 'RobotControl', 'SceneChange', 'SceneSpec', 'SensorSpec', 'ShownContact',
+    'ShownLink', 'ShownModel', 'ShownMotion', 'ShownReading', 'ShownSensor', 'SoftLimits', 'Sphere',
+    'Surface', 'Transmission', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
     'material_of_colours',
 ]

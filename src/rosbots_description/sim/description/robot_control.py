@@ -19,6 +19,18 @@ class Transmission:
 
 
 @dataclass(frozen=True)
+class CommandTopic:
+    """A topic of commands to a controller: one number, or a value for each of some joints.
+
+    `are_positions` tells that these values are positions [rad or m].
+    """
+
+    name: str
+    joints: tuple[str, ...] = ()
+    are_positions: bool = False
+
+
+@dataclass(frozen=True)
 class SoftLimits:
     """A <safety_controller>: soft position limits [rad or m], and the gains that keep to them.
 
