@@ -28,7 +28,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 LAUNCH = ('rosbots_description', 'arm.launch', 'gui:=false', 'demo:=false')
 WINDOW = 0.5  # [s, wall]
 ROUNDS = 8  # windows of each case
-STROKE = 1.0  # [s, simulated] of a motion from one place to the other
+STROKE = 2.0  # [s, simulated] of a motion from one place to the other
 STROKES = 100  # more than fit into a window
 SETTLE = 3.0  # [s, simulated] until the arm stands
 WIDE, SHUT, FORCE = 0.04, 0.0, 20.0  # of a finger [m], [N]
