@@ -55,7 +55,7 @@ GROUPS = [TEXTS[begin:begin + 3] for begin in range(0, len(TEXTS), 3)]
 MODELS = {''.join(group): group[0] for group in GROUPS if REFUSED not in group}  # and their links
 SLIDERS, CURVES = 40, 20  # at once
 UNTIDY = 'Tried to update non-existent component'  # viser's, of what was removed in the same frame
-FLOATS = 'topics of std_msgs/Float64'
+CONTROLLERS = 'topics of controllers'
 LIGHT = '<sdf version="1.6"><light name={} type="point"><diffuse>0 0 0 1</diffuse></light></sdf>'
 LINK = """<link name={}><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -323,8 +323,8 @@ class HostileNamesTest(unittest.TestCase):
         listening = [*(rospy.Subscriber(name, Twist, id) for name in drive),
                      *(rospy.Subscriber(name, Float64, id) for name in joints)]
         self.wait_offered('Topic', drive)
-        self.wait(lambda: FLOATS in self.options('Of'), 'topics of joints')
-        self.hand.choose('Of', FLOATS)
+        self.wait(lambda: CONTROLLERS in self.options('Of'), 'topics of joints')
+        self.hand.choose('Of', CONTROLLERS)
         self.wait_shown(*joints)
         for one in listening:
             one.unregister()

@@ -54,7 +54,8 @@ class JointPanel(Panel):
         self._lock = threading.RLock()
         self._topics: Sequence[CommandTopic] = ()
         # Of the sliders: the model, its joints or the topics, what they set, and the range.
-        self._shown: tuple[str, Sequence[object], str, float] = (NOTHING, (), POSITION, 0.0)
+        self._shown: tuple[str, Sequence[CommandTopic | str], str, float] = (
+            NOTHING, (), POSITION, 0.0)
         self._sliders: list[viser.GuiSliderHandle[float]] = []
         gui = site.gui
         self._folder = gui.add_folder('Joints', visible=False)
@@ -92,8 +93,10 @@ class JointPanel(Panel):
         """Show the sliders of what is chosen; those that are there stay, for they may be in use."""
         with self._lock:
             model = self._of.value
-            names: Sequence[object] = self._topics if model == TOPICS else tuple(
+            names: Sequence[CommandTopic | str] = tuple(
                 joint.name for joint in self._specs(model))
+            if model == TOPICS:
+                names = tuple(self._topics)
             wanted = model, names, self._what.value, float(self._range.value)
             if wanted != self._shown:
                 self._shown = wanted
