@@ -57,7 +57,8 @@ class RosJoints:
     def __init__(self, topics: TopicGraph) -> None:
         self._topics = topics
         self._publishers: dict[str, rospy.Publisher] = {}
-        self._kinds: Mapping[str, str] = {}  # message types of the topics offered last
+        # Of the last look, by topic and message type; None is no controller's.
+        self._offered: Mapping[tuple[str, str], CommandTopic | None] = {}
 
     def position(self, model: str, joint: str) -> float:
         """Return a position [rad or m]."""
@@ -89,15 +90,16 @@ class RosJoints:
 
         They are all of std_msgs/Float64, and those of controllers with a list of `joints`.
         """
-        self._kinds = {name: kind for name, kind in self._topics.subscribed().items()
-                       if kind in COMMANDS}
-        found = (CommandTopic(name) if kind == Float64._type else _of_joints(name)
-                 for name, kind in self._kinds.items())
-        return [topic for topic in found if topic]
+        known = self._offered
+        self._offered = {
+            (name, kind): known[name, kind] if (name, kind) in known else _topic(name, kind)
+            for name, kind in self._topics.subscribed().items() if kind in COMMANDS}
+        return [topic for topic in self._offered.values() if topic]
 
     def command(self, topic: CommandTopic, values: Sequence[float]) -> None:
         """Publish values, latched, so that they arrive also if they are the first."""
-        kind, message = COMMANDS[self._kinds.get(topic.name, Float64._type)]
+        kind, message = COMMANDS[next(
+            (kind for (name, kind) in self._offered if name == topic.name), Float64._type)]
         publisher = self._publishers.get(topic.name)
         if publisher is None or publisher.data_class is not kind:
             if publisher is not None:
@@ -107,8 +109,10 @@ class RosJoints:
         publisher.publish(message(topic.joints, values))
 
 
-def _of_joints(name: str) -> CommandTopic | None:
-    """Return the topic of a controller with the parameter `joints`, else None."""
+def _topic(name: str, kind: str) -> CommandTopic | None:
+    """Return a topic of numbers, or of a controller with the parameter `joints`; else None."""
+    if kind == Float64._type:
+        return CommandTopic(name)
     try:
         parameters = rospy.get_param(name.removesuffix(COMMAND), None)
     except NO_MASTER:
@@ -116,5 +120,6 @@ def _of_joints(name: str) -> CommandTopic | None:
     joints = parameters.get('joints') if isinstance(parameters, dict) else None
     if not name.endswith(COMMAND) or not isinstance(joints, list) or not joints:
         return None
-    kind = str(parameters.get('type', ''))
-    return CommandTopic(name, tuple(map(str, joints)), any(word in kind for word in POSITIONS))
+    controller = str(parameters.get('type', ''))
+    return CommandTopic(
+        name, tuple(map(str, joints)), any(word in controller for word in POSITIONS))

@@ -93,3 +93,18 @@ def test_a_topic_of_another_type_gets_another_publisher(graph, joints):
     first, second = FakePublisher.made
     assert first.ended
     assert len(second.sent) == 2
+
+
+def test_parameters_are_asked_for_once_while_a_topic_is_there(joints, graph, monkeypatch):
+    asked = []
+    monkeypatch.setattr(module.rospy, 'get_param',
+                        lambda name, default: asked.append(name) or PARAMETERS.get(name, default))
+    graph.topics = {'/group/command': ARRAY, '/nothing': ARRAY}
+    first = joints.command_topics()
+    assert joints.command_topics() == first == [CommandTopic('/group/command', ('a', 'b'), True)]
+    assert asked == ['/group', '/nothing']
+    graph.topics = {}
+    joints.command_topics()
+    graph.topics = {'/group/command': TRAJECTORY}
+    joints.command_topics()
+    assert asked[2:] == ['/group']
