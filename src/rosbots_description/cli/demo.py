@@ -182,10 +182,11 @@ def _drive(client: DemoClient, folder: Path) -> list[Row]:
 
 def _report(rows: list[Row], folder: Path) -> None:
     print(f'\n{table(rows)}\n\n'
-          f'Mean speeds once steady. The wheels are smaller (0.46 m) and closer (0.88 m) than the\n'
-          f"robot's plugin is told (0.52 m, 1.1 m), so without slip it drives at {SPEED_RATIO:.3f}"
-          f' of the\ncommanded speed and turns at {TURN_RATIO:.3f} of the commanded rate, as in'
-          f' Gazebo.\n\nPictures: {folder / PATH_PICTURE} and {folder / ROBOT_PICTURE}\n')
+          'Mean speeds once steady. The wheels are smaller (0.46 m) and closer (0.88 m) than the\n'
+          "robot's plugin expects (0.52 m, 1.1 m), so without slip it drives at "
+          f'{SPEED_RATIO:.3f} of\nthe commanded speed and turns at {TURN_RATIO:.3f} of the '
+          'commanded rate. Gazebo has the\nsame mismatch.\n\n'
+          f'Pictures: {folder / PATH_PICTURE} and {folder / ROBOT_PICTURE}\n')
 
 
 _started = time.monotonic()
