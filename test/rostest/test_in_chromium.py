@@ -327,7 +327,7 @@ class ChromiumTest(unittest.TestCase):
         self.page.wait_for_text('does not answer')
         self.page.forget()
         type(self).server = self.start_server()
-        self.page.wait_for_notification('is there again')
+        self.page.wait_for_notification('is running again')
         wait_until(lambda: 'does not answer' not in self.page.text(), 'no warning', SLOW)
 
     def test_restarted_window_is_found_again_by_its_page(self):

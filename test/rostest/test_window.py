@@ -24,7 +24,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 STEP = 90.0  # [s, wall] timeout of the start of a program
-GONE, BACK = 'gzclient: the simulator has gone', 'gzclient: the simulator is running again'
+GONE, BACK = 'gzclient: the simulator has ended', 'gzclient: the simulator is running again'
 # RViz does so in one of 28 starts.
 CRASHED = 'gzclient: RViz crashed as it opened'
 
@@ -160,7 +160,7 @@ class WindowTest(unittest.TestCase):
         server.process.send_signal(signal.SIGKILL)
         self.see(window, GONE)
         wait_until(lambda: any(marker.type == Marker.TEXT_VIEW_FACING
-                               and marker.text == 'the simulator has gone'
+                               and marker.text == 'the simulator has ended'
                                for message in list(markers) for marker in message.markers),
                    'the notice in the scene', STEP)
         self.assertIsNone(window.process.poll())

@@ -119,7 +119,7 @@ def _end_with_parent() -> None:
 
 
 def _run_window(command: Sequence[str], environment: Mapping[str, str]) -> int:
-    """Run the window until it is closed, and report when the simulator has gone."""
+    """Run the window until it is closed, and report when the simulator has ended."""
     from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
 
     received: list[int | None] = []

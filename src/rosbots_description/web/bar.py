@@ -16,7 +16,7 @@ SPEEDS = {'0.1x': 0.1, '1x': 1.0, '10x': 10.0, 'as fast as possible': 0.0}
 
 
 class TimeControl(Protocol):
-    """What a simulator is told; each raises SimError with a sentence if it is refused."""
+    """The commands to a simulator; each raises SimError with a sentence if it is refused."""
 
     def pause(self) -> None:
         """Pause simulated time."""

@@ -29,7 +29,7 @@ class Choice:
         return tuple(self._names.values())
 
     def offer(self, names: Sequence[str]) -> None:
-        """Offer other names, at least one; the first is chosen if the one that was has gone."""
+        """Offer other names, at least one; the first is chosen if the chosen one is missing."""
         found = _by_text(names)
         if list(found.items()) != list(self._names.items()):
             self._names = found

@@ -39,7 +39,7 @@ class Robots(Protocol):
     """Robots that take velocity commands."""
 
     def drive_topics(self) -> Sequence[str]:
-        """Return the topics of commands that somebody subscribes to."""
+        """Return the topics of commands that have subscribers."""
 
     def drive(self, topic: str, forward: float, left: float) -> None:
         """Send a command: forward [m/s], and turning left [rad/s]."""

@@ -156,7 +156,7 @@ class Gate:
 
     def _acknowledge(self, visitor: Visitor, message: Any, size: int,  # noqa: ANN401
                      received: int | None = None) -> None:
-        """Let a browser show how much of its file has come; all of it, unless it is told."""
+        """Let a browser show how much of its file has come; by default, all of it."""
         client = self._client(visitor)
         if client is not None:
             client._websock_connection.queue_message(FileTransferPartAck(

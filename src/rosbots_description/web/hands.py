@@ -89,7 +89,7 @@ class HandsPanel(Panel):
         """Return the scoped name of the selected link, else of the canonical one."""
         shown = self._models.all.get(model)
         if shown is None:
-            raise SimError(f"model '{model}' has gone")
+            raise SimError(f"model '{model}' does not exist any more")
         return scoped_name(model, self._selection.link or shown.links[0].name)
 
     def _duplicate(self, model: str) -> None:

@@ -1,4 +1,4 @@
-"""Insert models: shapes, a lamp, models of the model path, robot descriptions, and files."""
+"""Insert models: shapes, a light, models of the model path, robot descriptions, and files."""
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +15,7 @@ from .history import History
 from .panel import Panel, attempt
 from .place import Places
 from .selection import Selection
-from .shapes import KINDS, lamp, shape
+from .shapes import KINDS, point_light, shape
 from .site import Site
 
 MOST = 1000  # names that are offered
@@ -71,7 +71,7 @@ class InsertPanel(Panel):
             colour = gui.add_rgb('Colour', (220, 120, 40))
             static = gui.add_checkbox('Static', False, hint='it never moves by itself')
             add_shape = gui.add_button('Insert shape', icon=viser.Icon.PLUS)
-            add_lamp = gui.add_button('Insert lamp', icon=viser.Icon.BULB, hint='of that colour')
+            add_light = gui.add_button('Insert light', icon=viser.Icon.BULB, hint='of that colour')
             self._light = Choice(gui, 'Light', [NONE])
             remove_light = gui.add_button('Delete light', icon=viser.Icon.BULB_OFF)
         with gui.add_folder('Model'):
@@ -89,8 +89,8 @@ class InsertPanel(Panel):
         place.on_click(lambda event: self._places.choose(event.client))
         add_shape.on_click(lambda event: self._insert(event.client, lambda _: library.shape(
             shape(kind.value, size.value, mass.value, rgb(), static.value))))
-        add_lamp.on_click(lambda event: self._insert(event.client, lambda place: library.light(
-            lamp(place, rgb()))))
+        add_light.on_click(lambda event: self._insert(event.client, lambda place: library.light(
+            point_light(place, rgb()))))
         remove_light.on_click(lambda _: attempt(self._remove_light, complain))
         add_model.on_click(lambda event: self._insert(event.client, lambda _: library.model(
             _chosen(self._models.value, 'model on the model path'))))

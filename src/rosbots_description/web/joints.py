@@ -39,7 +39,7 @@ class Joints(Protocol):
         """Apply an effort [N m or N] from now on."""
 
     def command_topics(self) -> Sequence[CommandTopic]:
-        """Return the topics of commands that somebody subscribes to."""
+        """Return the topics of commands that have subscribers."""
 
     def command(self, topic: CommandTopic, values: Sequence[float]) -> None:
         """Publish a value for each joint of a topic, or its one number."""

@@ -81,7 +81,7 @@ class Joystick(Panel):
 
     def _drag(self, event: viser.SceneNodeDragEvent[viser.IcosphereHandle], pad: _Pad) -> None:
         with self._lock:
-            # A drag goes on when its pad has been removed, and ends when its browser has gone.
+            # A drag goes on when its pad was removed, and ends when its browser has disconnected.
             is_there = (self._pads.get(event.client_id) is pad
                         and event.client_id in self._site.get_clients())
             if event.phase == 'end' or not is_there:

@@ -36,7 +36,7 @@ def collisions(scene: viser.SceneApi, path: str, _model: ShownModel, link: Shown
             continue
         try:
             content = visual_gltf(Visual(one.name, one.geometry, material=COLLISION))
-        except ModelError:  # its mesh has gone meanwhile
+        except ModelError:  # its mesh was removed meanwhile
             continue
         scene.add_glb(f'{path}/{number}', content, cast_shadow=False, receive_shadow=False,
                       position=one.pose.position, wxyz=wxyz(one.pose))

@@ -1,4 +1,4 @@
-"""The page: its scene and its controls, while somebody looks."""
+"""The page: its scene and its controls, while a browser is connected."""
 
 import gc
 import logging
@@ -42,9 +42,9 @@ from .views import ViewPanel, look
 
 logger = logging.getLogger(__name__)
 
-SILENCE = 2.0  # [s, wall] without a motion after which the simulator has gone
+SILENCE = 2.0  # [s, wall] without a motion after which the simulator counts as ended
 GONE = 'The simulator does not answer. This page shows its last state.'
-BACK = 'The simulator is there again.'
+BACK = 'The simulator is running again.'
 
 
 class View(Protocol):
@@ -186,7 +186,7 @@ class Page:
             self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
 
     def poll(self) -> None:
-        """Tell those who look what has gone or come; to be called about twice a second."""
+        """Refresh the panels, and report a silent simulator; to be called about twice a second."""
         if self._is_open:
             for panel in self._panels:
                 panel.refresh()
@@ -200,7 +200,7 @@ class Page:
     def _enter(self, client: viser.ClientHandle) -> None:
         with self._lock:
             if client.client_id not in self._site.get_clients():
-                return  # it has gone, and `_leave` may have come first
+                return  # it has disconnected, and `_leave` may have come first
             self._new.append(client)
             if not self._is_open:
                 self._is_open, self._is_complete = True, False

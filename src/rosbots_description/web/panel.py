@@ -1,4 +1,4 @@
-"""What every panel of the page is told of, and how it gives commands."""
+"""The events that every panel of the page receives, and how it gives commands."""
 
 import logging
 from collections.abc import Callable
@@ -32,10 +32,10 @@ class Panel:
     """A part of the page that shows or controls something; it overrides what it needs."""
 
     def open(self) -> None:
-        """Begin: somebody looks at the page."""
+        """Begin: the first browser has connected."""
 
     def close(self) -> None:
-        """End what costs the simulator anything: nobody looks any more."""
+        """End what costs the simulator anything: the last browser has disconnected."""
 
     def apply(self, change: SceneChange) -> None:
         """Take in a change of the scene."""

@@ -37,7 +37,7 @@ class Places:
         return (float(x), float(y), 0.0)
 
     def forget(self, client: viser.ClientHandle) -> None:
-        """Forget a browser that has gone."""
+        """Forget a browser that has disconnected."""
         self._stop(client.client_id)
         if self._chosen.pop(client.client_id, None) is not None:
             self._scene.remove_by_name(f'{MARK}/{client.client_id}')

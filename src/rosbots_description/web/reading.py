@@ -1,4 +1,4 @@
-"""What panels share that read something only while it is chosen and somebody looks."""
+"""What panels share that read something only while it is chosen and a browser is connected."""
 
 import threading
 
@@ -23,7 +23,7 @@ class ReadingPanel(Panel):
             self._read_chosen()
 
     def close(self) -> None:
-        """Read nothing until somebody looks again."""
+        """Read nothing until a browser connects again."""
         with self._lock:
             self._is_seen = False
             self._read_chosen()

@@ -33,7 +33,7 @@ class _Shown:
 class SceneView(Panel):
     """Shows the scene to all that look; not thread-safe.
 
-    `click` is called with the names of model and link that somebody has clicked on, from any
+    `click` is called with the names of model and link that are clicked on, from any
     thread; grounds and other planes take no clicks.
     """
 

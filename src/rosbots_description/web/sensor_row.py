@@ -22,7 +22,7 @@ class SensorRow:
 
     def __init__(self, site: viser.ViserServer, topic: str, kind: str, checked: bool,
                  choose: Callable[[], None]) -> None:
-        """Add the box; `choose` is called when somebody changes it."""
+        """Add the box; `choose` is called when a browser changes it."""
         self._site, self._topic = site, topic
         with site.atomic():  # nobody clicks before it is listened to
             self._box = site.gui.add_checkbox(plain(topic), checked, hint=plain(kind))

@@ -16,7 +16,7 @@ from ..sim.description import (
 )
 
 KINDS = ('box', 'sphere', 'cylinder')
-LAMP_HEIGHT = 2.0  # [m] above the ground
+LIGHT_HEIGHT = 2.0  # [m] above the ground
 
 
 def shape(kind: str, size: Vector, mass: float, rgb: Vector, static: bool) -> ModelSpec:
@@ -49,8 +49,8 @@ def shape(kind: str, size: Vector, mass: float, rgb: Vector, static: bool) -> Mo
     return ModelSpec(kind, (link,), static=static)
 
 
-def lamp(place: Vector, rgb: Vector) -> LightSpec:
-    """Return a lamp of a colour above a place on the ground [m]."""
+def point_light(place: Vector, rgb: Vector) -> LightSpec:
+    """Return a point light of a colour above a place on the ground [m]."""
     x, y, z = place
-    return LightSpec('lamp', pose=Pose((x, y, z + LAMP_HEIGHT)), diffuse=(*rgb, 1.0), range=20.0,
+    return LightSpec('light', pose=Pose((x, y, z + LIGHT_HEIGHT)), diffuse=(*rgb, 1.0), range=20.0,
                      attenuation_constant=0.5, attenuation_linear=0.0, attenuation_quadratic=0.1)

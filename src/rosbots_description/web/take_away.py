@@ -132,7 +132,7 @@ class TakeButton:
             threading.Thread(target=self._hand_over, daemon=True).start()
 
     def drop(self, client: viser.ClientHandle) -> None:
-        """End the take of a browser that has gone."""
+        """End the take of a browser that has disconnected."""
         with self._lock:
             is_its = self._running is not None and self._running[1] is client
         running = self._stop() if is_its else None

@@ -101,7 +101,7 @@ class VideoTake:
 
     @property
     def is_full(self) -> bool:
-        """Whether it has reached its greatest length, or the browser has gone."""
+        """Whether it has reached its greatest length, or the browser has disconnected."""
         return not self._thread.is_alive()
 
     def move(self, motion: ShownMotion) -> None:

@@ -88,7 +88,7 @@ class Uploads:
         return upload, is_whole
 
     def leave(self, owner: object) -> None:
-        """Drop the files of a browser that has gone."""
+        """Drop the files of a browser that has disconnected."""
         self._running = {key: one for key, one in self._running.items() if one.owner is not owner}
 
 

@@ -8,7 +8,7 @@ from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Box, Cylinder, SceneChange, Sphere
 from rosbots_description.web import insert, uploads
 from rosbots_description.web.place import on_ground
-from rosbots_description.web.shapes import lamp, shape
+from rosbots_description.web.shapes import point_light, shape
 
 UPLOAD = 'Upload URDF, xacro or SDF'
 
@@ -48,7 +48,7 @@ def test_shape_is_inserted_on_the_ground_where_the_camera_looks(ready, simulator
 
 
 def test_lamp_is_above_the_place(ready, simulator):
-    ready.click('Insert lamp')
+    ready.click('Insert light')
     ready.wait_until(lambda: inserted(simulator))
     (text,) = inserted(simulator)
     assert text.xml.pose == Pose((1.0, 2.0, 2.0))
@@ -57,7 +57,7 @@ def test_lamp_is_above_the_place(ready, simulator):
 def test_light_is_deleted_and_comes_back(ready, simulator):
     ready.click('Delete light')
     ready.wait_until(lambda: 'there is no light' in ready.notes())
-    light = lamp((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    light = point_light((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     simulator.change(SceneChange(True, lights={'lamp': light}))
     ready.wait_until(lambda: ready.value('Light') == 'lamp')
     ready.click('Delete light')

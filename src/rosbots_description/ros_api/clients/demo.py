@@ -126,7 +126,7 @@ class DemoClient:
             Samples of ground truth and of odometry, in the world frame, oldest first.
         Raises:
             TimeoutError: simulated time is stopped or too slow.
-            ConnectionError: the model or the simulator has gone.
+            ConnectionError: the model was deleted, or the simulator ended.
         """
         command = Twist()
         command.linear.x, command.angular.z = speed, turn_rate
@@ -137,7 +137,7 @@ class DemoClient:
             self._command.publish(command)
             state = self._state()
             if not state.success:
-                raise ConnectionError(f'{self._model} has gone: {state.status_message}')
+                raise ConnectionError(f'{self._model} was deleted: {state.status_message}')
             truth.append(_sample(state.header.stamp, state.pose))
             return truth[-1].stamp - truth[0].stamp >= duration
 

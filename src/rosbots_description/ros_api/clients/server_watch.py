@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import rospy
 
 TIMEOUT = 2.0  # for the simulator to accept a connection [s, wall]
-NOTICE = 'the simulator has gone'
+NOTICE = 'the simulator has ended'
 NODE = 'gazebo'
 MARKERS_TOPIC = 'gazebo/view/markers'
 
@@ -30,7 +30,7 @@ class ServerWatch:
         """Start in the state unknown.
 
         Args:
-            report: called with False when the simulator has gone, and with True when it is back.
+            report: called with False when the simulator has ended, with True when it runs again.
             node: the simulator's name, relative to this program's namespace.
         """
         self._report = report
@@ -71,7 +71,7 @@ class Notice:
         self._publisher: rospy.Publisher | None = None
 
     def show(self) -> None:
-        """Show in the scene that the simulator has gone."""
+        """Show in the scene that the simulator has ended."""
         import rospy  # seldom needed, slow to import
         from visualization_msgs.msg import MarkerArray
 

@@ -1,4 +1,4 @@
-"""Contacts, while somebody looks at them.
+"""Contacts, while a browser shows them.
 
 Subscribes:
     gazebo/view/contacts: between `open` and `close`.

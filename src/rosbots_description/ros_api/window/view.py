@@ -1,4 +1,4 @@
-"""The scene, while somebody looks.
+"""The scene, while a browser is connected.
 
 Subscribes:
     gazebo/view/scene, gazebo/view/motion: between `open` and `close`.

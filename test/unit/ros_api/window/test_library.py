@@ -8,7 +8,7 @@ from rosbots_description.sim.core import SimError
 from rosbots_description.sim.description import LightSpec
 from rosbots_description.sim.formats import load_sdf, load_sdf_light
 from rosbots_description.sim.resources import MAX_XML_BYTES
-from rosbots_description.web.shapes import lamp, shape
+from rosbots_description.web.shapes import point_light, shape
 
 HEAD = '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
@@ -59,7 +59,7 @@ def test_shapes_and_lights_are_read_as_they_were_written(library):
     assert (read.static, read.links[0].collisions) == (False, spec.links[0].collisions)
     assert read.links[0].inertial == spec.links[0].inertial
     assert read.links[0].visuals[0].material.rgba == (1.0, 0.5, 0.0, 1.0)
-    for light in (lamp((1.0, 2.0, 0.0), (1.0, 0.5, 0.0)),
+    for light in (point_light((1.0, 2.0, 0.0), (1.0, 0.5, 0.0)),
                   LightSpec('s', 'spot', spot_inner_angle=0.2, spot_outer_angle=0.4)):
         assert load_sdf_light(library.light(light).xml, light.name) == light
 
