@@ -192,6 +192,8 @@ def main(argv: list[str] | None = None) -> int:
     """Run what the command line names, by default all phases; return the exit code."""
     arguments = parse(argv)
     os.environ['PYTHONHASHSEED'] = str(arguments.seed)
+    # Else each of the hundreds of processes would compile our sources anew.
+    os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
     # A shell lets what runs in its background ignore Ctrl-C, and all tests would inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     shutil.rmtree(REPORTS, ignore_errors=True)
