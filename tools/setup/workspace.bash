@@ -29,24 +29,33 @@ workspace_fingerprint() (
     find companions -type f \
       \( -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -path '*/cmake/*' \) -print0 |
       sort -z | xargs -0 -r sha256sum tools/make_messages.py tools/messages.cmake
-    find scripts companions/*/scripts test/rostest -type f 2> /dev/null | sort
+    find scripts companions/*/scripts test/rostest -type f ! -name '*.pyc' 2> /dev/null | sort
   } | sha256sum
 )
 
+# Links that are right stay: programs of this workspace may be running.
 link_packages() {
-  local package
-  rm -rf "$WORKSPACE/src/rosbots_description"
-  mkdir -p "$WORKSPACE/src"
-  find "$WORKSPACE/src" -maxdepth 1 -type l -delete
+  local source=$WORKSPACE/src ours=$WORKSPACE/src/rosbots_description path
+  local -A links=()
+  for path in "$ROOT"/companions/*/; do
+    links[$source/$(basename "$path")]=${path%/}
+  done
   if [[ -e $ROOT/CATKIN_IGNORE ]]; then  # tools/link.py hides the clone as a whole, not its parts
-    mkdir "$WORKSPACE/src/rosbots_description"
-    find "$ROOT" -mindepth 1 -maxdepth 1 ! -name '.*' ! -name CATKIN_IGNORE \
-      -exec ln -s -t "$WORKSPACE/src/rosbots_description" {} +
+    [[ ! -L $ours ]] || rm "$ours"
+    mkdir -p "$ours"
+    for path in "$ROOT"/*; do
+      [[ $path == */CATKIN_IGNORE ]] || links[$ours/$(basename "$path")]=$path
+    done
   else
-    ln -s "$ROOT" "$WORKSPACE/src/rosbots_description"
+    [[ -L $ours ]] || rm -rf "$ours"
+    mkdir -p "$source"
+    links[$ours]=$ROOT
   fi
-  for package in "$ROOT"/companions/*/; do
-    ln -s "${package%/}" "$WORKSPACE/src/$(basename "$package")"
+  while IFS= read -r path; do
+    [[ -v links[$path] && $(readlink "$path") == "${links[$path]}" ]] || rm "$path"
+  done < <(find "$source" -maxdepth 2 -type l ! -name CMakeLists.txt)
+  for path in "${!links[@]}"; do
+    [[ -L $path ]] || ln -s "${links[$path]}" "$path"
   done
 }
 

@@ -1,0 +1,71 @@
+"""The links of the catkin workspace: what is right stays, as programs may be running from it."""
+
+import subprocess
+
+import pytest
+from support import ROOT
+
+PACKAGES = ('gazebo_ros', 'rosbots_simulator')
+
+
+@pytest.fixture
+def clone(tmp_path):
+    for name in PACKAGES:
+        (tmp_path / 'companions' / name / 'scripts').mkdir(parents=True)
+        (tmp_path / 'companions' / name / 'package.xml').touch()
+    for folder in ('scripts', 'test/rostest', 'tools'):
+        (tmp_path / folder).mkdir(parents=True)
+    return tmp_path
+
+
+def run(clone, function):
+    program = f'set -euo pipefail; source {ROOT}/tools/setup/workspace.bash; {function}'
+    return subprocess.run(
+        ['bash', '-c', program], check=True, stdout=subprocess.PIPE, text=True,
+        env={'PATH': '/usr/bin:/bin', 'ROOT': str(clone), 'WORKSPACE': str(clone / '.ws')}).stdout
+
+
+def link(clone):
+    """Link the packages; return the targets of the links, by their paths in the workspace."""
+    run(clone, 'link_packages')
+    source = clone / '.ws' / 'src'
+    return {str(path.relative_to(source)): path.readlink()
+            for path in source.rglob('*') if path.is_symlink()}
+
+
+def expected(clone):
+    return {name: clone / 'companions' / name for name in PACKAGES} | {
+        'rosbots_description': clone}
+
+
+def test_links_that_are_right_are_not_made_anew(clone):
+    assert link(clone) == expected(clone)
+    source = clone / '.ws' / 'src'
+    before = {path.name: path.lstat().st_ino for path in source.iterdir()}
+    (source / 'stale').symlink_to(clone / 'nowhere')
+    (source / 'gazebo_ros').unlink()
+    (source / 'gazebo_ros').symlink_to(clone / 'elsewhere')
+    assert link(clone) == expected(clone)
+    after = {path.name: path.lstat().st_ino for path in source.iterdir()}
+    del before['gazebo_ros'], after['gazebo_ros']
+    assert after == before
+
+
+def test_a_hidden_clone_is_linked_in_parts_and_shown_again(clone):
+    link(clone)
+    (clone / 'CATKIN_IGNORE').touch()
+    parts = {f'rosbots_description/{name}': clone / name
+             for name in ('companions', 'scripts', 'test', 'tools')}
+    for _ in range(2):
+        assert link(clone) == {name: clone / 'companions' / name for name in PACKAGES} | parts
+    (clone / 'CATKIN_IGNORE').unlink()
+    assert link(clone) == expected(clone)
+
+
+def test_compiled_sources_do_not_make_the_workspace_stale(clone):
+    before = run(clone, 'workspace_fingerprint')
+    (clone / 'scripts' / '__pycache__').mkdir()
+    (clone / 'scripts' / '__pycache__' / 'wander.pyc').touch()
+    assert run(clone, 'workspace_fingerprint') == before
+    (clone / 'scripts' / 'wander.py').touch()
+    assert run(clone, 'workspace_fingerprint') != before
