@@ -14,6 +14,24 @@ OPTIONS = [
     '--disable-background-networking', '--disable-component-update', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
 ]
+UNTIDY = 'Tried to update non-existent component'  # of what was removed in the same frame
+# [ms] before each frame: pages that draw all the time, in software, would keep the processors busy.
+PAUSE = 500
+DRAW_SELDOM = """
+const soon = requestAnimationFrame, cancelSoon = cancelAnimationFrame, frames = new Map();
+window.requestAnimationFrame = callback => {
+  const frame = setTimeout(() => frames.set(frame, soon(now => {
+    frames.delete(frame);
+    callback(now);
+  })), PAUSE);
+  return frame;
+};
+window.cancelAnimationFrame = frame => {
+  clearTimeout(frame);
+  cancelSoon(frames.get(frame));
+  frames.delete(frame);
+};
+""".replace('PAUSE', str(PAUSE))
 
 
 @contextmanager
@@ -33,6 +51,9 @@ def chromium(size: tuple[int, int], *more: str) -> Iterator[webdriver.Chrome]:
         width, height = size
         driver.execute_cdp_cmd('Emulation.setDeviceMetricsOverride', {
             'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': False})
+        driver.execute_cdp_cmd('Page.enable', {})
+        driver.execute_cdp_cmd('Page.addScriptToEvaluateOnNewDocument', {
+            'source': f'{{{DRAW_SELDOM}}}'})
         yield driver
     finally:
         driver.quit()
@@ -54,5 +75,6 @@ def drawn(driver: webdriver.Chrome) -> None:
 
 
 def faults(driver: webdriver.Chrome) -> list[str]:
-    """Return the errors that its console has shown since the last call."""
-    return [entry['message'] for entry in driver.get_log('browser') if entry['level'] == 'SEVERE']
+    """Return the errors that its console has shown since the last call, but for viser's own."""
+    return [entry['message'] for entry in driver.get_log('browser')
+            if entry['level'] == 'SEVERE' and UNTIDY not in entry['message']]

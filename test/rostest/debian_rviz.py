@@ -6,6 +6,7 @@ by the same heap, CRASH in what a terminal showed, is no fault of ours either.
 """
 
 import re
+from pathlib import Path
 
 import rospy
 from rosnode import rosnode_ping
@@ -14,6 +15,17 @@ from simulator import wait_until
 STARTS = 4  # at most
 CRASH = re.compile(r'rviz-\d+\] (process )?has died.*?exit code -(6|11),', re.S)
 READY_SERVICE = '/rviz/reload_shaders'  # the first service after its window
+CONFIG = Path(__file__).resolve().parents[2] / 'config' / 'rosbots.rviz'
+SAVED = '.rviz/default.rviz'  # in a home folder: what RViz opens without an argument
+OFTEN, SELDOM = 'Frame Rate: 30', 'Frame Rate: 2'
+
+
+def draw_seldom(path):
+    """Write our view with few pictures per second: in software, 30 keep a processor busy."""
+    text = CONFIG.read_text()
+    assert OFTEN in text
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text.replace(OFTEN, SELDOM))
 
 
 def is_ready(node='/rviz'):

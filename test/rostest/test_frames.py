@@ -9,6 +9,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import debian_rviz
 import rospy
@@ -50,6 +51,9 @@ class FramesTest(unittest.TestCase):
     def setUp(self):
         self._folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self._folder)
+        self._view = Path(self._folder, debian_rviz.SAVED)
+        debian_rviz.draw_seldom(self._view)
+        self.enterContext(mock.patch.dict(os.environ, HOME=self._folder))
         self._edges = {}
         for topic in ('/tf', '/tf_static'):
             subscriber = rospy.Subscriber(topic, TFMessage, self._note)
@@ -83,10 +87,11 @@ class FramesTest(unittest.TestCase):
 
     def rviz(self, own=False):
         """Launch rviz.launch, a reader's or ours, and wait until RViz is ready."""
-        words = ['rosbots_description', 'rviz.launch']
         if own:
             words = [os.path.join(self._folder, 'rviz.launch')]
             Path(words[0]).write_text(ARTICLE)
+        else:
+            words = ['rosbots_description', 'rviz.launch', f'rviz_config:={self._view}']
         return debian_rviz.start(lambda: self.open('roslaunch', *words), self.end, STEP)
 
     def simulator(self):

@@ -42,7 +42,10 @@ from rosbots_description.web.text import plain
 SIZE = (1000, 700)  # [pixels]
 # The scene is drawn with few pixels: it is not looked at, and slow without a graphics card.
 QUERY = '&fixedDpr=0.1'
-WORLD = """<sdf version="1.6"><world name="default">
+# How things move is not looked at either: few steps, and nothing falls.
+WORLD = """<sdf version="1.6"><world name="default"><gravity>0 0 0</gravity>
+  <physics type="ode"><max_step_size>0.01</max_step_size>
+    <real_time_update_rate>100</real_time_update_rate></physics>
   <include><uri>model://ground_plane</uri></include><scene><shadows>0</shadows></scene>
 </world></sdf>"""
 UPLOAD = 'Upload URDF, xacro or SDF'
@@ -52,7 +55,6 @@ NAMES = [text for text in TEXTS if text != REFUSED]
 GROUPS = [TEXTS[begin:begin + 3] for begin in range(0, len(TEXTS), 3)]
 MODELS = {''.join(group): group[0] for group in GROUPS if REFUSED not in group}  # and their links
 SLIDERS, CURVES = 40, 20  # at once
-UNTIDY = 'Tried to update non-existent component'  # viser's, of what was removed in the same frame
 CONTROLLERS = 'topics of controllers'
 LIGHT = '<sdf version="1.6"><light name={} type="point"><diffuse>0 0 0 1</diffuse></light></sdf>'
 HAS_RUN = f'return "{MARK}" in window'
@@ -132,7 +134,7 @@ class HostileNamesTest(unittest.TestCase):
         self.assertEqual(self.driver.execute_script('return foreign'), [])
         self.assertFalse(self.driver.execute_script(HAS_RUN))
         self.assertEqual(self.listener.connections, 0)
-        errors = [one for one in faults(self.driver) if UNTIDY not in one]
+        errors = faults(self.driver)
         self.assertEqual([] if self.makes_markup else errors, [])
         self.assertIn('Iterations', self.driver.find_element(By.TAG_NAME, 'body').text)  # seen
 

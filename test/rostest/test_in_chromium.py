@@ -60,8 +60,8 @@ WORLD = f"""<sdf version="1.6"><world name="default">
     <pose>{" ".join(map(str, EYE))} 0 {PITCH} {YAW}</pose>
   </camera></gui>
 </world></sdf>"""
-# The picture is of the scene only, and not of fewer pixels where the processor is slow.
-QUERY = '&fixedDpr=1'
+# The picture is of the scene only, and of as many pixels however slow the processor is.
+QUERY = '&fixedDpr=0.5'
 SCENE_ONLY = """const style = document.createElement('style');
 style.textContent = 'body *:not(canvas):not(:has(canvas)) { visibility: hidden !important }';
 document.head.append(style)"""

@@ -60,6 +60,7 @@ class Newcomer:
         (self.home / 'rosbots').symlink_to(readme.ROOT)
         self.source = self.home / 'catkin_ws' / 'src'
         self.source.mkdir(parents=True)
+        debian_rviz.draw_seldom(self.home / debian_rviz.SAVED)
         self.environment = {
             'HOME': str(self.home), 'PATH': '/usr/local/bin:/usr/bin:/bin', 'LANG': 'C.UTF-8',
             'ROS_MASTER_URI': os.environ['ROS_MASTER_URI'], 'ROS_HOSTNAME': 'localhost',
