@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Mutation testing: whether the tests notice a wrong number, sign or comparison.
+"""Mutation testing: whether the tests notice a wrong number, sign or comparison, or a lost line.
 
 One place of a file is changed, and the unit and engine tests that import the file run, those of its
 own folder first, up to the first that fails. That happens in a fork of this process, where the
-import of the file gives the changed one; no file is written. A mutant that no test notices
-survived: it is printed, to become a test, or to show that the line is not needed.
+import of the file gives the changed one; no file is written, and programs that a test starts have
+the unchanged one. A mutant that no test notices survived: it is to become a test, or to show that
+the line is not needed. Tests that fail without any change notice nothing: they are left out.
 
-    ./rosbots bench mutants [--sample N] [--seed S] [--own] [FOLDER…]
+    ./rosbots bench mutants [--sample N] [--seed S] [--own] [--lines] [--again OUTPUT] [FOLDER…]
 """
 
 from __future__ import annotations
@@ -14,77 +15,41 @@ from __future__ import annotations
 import argparse
 import ast
 import contextlib
-import copy
 import importlib
+import json
 import os
 import random
 import resource
 import signal
 import sys
+import tempfile
+import time
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mutation import changed_line, mutant, places, statements
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / 'tools'))
 from changed import dependencies, test_files
 from results import ROOT
 
+if TYPE_CHECKING:
+    import pytest
+
 PACKAGE = Path('src', 'rosbots_description')
 ROOMS = ('sim/plugins/drive', 'sim/sensors', 'sim/physics/bullet', 'sim/description/inertia.py',
          'gym/tasks')
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
-HOPELESS = 300, 1800  # [s, processor], [s, wall] after which a mutant hangs, and so was noticed
+# A mutant hangs, which counts as noticed, when its tests take longer than these multiples of their
+# time without a change, beyond a minute: of the processor's time, of wall time.
+HOPELESS = 5.0, 20.0
 # What tests import besides the product; all forks share it.
 OTHERS = ('pytest', '_pytest.assertion.rewrite', 'hypothesis', 'numpy', 'pybullet', 'lxml.etree',
           'yaml', 'msgspec', 'gymnasium', 'rospy', 'collada', 'PIL.Image', 'rosgraph',
           'sensor_msgs.msg', 'gazebo_msgs.srv', 'tf2_msgs.msg', 'pyarrow', 'viser', 'scipy.spatial')
-OPPOSITE: dict[type[ast.AST], type[ast.AST]] = {
-    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
-    ast.Lt: ast.GtE, ast.GtE: ast.Lt, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq,
-    ast.NotEq: ast.Eq, ast.And: ast.Or, ast.Or: ast.And}
-OTHER_NAME = {'min': 'max', 'max': 'min'}
-
-
-def mutate(node: ast.AST) -> bool:
-    """Change a node in place; return whether there is something to change."""
-    match node:
-        case ast.Constant(value=bool(value)):
-            node.value = not value
-        case ast.Constant(value=int(value) | float(value)):
-            node.value = 2 * value or type(value)(1)
-        case ast.BinOp() | ast.BoolOp() if type(node.op) in OPPOSITE:
-            node.op = OPPOSITE[type(node.op)]()  # type: ignore[assignment]
-        case ast.Compare(ops=[first, *others]) if type(first) in OPPOSITE:
-            node.ops = [OPPOSITE[type(first)](), *others]  # type: ignore[list-item]
-        case ast.UnaryOp(op=ast.USub()):
-            node.op = ast.UAdd()
-        case ast.Call(func=ast.Name(id='min' | 'max' as name)):
-            node.func = ast.Name(OTHER_NAME[name])
-        case _:
-            return False
-    return True
-
-
-def places(tree: ast.Module) -> list[int]:
-    """Return the numbers of the nodes that can be changed; strict=True only asserts."""
-    asserted = {id(node.value) for node in ast.walk(tree)
-                if isinstance(node, ast.keyword) and node.arg == 'strict'}
-    return [number for number, node in enumerate(ast.walk(tree))
-            if id(node) not in asserted and mutate(copy.copy(node))]
-
-
-def changed_line(tree: ast.Module, number: int) -> tuple[str, str]:
-    """Return the first line that differs in a mutant, before and after."""
-    before = ast.unparse(tree).splitlines()
-    after = ast.unparse(mutant(tree, number)).splitlines()
-    return next((one.strip(), other.strip()) for one, other in zip(before, after, strict=True)
-                if one != other)
-
-
-def mutant(tree: ast.Module, number: int) -> ast.Module:
-    """Return the tree with the node of this number changed."""
-    made = copy.deepcopy(tree)
-    mutate(list(ast.walk(made))[number])
-    return made
 
 
 def tests_of(path: Path) -> list[list[str]]:
@@ -105,43 +70,120 @@ def tests_of(path: Path) -> list[list[str]]:
     return [list(map(str, stage)) for stage in stages]
 
 
-def is_noticed(path: Path, changed: ast.Module, tests: list[list[str]]) -> bool:
-    """Tell whether a test fails, hangs or crashes where the content of a file is another."""
-    return any(_fails(path, changed, some) for some in tests if some)
+@dataclass(eq=False)  # pytest wants plugins that can be hashed
+class Report:
+    """Part of pytest's report, collected as its plugin."""
+
+    seconds: dict[str, float] = field(default_factory=lambda: defaultdict(float))  # by file
+    failed: list[str] = field(default_factory=list)  # names of tests, or of files without import
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note one phase of a test."""
+        self.seconds[report.nodeid.partition('::')[0]] += report.duration
+        if report.failed:
+            self.failed.append(report.nodeid)
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """Note a file that cannot be imported."""
+        if report.failed:
+            self.failed.append(report.nodeid)
 
 
-def _fails(path: Path, changed: ast.Module, tests: list[str]) -> bool:
-    child = os.fork()
-    if child == 0:
-        code = 1
-        with contextlib.suppress(BaseException):
-            os.setsid()
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, 1)
-            os.dup2(nowhere, 2)
-            resource.setrlimit(resource.RLIMIT_CPU, (HOPELESS[0], HOPELESS[0]))
-            signal.alarm(HOPELESS[1])
-            code = _run_tests(path, changed, tests)
-        os._exit(code)
-    _, status = os.waitpid(child, 0)
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(child, signal.SIGKILL)  # what its tests have left behind
-    return status != 0
+class Tests:
+    """Runs tests on mutants.
+
+    Attributes:
+        broken: tests that fail without any change.
+    """
+
+    def __init__(self) -> None:
+        self.broken: set[str] = set()
+        self._seconds: dict[str, float] = {}  # without any change, by file
+
+    def notice(self, path: Path, changed: ast.Module, stages: list[list[str]]) -> str:
+        """Return how tests notice that a file has another content, or '' if they do not."""
+        return next(filter(None, (self._notice(path, changed, some) for some in stages)), '')
+
+    def _notice(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
+        new = [name for name in tests if name not in self._seconds]
+        if new:
+            unchanged, verdict = _run(None, None, new, None)
+            if verdict not in ('', 'failed'):
+                raise SystemExit(f'without any change, {" ".join(new)} {verdict}')
+            self._seconds |= dict.fromkeys(new, 0.0) | unchanged.seconds
+            self.broken |= set(unchanged.failed)
+        files = [name for name in tests if name not in self.broken]
+        if not files:
+            return ''
+        usual = sum(self._seconds[name] for name in files)
+        report, verdict = _run(path, changed, [*files, *(
+            f'--deselect={name}' for name in self.broken if '::' in name)], usual)
+        return f'{verdict} {report.failed[0]}' if report.failed else verdict
 
 
-def _run_tests(path: Path, changed: ast.Module, tests: list[str]) -> int:
-    import pytest
+def _run(path: Path | None, changed: ast.Module | None, arguments: list[str],
+         usual: float | None) -> tuple[Report, str]:
+    """Run pytest in a fork, up to the first failure if a file is changed.
 
+    Args:
+        usual: duration without any change [s].
+
+    Returns:
+        the report, empty if the tests did not end by themselves; and 'failed', 'hung', 'crashed',
+        or '' if all tests passed.
+    """
+    with tempfile.TemporaryFile() as output:
+        child = os.fork()
+        if child == 0:
+            with contextlib.suppress(BaseException):
+                os.setsid()
+                with open(os.devnull, 'wb') as nowhere:
+                    os.dup2(nowhere.fileno(), 1)
+                    os.dup2(nowhere.fileno(), 2)
+                resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+                if usual is not None:
+                    limit = round(60.0 + HOPELESS[0] * usual)
+                    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
+                    signal.alarm(round(60.0 + HOPELESS[1] * usual))
+                if path:
+                    _replace(path, changed)
+                report = _run_pytest([*arguments, *(['-x'] if path else [])])
+                output.write(json.dumps(report.__dict__).encode())
+                output.flush()
+            os._exit(0)
+        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child, signal.SIGKILL)  # what its tests have left behind
+        output.seek(0)
+        text = output.read()
+    if not text:
+        return Report(), ('hung' if -status in (signal.SIGALRM, signal.SIGXCPU) else 'crashed')
+    report = Report(**json.loads(text))
+    return report, 'failed' if report.failed else ''
+
+
+def _replace(path: Path, changed: ast.Module | None) -> None:
+    """Let imports of a file in this process give the changed content."""
     get_code = SourceFileLoader.get_code
 
     def get_changed(loader: SourceFileLoader, name: str) -> object:
-        if Path(loader.path).resolve() == path:  # the product has two names
+        if changed is not None and Path(loader.path).resolve() == path:  # the product has two names
             return compile(changed, str(path), 'exec')
         return get_code(loader, name)
 
     SourceFileLoader.get_code = get_changed  # type: ignore[method-assign, assignment]
+
+
+def _run_pytest(arguments: list[str]) -> Report:
+    import pytest
+
     sys.dont_write_bytecode = True
-    return int(pytest.main(['-xq', '-p', 'no:cacheprovider', '-p', 'no:xdist', *tests]))
+    report = Report()
+    code = int(pytest.main(['-q', '-p', 'no:cacheprovider', '-p', 'no:xdist', *arguments],
+                           plugins=[report]))
+    if code > pytest.ExitCode.TESTS_FAILED and code != pytest.ExitCode.NO_TESTS_COLLECTED:
+        report.failed.append(f'pytest: exit code {code}')
+    return report
 
 
 def files(rooms: list[str]) -> list[Path]:
@@ -152,6 +194,33 @@ def files(rooms: list[str]) -> list[Path]:
     return [path for path in found if path.name != '__init__.py' and path.is_file()]
 
 
+@dataclass(frozen=True)
+class Mutant:
+    """One changed place of a file."""
+
+    path: Path
+    tree: ast.Module  # unchanged
+    number: int  # of the node
+
+    def __str__(self) -> str:
+        """Return file and line, before and after."""
+        return (f'{self.path.relative_to(ROOT / PACKAGE)}: '
+                + '  ->  '.join(changed_line(self.tree, self.number)))
+
+
+def choose(arguments: argparse.Namespace) -> list[Mutant]:
+    """Return the mutants that the arguments ask for."""
+    kind = statements if arguments.lines else places
+    trees = {path: ast.parse(path.read_bytes()) for path in files(list(arguments.folders))}
+    every = [Mutant(path, tree, number) for path, tree in trees.items() for number in kind(tree)]
+    if arguments.again:
+        survivors = arguments.again.read_text(encoding='utf-8').splitlines()
+        return [one for one in every if any(
+            line.startswith('survived') and line.endswith(str(one)) for line in survivors)]
+    print(f'{arguments.sample} of {len(every)} mutants, seed {arguments.seed}', flush=True)
+    return random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
+
+
 def main() -> int:
     """Make mutants; return 1 if the tests notice too few."""
     parser = argparse.ArgumentParser(prog='./rosbots bench mutants', description=__doc__,
@@ -160,25 +229,31 @@ def main() -> int:
     parser.add_argument('--seed', type=int, default=0)
     parser.add_argument('--own', action='store_true',
                         help="only by the tests of the file's own folder, in minutes")
+    parser.add_argument('--lines', action='store_true',
+                        help='leave out statements, instead of changing numbers and signs')
+    parser.add_argument('--again', type=Path, metavar='OUTPUT',
+                        help='only those that survived, by the saved output of an earlier run')
     parser.add_argument('folders', nargs='*', default=ROOMS, help='of the package')
     arguments = parser.parse_args()
-    trees = {path: ast.parse(path.read_bytes()) for path in files(list(arguments.folders))}
-    every = [(path, number) for path, tree in trees.items() for number in places(tree)]
-    chosen = random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
-    print(f'{len(chosen)} of {len(every)} mutants, seed {arguments.seed}')
+    chosen = choose(arguments)
     os.chdir(ROOT)
     for name in OTHERS:
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
-    noticed = 0
-    for path, number in chosen:
-        tests = tests_of(path)[:3 if arguments.own else None]
-        if is_noticed(path, ast.fix_missing_locations(mutant(trees[path], number)), tests):
-            noticed += 1
-        else:
-            lines = '  ->  '.join(changed_line(trees[path], number))
-            print(f'survived: {path.relative_to(ROOT / PACKAGE)}: {lines}', flush=True)
-    print(f'{noticed} of {len(chosen)} noticed')
+    tests, verdicts = Tests(), Counter[str]()
+    for one in chosen:
+        start = time.monotonic()
+        how = tests.notice(one.path, mutant(one.tree, one.number),
+                           tests_of(one.path)[:3 if arguments.own else None])
+        verdict, _, by = (how or 'survived').partition(' ')
+        verdicts[verdict] += 1
+        print(f'{verdict:8} {time.monotonic() - start:6.1f} s  {one}{by and "   by "}{by}',
+              flush=True)
+    for name in sorted(tests.broken):
+        print(f'left out, since it fails without any change: {name}')
+    noticed = len(chosen) - verdicts['survived']
+    print(f'{noticed} of {len(chosen)} noticed: a test failed for {verdicts["failed"]}, '
+          f'{verdicts["crashed"]} crashed, {verdicts["hung"]} hung')
     return 0 if noticed >= WANTED * len(chosen) else 1
 
 

@@ -35,14 +35,13 @@ class FastBodies:
         self._client = client
         self._bodies: dict[int, Masses] = {}
         self._fast_bodies: dict[int, _FastBody] = {}
-        self.until_check = 0  # steps until the next check
         self.set(0.001, (0.0, 0.0, 0.0))
 
     def set(self, step_size: float, gravity: Vector) -> None:
         """Set step size [s] and gravity [m/s^2]."""
         self._step_size, self._gravity = step_size, gravity
         self._fast_bodies.clear()
-        self.until_check = 0
+        self.until_check = 0  # steps until the next check
 
     def add(self, bodies: dict[int, Masses]) -> None:
         """Watch these bodies, given by PyBullet's numbers; known ones have other masses now."""
@@ -239,7 +238,7 @@ class _FastBody:
     def bodies_in_contact(self) -> set[int]:
         """Return the numbers of the bodies that touch this one."""
         points = pybullet.getContactPoints(self._number, physicsClientId=self._client)
-        return {number for point in points for number in point[1:3]} - {self._number}
+        return {point[2] for point in points} - {self._number}
 
     def _scale_velocities(self, share: float, drift: FloatArray) -> None:
         """Scale all velocities relative to the centre of mass by `share`."""
