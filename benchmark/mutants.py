@@ -2,10 +2,10 @@
 """Mutation testing: whether the tests notice a wrong number, sign or comparison, or a lost line.
 
 One place of a file is changed, and the unit and engine tests that import the file run, those of its
-own folder first, up to the first that fails. That happens in a fork of this process, where the
-import of the file gives the changed one; no file is written, and programs that a test starts have
-the unchanged one. A mutant that no test notices survived: it is to become a test, or to show that
-the line is not needed. Tests that fail without any change notice nothing: they are left out.
+own folder first, the quickest before others, up to the first that fails. That happens in a fork of
+this process, where the import of the file gives the changed one; no file is written, and programs
+that a test starts have the unchanged one. A mutant that no test notices survived: it is to become a
+test, or to show that the line is not needed. Tests that fail without any change are left out.
 
     ./rosbots bench mutants [--sample N] [--seed S] [--own] [--lines] [--again OUTPUT] [FOLDER…]
 """
@@ -43,9 +43,9 @@ PACKAGE = Path('src', 'rosbots_description')
 ROOMS = ('sim/plugins/drive', 'sim/sensors', 'sim/physics/bullet', 'sim/description/inertia.py',
          'gym/tasks')
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
-# A mutant hangs, which counts as noticed, when its tests take longer than these multiples of their
-# time without a change, beyond a minute: of the processor's time, of wall time.
-HOPELESS = 5.0, 20.0
+# A mutant hangs, which counts as noticed, if its tests take that much longer than without a change:
+# so many seconds, and so many times as long.
+HOPELESS_CPU, HOPELESS_WALL = (20.0, 5.0), (600.0, 50.0)
 # What tests import besides the product; all forks share it.
 OTHERS = ('pytest', '_pytest.assertion.rewrite', 'hypothesis', 'numpy', 'pybullet', 'lxml.etree',
           'yaml', 'msgspec', 'gymnasium', 'rospy', 'collada', 'PIL.Image', 'rosgraph',
@@ -76,6 +76,12 @@ class Report:
 
     seconds: dict[str, float] = field(default_factory=lambda: defaultdict(float))  # by file
     failed: list[str] = field(default_factory=list)  # names of tests, or of files without import
+
+    def pytest_collection_modifyitems(self, config: pytest.Config,
+                                      items: list[pytest.Item]) -> None:
+        """Restore the order of the command line, which test/conftest.py changes."""
+        order = {Path(name).resolve(): place for place, name in enumerate(config.args)}
+        items.sort(key=lambda item: order[item.path])
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Note one phase of a test."""
@@ -112,7 +118,8 @@ class Tests:
                 raise SystemExit(f'without any change, {" ".join(new)} {verdict}')
             self._seconds |= dict.fromkeys(new, 0.0) | unchanged.seconds
             self.broken |= set(unchanged.failed)
-        files = [name for name in tests if name not in self.broken]
+        files = sorted((name for name in tests if name not in self.broken),
+                       key=lambda name: self._seconds[name])
         if not files:
             return ''
         usual = sum(self._seconds[name] for name in files)
@@ -142,9 +149,10 @@ def _run(path: Path | None, changed: ast.Module | None, arguments: list[str],
                     os.dup2(nowhere.fileno(), 2)
                 resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
                 if usual is not None:
-                    limit = round(60.0 + HOPELESS[0] * usual)
+                    limit, wall = (round(more + times * usual)
+                                   for more, times in (HOPELESS_CPU, HOPELESS_WALL))
                     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
-                    signal.alarm(round(60.0 + HOPELESS[1] * usual))
+                    signal.alarm(wall)
                 if path:
                     _replace(path, changed)
                 report = _run_pytest([*arguments, *(['-x'] if path else [])])

@@ -32,14 +32,12 @@ class SolverEffort:
     def __init__(self, set_iterations: Callable[[int], None]) -> None:
         """Prepare; `start` sets the number for the first time."""
         self._set_iterations = set_iterations
-        self._least, self._level, self._missed = 1, 0, 0.0
-        self._targets: list[float] = []
-        self._patience = self._wait = 0  # checks
 
     def start(self, least: int) -> None:
         """Start with the least number of iterations."""
         self._least, self._level, self._missed = least, 0, 0.0
-        self._targets, self._patience, self._wait = [], PATIENCE, 0
+        self._targets: list[float] = []
+        self._patience, self._wait = PATIENCE, 0  # checks
         self._set_iterations(least)
 
     def update(self, motors: Iterable[Motor]) -> None:

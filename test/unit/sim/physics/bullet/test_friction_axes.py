@@ -8,10 +8,14 @@ from rosbots_description.sim.core.transforms import NO_ROTATION, Pose, from_rpy
 from rosbots_description.sim.description.model_spec import Box, Collision, LinkSpec, Surface
 from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
 from rosbots_description.sim.physics.bullet.friction_axes import (
-    ISOTROPIC,
     can_slip,
+    directions,
+    first_direction,
     friction_scales,
 )
+
+ISOTROPIC = (1.0, 1.0, 1.0)
+LEFT = from_rpy(0.0, 0.0, math.pi / 2.0)  # turns x onto y
 
 
 def scales(link=None, turn=NO_ROTATION, friction=1.0, **surface):
@@ -39,6 +43,32 @@ def test_mu_acts_along_the_models_y_axis_without_fdir1():
     assert scales(side, mu=0.5, mu2=0.1) == pytest.approx((0.2, 0.2, 1.0))
     turned = from_rpy(0.0, 0.0, math.pi / 2.0)  # the part's y axis is the link's -x
     assert scales(turn=turned, mu=0.5, mu2=0.1) == pytest.approx((1.0, 0.2, 0.2))
+
+
+def surface(turn=NO_ROTATION, **given):
+    return Collision('c', Box((1, 1, 1)), Pose(orientation=turn), Surface(mu=0.5, mu2=0.1, **given))
+
+
+@pytest.mark.parametrize(('turn', 'given', 'expected'), [
+    (NO_ROTATION, (3.0, 0.0, 4.0), (0.6, 0.0, 0.8)),
+    (LEFT, (3.0, 4.0, 12.0), (-4.0 / 13.0, 3.0 / 13.0, 12.0 / 13.0)),
+])
+def test_first_direction_turns_with_its_collision_and_has_length_1(turn, given, expected):
+    found = first_direction(surface(turn, fdir1=given), LinkSpec('l'))
+    assert found == pytest.approx(expected)
+
+
+def test_first_direction_without_fdir1_is_the_models_y_axis():
+    link = LinkSpec('l', Pose(orientation=LEFT))
+    assert first_direction(surface(), link) == pytest.approx((1.0, 0.0, 0.0))
+
+
+def test_surfaces_of_equal_friction_in_equal_directions_can_share_a_part():
+    x, y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    assert directions(surface(fdir1=x)) != directions(surface(fdir1=y))
+    assert directions(surface(LEFT, fdir1=x))[2] == pytest.approx(directions(surface(fdir1=y))[2])
+    assert directions(surface(LEFT)) == directions(surface())
+    assert directions(surface()) != directions(surface(fdir1=y))
 
 
 @pytest.mark.parametrize(('turns', 'can'), [((0.0, math.pi / 2), True), ((0.0, 0.3), False)])

@@ -1,11 +1,20 @@
 """Shapes with edges are doubled, so that a body touches a floor with both ends of an edge."""
 
 import math
+from dataclasses import replace
 from itertools import product
 
 import pytest
 
-from rosbots_description.sim.core.transforms import IDENTITY, Pose, compose, from_rpy
+from rosbots_description.sim.core.transforms import (
+    IDENTITY,
+    Pose,
+    compose,
+    conjugate,
+    from_rpy,
+    multiply,
+    rotate,
+)
 from rosbots_description.sim.description.model_spec import (
     REVOLUTE,
     Box,
@@ -61,6 +70,16 @@ def test_copies_in_an_upside_down_frame_are_highest_on_their_side():
         assert lowest_side(lower) == pytest.approx(-lowest_side(upper), abs=1e-4)
 
 
+@pytest.mark.parametrize('yaw', [0.0, 0.7, 2.5])
+def test_copies_are_tilted_by_02_mrad_to_either_side_about_the_way_ahead(yaw):
+    turn = from_rpy(0.0, 0.0, yaw)
+    lower, upper = split_edges([BOX], rotate(turn, AXLE), UP)
+    for one, expected in ((lower, 2e-4), (upper, -2e-4)):
+        *axis, _ = multiply(one.pose.orientation, conjugate(BOX.pose.orientation))
+        ahead = rotate(turn, (math.sin(expected / 2.0), 0.0, 0.0))
+        assert axis == pytest.approx(ahead, rel=1e-6, abs=1e-12)
+
+
 def test_round_shape_is_not_doubled():
     shapes = [Collision('ball', Sphere(0.1)), Collision('can', Cylinder(0.1, 0.2))]
     assert split_edges(shapes, AXLE, UP) == tuple(shapes)
@@ -82,6 +101,22 @@ def test_body_with_a_wheel_has_split_edge_contacts():
     tree = Tree([BODY, WHEEL], [None, JOINT], fixed_base=False)
     assert [kinds(group) for group in body_groups(tree)] == [[Box, Box, Sphere]]
     assert [kinds(group) for group in surface_groups(tree, 1)] == [[Cylinder] * 4]  # its profile
+
+
+@pytest.mark.parametrize('roll', [0.0, math.pi])
+def test_edges_are_split_about_the_axle_and_the_vertical_in_the_frame_of_the_body(roll):
+    body = replace(BODY, pose=Pose((0.0, 0.0, 0.2), from_rpy(roll, 0.0, 0.0)))
+    (group,) = body_groups(Tree([body, WHEEL], [None, JOINT], fixed_base=False))
+    side = math.cos(roll)  # where the axle, the world's -y axis here, and the vertical point
+    for one, other in zip(group, split_edges(body.collisions, (0.0, -side, 0.0), (0.0, 0.0, side)),
+                          strict=True):
+        assert one.pose.orientation == pytest.approx(other.pose.orientation, abs=1e-12)
+
+
+def test_body_with_a_wheel_as_thin_as_a_crest_has_split_edge_contacts():
+    thin = replace(WHEEL, collisions=(Collision('tyre', Cylinder(0.1, 0.001)),))
+    tree = Tree([BODY, thin], [None, JOINT], fixed_base=False)
+    assert [kinds(group) for group in body_groups(tree)] == [[Box, Box, Sphere]]
 
 
 @pytest.mark.parametrize('tree', [
