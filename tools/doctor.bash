@@ -38,7 +38,7 @@ diagnosis() {
   return "$status"
 }
 
-row() { printf '%-11s %s\n' "$1" "$2"; }
+row() { printf '%-14s %s\n' "$1" "$2"; }
 
 free_space() {
   df -Ph "$ROOT" | awk 'NR == 2 {print $4 "B of disk free"}'
@@ -49,7 +49,7 @@ state() {
   local packages modules
   with_included "$1"
   if packages_done && python_done; then
-    echo ready
+    if navigation_done; then echo ready; else echo 'not built; ./rosbots navigation'; fi
     return
   fi
   mapfile -t packages < <(debian_packages "${CHOSEN[@]}" | missing_packages)

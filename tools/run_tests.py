@@ -42,6 +42,7 @@ SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
 AT_ONCE = ('lint', 'unit')  # phases
 # A file stays in one process. There is one more than processors, as some tests wait.
 PARALLEL = ['-n', str(1 + (os.cpu_count() or 1)), '--dist', 'loadfile']
+NAVIGATION = ROOT / '.ws' / 'stamps' / 'navigation'  # when ./rosbots navigation has built it
 HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
 
@@ -80,6 +81,9 @@ def run_lint(_word: str) -> Count:
     checker = '/usr/share/roslaunch/scripts/roslaunch-check'
     for folder in sorted([ROOT / 'launch', *ROOT.glob('companions/*/launch')]):
         name = f'roslaunch-check {folder.relative_to(ROOT)}'
+        if folder.parent.name == 'rosbots_navigation' and not NAVIGATION.exists():
+            say(f'SKIPPED {name}: what it starts is not built; ./rosbots navigation')
+            continue
         checks[name] = ['/usr/bin/python3', checker, str(folder)]
     return sum((run_command('lint', name, command) for name, command in checks.items()), Count())
 

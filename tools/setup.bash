@@ -1,7 +1,7 @@
 # Install what is missing of the chosen sets, and only that; sourced by ./rosbots, needs ROOT.
 #
 # Three parts: Debian packages and Python packages, of each set, and the workspace (of the set demo
-# alone, only the modules of messages). A part is done when its stamp file holds the fingerprint of
+# alone, only the modules of messages); of the set navigation, also its stack. A part is done when its stamp file holds the fingerprint of
 # everything it was made from; comparing these costs milliseconds.
 
 source "$ROOT/tools/setup/progress.bash"
@@ -9,6 +9,7 @@ source "$ROOT/tools/setup/sets.bash"
 source "$ROOT/tools/setup/debian.bash"
 source "$ROOT/tools/setup/python.bash"
 source "$ROOT/tools/setup/workspace.bash"
+source "$ROOT/tools/setup/navigation.bash"
 
 is_done() { [[ -f $WORKSPACE/stamps/$1 && $(< "$WORKSPACE/stamps/$1") == "$2" ]]; }
 
@@ -77,7 +78,7 @@ announce() {
 set_up() {
   find_workspace
   choose_sets "$@"
-  if packages_done && python_done && workspace_done; then return; fi
+  if packages_done && python_done && workspace_done && navigation_done; then return; fi
   mkdir -p "$WORKSPACE" || fail "cannot write to $WORKSPACE"
   trap stop_progress EXIT
   # One at a time: in a second terminal this waits for the first.
@@ -97,5 +98,6 @@ set_up() {
     mark_all_done python "$(python_fingerprint)"
   fi
   if ! workspace_done; then set_up_workspace; fi
+  if ! navigation_done; then set_up_navigation; fi
   exec {lock}>&-
 }

@@ -13,7 +13,8 @@ from support import ROOT
 
 DOCTOR = runpy.run_path(str(ROOT / 'tools' / 'doctor.py'))
 ROWS = ('platform', 'clone', 'versions', 'set demo', 'set base', 'set web', 'set gym', 'set batch',
-        'set test', 'set bench', 'workspace', 'OpenGL', 'display', 'ports', 'terminal')
+        'set navigation', 'set test', 'set bench', 'workspace', 'OpenGL', 'display', 'ports',
+        'terminal')
 
 
 def doctor(clone, *arguments, **environment):
@@ -43,7 +44,7 @@ def test_one_screen_of_a_machine_on_which_the_project_runs():
     result = doctor(ROOT)
     assert result.returncode == 0, result.stdout + result.stderr
     lines = result.stdout.splitlines()
-    assert tuple(line[:11].rstrip() for line in lines) == ROWS
+    assert tuple(line[:14].rstrip() for line in lines) == ROWS
     assert lines[ROWS.index('set base')].split()[2:] == ['ready']
     assert 'pybullet 3.2.7' in lines[ROWS.index('versions')]
 
@@ -53,7 +54,7 @@ def test_clone_without_set_up_is_told_the_command_and_left_as_it_is(clone):
     result = doctor(clone)
     assert result.returncode == 1
     (base,) = [line for line in result.stdout.splitlines() if line.startswith('set base')]
-    assert base.startswith('set base    missing: ')
+    assert base.startswith('set base       missing: ')
     assert re.search(r' [1-9] Python packages', base)  # fewer where Debian has more
     assert base.endswith('; ./rosbots setup base')
     assert sorted(clone.rglob('*')) == before
@@ -65,6 +66,14 @@ def test_missing_debian_package_is_named():
         'state base', ROOT=str(ROOT), WORKSPACE='/nowhere')
     assert line == ('missing: 1 Debian packages (no-such-package), 0 Python packages; '
                     './rosbots setup base\n')
+
+
+def test_stack_that_is_not_built_is_told_its_command():
+    script = ('choose_sets navigation; packages_done() {{ :; }}; python_done() {{ :; }}; '
+              'navigation_done() {{ {}; }}; state navigation')
+    said = [in_doctor(script.format(done), ROOT=str(ROOT), WORKSPACE='/nowhere')
+            for done in ('false', 'true')]
+    assert said == ['not built; ./rosbots navigation\n', 'ready\n']
 
 
 def test_report_names_no_user_no_machine_and_no_folder_of_theirs():

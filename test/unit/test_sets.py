@@ -9,7 +9,8 @@ import pytest
 from support import ROOT
 
 REQUIREMENTS = ROOT / 'requirements'
-SETS = ('demo', 'base', 'web', 'gym', 'batch', 'test', 'bench')  # of which commands ask for one
+# Of which commands ask for one.
+SETS = ('demo', 'base', 'web', 'gym', 'batch', 'navigation', 'test', 'bench')
 INNER = 'core'  # which others include
 
 
@@ -59,7 +60,8 @@ def sets_of(tmp_path):
     ('launch gazebo_ros empty_world.launch web:=True', 'web'),
     ('launch gazebo_ros empty_world.launch web:=false', 'base'),
     ('batch scenario.yaml', 'batch'), ('bench web', 'bench'), ('test unit', 'test'),
-    ('link workspace', 'base'), ('setup', 'base'), ('setup gym web', 'gym web'),
+    ('link workspace', 'base'), ('navigation', 'navigation'), ('setup', 'base'),
+    ('setup gym web', 'gym web'),
     ('setup --all', ' '.join(SETS)),
 ])
 def test_command_installs_its_set(sets_of, command, sets):
@@ -70,7 +72,7 @@ def test_unknown_set_is_named_with_the_known_ones(sets_of):
     result = sets_of('setup', 'base', 'moon')
     assert (result.returncode, result.stdout) == (2, '')
     assert result.stderr == ("rosbots: there is no set 'moon'; the sets are demo base web gym "
-                             'batch test bench, and --all is all of them\n')
+                             'batch navigation test bench, and --all is all of them\n')
 
 
 def test_files_are_those_of_the_sets():

@@ -11,6 +11,8 @@ CAUSES=(
   'another program is installing packages; run this again when it has ended'
   'No space left on device|enough free space|Disk quota exceeded'
   'the disk is full; make room, and run this again'
+  "unable to access 'https?:|Could not read from remote repository"
+  'a server of sources cannot be reached; connect this machine to the network, and run this again'
   'Temporary failure (in name )?resol|Could not (resolve|connect)|[Nn]etwork is unreachable|new connection'
   'a server of packages cannot be reached; connect this machine to the network, and run this again'
   'Permission denied|Read-only file system'
