@@ -11,9 +11,11 @@ import pytest
 import yaml
 from roslaunch.arg_dump import dump_args
 from roslaunch.config import ROSLaunchConfig
+from roslaunch.core import RLException
 from roslaunch.xmlloader import XmlLoader
 
 ROOT = Path(__file__).resolve().parents[2]
+NAVIGATION = ROOT / 'companions' / 'rosbots_navigation' / 'launch'
 FILES = sorted([*ROOT.glob('launch/*.launch'), *ROOT.glob('companions/*/launch/*.launch')])
 
 
@@ -22,9 +24,22 @@ def name(path: Path) -> str:
 
 
 @pytest.fixture
-def load(monkeypatch):
+def built(tmp_path):
+    """Return a folder with manifests of the packages that ./rosbots navigation builds."""
+    for package in yaml.safe_load((ROOT / 'tools/navigation/targets.yaml').read_text('utf-8')):
+        folder = tmp_path / 'built' / package
+        folder.mkdir(parents=True)
+        (folder / 'package.xml').write_text(
+            f'<package><name>{package}</name><version>1.2.3</version><description>x</description>'
+            '<maintainer email="a@b.example">a</maintainer><license>BSD</license></package>')
+    return tmp_path / 'built'
+
+
+@pytest.fixture
+def load(monkeypatch, built):
     """Return a function (file name in launch/ or path, arguments) -> ROSLaunchConfig."""
-    places = [str(ROOT), str(ROOT / 'companions'), os.environ.get('ROS_PACKAGE_PATH', '')]
+    places = [str(ROOT), str(ROOT / 'companions'), str(built),
+              os.environ.get('ROS_PACKAGE_PATH', '')]
     monkeypatch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(filter(None, places)))
     # `env python3` of the xacro script must be the interpreter that runs the tests
     interpreter = str(Path(sys.executable).parent)
@@ -185,6 +200,57 @@ def test_simulation_passes_its_arguments_to_the_simulator(load):
     assert arguments(config, 'gazebo').startswith('-u ')
     assert arguments(config, 'gazebo').endswith(' "my.world"')
     assert config.params['/use_sim_time'].value is False
+
+
+GMAPPING = {'slam_gmapping': 'gmapping/slam_gmapping'}
+MOVE_BASE = {'move_base': 'move_base/move_base'}
+SIMULATION = {'gazebo': 'gazebo_ros/gzserver', 'mybot_spawn': 'gazebo_ros/spawn_model',
+              'robot_state_publisher': 'robot_state_publisher/robot_state_publisher'}
+
+
+@pytest.mark.parametrize(('file', 'arguments', 'started'), [
+    ('mapping', ['rviz:=false'], SIMULATION | GMAPPING),
+    ('mapping', ['simulation:=false', 'wander:=true'],
+     GMAPPING | {'wander': 'rosbots_description/wander.py', 'rviz': 'rviz/rviz'}),
+    ('save_map', [], {'map_saver': 'map_server/map_saver'}),
+    ('navigation', ['simulation:=false'],
+     MOVE_BASE | {'map_server': 'map_server/map_server', 'amcl': 'amcl/amcl', 'rviz': 'rviz/rviz'}),
+    ('slam_navigation', ['rviz:=false'], SIMULATION | GMAPPING | MOVE_BASE),
+])
+def test_navigation_starts_what_it_says(load, file, arguments, started):
+    config = load(NAVIGATION / f'{file}.launch', *arguments)
+    assert nodes(config) == started
+    if 'gazebo' in started:
+        assert '<sensor name="laser" type="ray"' in config.params['/robot_description'].value
+
+
+def test_versions_of_what_is_built_are_a_parameter(load):
+    config = load(NAVIGATION / 'navigation.launch')
+    assert config.params['/rosbots_navigation/navigation'].value.strip() == (
+        'map_server 1.2.3, amcl 1.2.3, move_base 1.2.3, dwa_local_planner 1.2.3')
+
+
+def test_map_and_initial_pose_of_navigation_are_arguments(load):
+    config = load(NAVIGATION / 'navigation.launch', 'map:=/my maps/a.yaml', 'initial_yaw:=1.5')
+    assert arguments(config, 'map_server') == "'/my maps/a.yaml'"
+    assert config.params['/amcl/initial_pose_a'].value == 1.5
+    default = load(NAVIGATION / 'navigation.launch')
+    assert Path(arguments(default, 'map_server').strip("'")).resolve() == (
+        NAVIGATION.parent / 'maps' / 'rooms.yaml')
+
+
+def test_map_is_saved_where_the_terminal_is(load, monkeypatch):
+    monkeypatch.setenv('PWD', '/home/me')
+    assert arguments(load(NAVIGATION / 'save_map.launch'), 'map_saver') == "-f '/home/me/map'"
+
+
+@pytest.mark.parametrize('file', ['mapping', 'navigation', 'save_map', 'slam_navigation'])
+def test_navigation_that_is_not_built_starts_nothing(load, built, capfd, file):
+    for manifest in built.rglob('package.xml'):
+        manifest.unlink()
+    with pytest.raises(RLException, match='require_packages'):
+        load(NAVIGATION / f'{file}.launch')
+    assert capfd.readouterr().err.endswith('run: ./rosbots navigation\n')
 
 
 EXAMPLES = ['follow_policy', 'go_to_goal', 'line_follower', 'map_while_driving', 'wander']

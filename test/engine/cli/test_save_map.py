@@ -1,6 +1,7 @@
 """save_map on world files: what it writes, and what it says where it cannot."""
 
 import pytest
+from support import ROOT
 
 from rosbots_description.cli import save_map
 
@@ -50,3 +51,12 @@ def test_what_cannot_be_mapped_is_said_in_one_sentence(world, tmp_path, capsys, 
     assert said in err
     assert err.count('\n') == 1
     assert not (tmp_path / 'crate.yaml').exists()
+
+
+def test_ready_map_of_rosbots_navigation_is_that_of_its_world(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scanner = '0.51'  # [m], its height above the ground
+    assert save_map.main(['rooms', '--world', 'worlds/rooms.world', '--height', scanner]) == 0
+    for name in ('rooms.pgm', 'rooms.yaml'):
+        ready = ROOT / 'companions' / 'rosbots_navigation' / 'maps' / name
+        assert (tmp_path / name).read_bytes() == ready.read_bytes()
