@@ -25,6 +25,7 @@ def main() -> int:
         return _complain('link takes one workspace, for example: ./rosbots link ~/catkin_ws')
     ours = {folder.name: folder for folder in sorted(Path(sys.argv[1]).absolute().iterdir())
             if (folder / 'package.xml').exists()}
+    ours[ROBOT] = ROOT  # the workspace has only a part of it
     source = Path(sys.argv[2]).absolute() / 'src'
     if not source.is_dir():
         return _complain(f'there is no folder {source}; give the root of a catkin workspace')

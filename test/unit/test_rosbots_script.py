@@ -64,6 +64,12 @@ def test_shell_reads_commands_and_has_roscd():
     assert result.stdout.strip() == str(ROOT)
 
 
+def test_rosrun_finds_an_example_once_and_without_a_file_system_loop():
+    result = rosbots('exec', 'rosrun', '--prefix', 'echo', 'rosbots_description', 'wander.py')
+    assert result.stdout.split() == [str(ROOT / 'scripts' / 'wander.py')]
+    assert (result.returncode, result.stderr) == (0, '')
+
+
 @pytest.fixture
 def theirs(tmp_path):
     """Return a sourced workspace with a package of the same name as ours."""

@@ -6,6 +6,7 @@ import pytest
 from support import ROOT
 
 PACKAGES = ('gazebo_ros', 'rosbots_simulator')
+CONFIGURED = ('CMakeLists.txt', 'package.xml', 'setup.py', 'src')  # what CMake reads of our robot
 
 
 @pytest.fixture
@@ -35,20 +36,37 @@ def link(clone):
 
 def expected(clone):
     return {name: clone / 'companions' / name for name in PACKAGES} | {
-        'rosbots_description': clone}
+        f'rosbots_description/{name}': clone / name for name in CONFIGURED}
+
+
+def source_spaces(clone):
+    return (clone / '.ws' / 'devel' / '.catkin').read_text(encoding='utf-8').split(';')
 
 
 def test_links_that_are_right_are_not_made_anew(clone):
     assert link(clone) == expected(clone)
     source = clone / '.ws' / 'src'
-    before = {path.name: path.lstat().st_ino for path in source.iterdir()}
+    before = {path: path.lstat().st_ino for path in source.rglob('*')}
     (source / 'stale').symlink_to(clone / 'nowhere')
     (source / 'gazebo_ros').unlink()
     (source / 'gazebo_ros').symlink_to(clone / 'elsewhere')
     assert link(clone) == expected(clone)
-    after = {path.name: path.lstat().st_ino for path in source.iterdir()}
-    del before['gazebo_ros'], after['gazebo_ros']
+    after = {path: path.lstat().st_ino for path in source.rglob('*')}
+    del before[source / 'gazebo_ros'], after[source / 'gazebo_ros']
     assert after == before
+
+
+def test_the_clone_is_a_source_space_and_no_link_leads_back_to_it(clone):
+    link(clone)
+    assert source_spaces(clone) == [str(clone), f'{clone}/.ws/src']
+    assert all(clone != target for target in link(clone).values())
+
+
+def test_a_moved_clone_is_linked_anew(clone):
+    link(clone)
+    moved = clone.rename(clone.with_name('moved'))
+    assert link(moved) == expected(moved)
+    assert source_spaces(moved) == [str(moved), f'{moved}/.ws/src']
 
 
 def test_a_hidden_clone_is_linked_in_parts_and_shown_again(clone):
@@ -58,6 +76,7 @@ def test_a_hidden_clone_is_linked_in_parts_and_shown_again(clone):
              for name in ('companions', 'scripts', 'test', 'tools')}
     for _ in range(2):
         assert link(clone) == {name: clone / 'companions' / name for name in PACKAGES} | parts
+        assert source_spaces(clone) == [f'{clone}/.ws/src']
     (clone / 'CATKIN_IGNORE').unlink()
     assert link(clone) == expected(clone)
 

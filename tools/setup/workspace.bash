@@ -28,35 +28,42 @@ workspace_fingerprint() (
       sort -z | xargs -0 sha256sum
     find companions -type f \
       \( -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -path '*/cmake/*' \) -print0 |
-      sort -z | xargs -0 -r sha256sum tools/make_messages.py tools/messages.cmake
+      sort -z | xargs -0 -r sha256sum tools/make_messages.py tools/messages.cmake \
+      tools/setup/workspace.bash
     find scripts companions/*/scripts test/rostest -type f ! -name '*.pyc' 2> /dev/null | sort
   } | sha256sum
 )
 
+# Our robot's package is found in the clone, as the first source space of the workspace; CMake gets
+# what it reads to configure it. A link to the clone, in the clone, would be a loop for `find -L`, by
+# which rosrun searches the package; a second link to scripts/ would make its programs ambiguous.
+# A clone that tools/link.py hides, or with a path that catkin cannot hold, is linked in parts.
 # Links that are right stay: programs of this workspace may be running.
 link_packages() {
-  local source=$WORKSPACE/src ours=$WORKSPACE/src/rosbots_description path
+  local source=$WORKSPACE/src ours=$WORKSPACE/src/rosbots_description path spaces=$WORKSPACE/src
   local -A links=()
   for path in "$ROOT"/companions/*/; do
     links[$source/$(basename "$path")]=${path%/}
   done
-  if [[ -e $ROOT/CATKIN_IGNORE ]]; then  # tools/link.py hides the clone as a whole, not its parts
-    [[ ! -L $ours ]] || rm "$ours"
-    mkdir -p "$ours"
+  [[ ! -L $ours ]] || rm "$ours"
+  mkdir -p "$ours" "$WORKSPACE/devel"
+  if [[ -e $ROOT/CATKIN_IGNORE || $WORKSPACE != "$ROOT/.ws" ]]; then
     for path in "$ROOT"/*; do
       [[ $path == */CATKIN_IGNORE ]] || links[$ours/$(basename "$path")]=$path
     done
   else
-    [[ -L $ours ]] || rm -rf "$ours"
-    mkdir -p "$source"
-    links[$ours]=$ROOT
+    spaces=$ROOT\;$spaces
+    for path in "$ROOT"/{CMakeLists.txt,package.xml,setup.py,src}; do
+      links[$ours/$(basename "$path")]=$path
+    done
   fi
   while IFS= read -r path; do
     [[ -v links[$path] && $(readlink "$path") == "${links[$path]}" ]] || rm "$path"
-  done < <(find "$source" -maxdepth 2 -type l ! -name CMakeLists.txt)
+  done < <(find "$source" -maxdepth 2 -type l ! -path "$source/CMakeLists.txt")
   for path in "${!links[@]}"; do
     [[ -L $path ]] || ln -s "${links[$path]}" "$path"
   done
+  printf %s "$spaces" > "$WORKSPACE/devel/.catkin"
 }
 
 # A clean environment, so that a workspace the caller has sourced is not built into ours, and
