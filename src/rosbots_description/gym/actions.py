@@ -19,7 +19,7 @@ from ..sim.controllers import (
     JointVelocityController,
     MecanumDriveController,
 )
-from ..sim.plugins import Drive, Force, PlanarMove
+from ..sim.plugins import Drive, Force, ForceBasedMove, PlanarMove
 
 Floats = NDArray[np.float32]
 Limits = Mapping[str, float | Sequence[float]]
@@ -35,7 +35,7 @@ class Command(NamedTuple):
 
 def _of_plugin(plugin: Any) -> Command | None:  # noqa: ANN401  each class has its own command
     name = plugin.spec.name
-    if isinstance(plugin, PlanarMove):
+    if isinstance(plugin, PlanarMove | ForceBasedMove):
         return Command(name, 3, lambda numbers: plugin.command(numbers[0], numbers[2], numbers[1]))
     if isinstance(plugin, Drive):
         return Command(name, 2, lambda numbers: plugin.command(numbers[0], numbers[1]))

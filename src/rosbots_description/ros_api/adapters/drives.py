@@ -22,7 +22,14 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from ...sim.plugins import DiffDrive, PlanarMove, SkidSteerDrive, TricycleDrive
+from ...sim.plugins import (
+    DiffDrive,
+    ForceBasedMove,
+    PlanarMove,
+    RidgebackForceBasedMove,
+    SkidSteerDrive,
+    TricycleDrive,
+)
 from ..server import STATIC_TOPIC
 from ..transport import set_level, subscriber_names, subscribers
 from .adapter import Adapter
@@ -127,5 +134,6 @@ WHEELS = (
 
 connects(DiffDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
 connects(SkidSteerDrive, LogsStart(), TRANSFORM, COMMAND, ODOMETRY)
-connects(PlanarMove, LogsStart(), TRANSFORM, SIDEWAYS, ODOMETRY)
+for moved in (PlanarMove, ForceBasedMove, RidgebackForceBasedMove):
+    connects(moved, LogsStart(), TRANSFORM, SIDEWAYS, ODOMETRY)
 connects(TricycleDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)

@@ -108,13 +108,15 @@ class ModelPlugin(Plugin):
         """Return description, tags and outputs."""
         return (self.spec, self.params, *self._all_outputs)
 
-    def link(self, tag: str) -> 'tuple[Link, Pose]':
+    def link(self, tag: str, name: str | None = None) -> 'tuple[Link, Pose]':
         """Return the link that a tag names, or its parent after reduction, and the pose in that.
 
+        Args:
+            name: the value of the tag, if it was read already; else the tag is required.
         Raises:
             PluginError: the tag is missing, or there is no such link.
         """
-        name = self.params.required(tag)
+        name = name or self.params.required(tag)
         try:
             return self.model.locate(name)
         except NotFoundError as error:
