@@ -1,8 +1,9 @@
 # Install what is missing of the chosen sets, and only that; sourced by ./rosbots, needs ROOT.
 #
 # Three parts: Debian packages and Python packages, of each set, and the workspace (of the set demo
-# alone, only the modules of messages); of the set navigation, also its stack. A part is done when its stamp file holds the fingerprint of
-# everything it was made from; comparing these costs milliseconds.
+# alone, only the modules of messages); of the set navigation, also its stack. A part is done when
+# its stamp file holds the fingerprint of everything it was made from; comparing these costs
+# milliseconds.
 
 source "$ROOT/tools/setup/progress.bash"
 source "$ROOT/tools/setup/sets.bash"
