@@ -30,7 +30,9 @@ class PackageSearch:
     def __call__(self, name: str) -> str | None:
         """Return the absolute path of the package's folder; None if there is no such package."""
         above = self._inside.parents if self._inside else ()
-        for folder in (*above, *(Path(directory, name) for directory in self.directories())):
+        likely = (folder for directory in self.directories()
+                  for folder in (Path(directory), Path(directory, name)))
+        for folder in (*above, *likely):
             if package_name(folder) == name:
                 return os.path.abspath(folder)
         for directory in self.directories():

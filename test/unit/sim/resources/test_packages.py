@@ -49,6 +49,12 @@ def test_order_of_search_is_enclosing_package_given_path_ros_path(
     assert PackageSearch()('robot') == third
 
 
+def test_a_directory_that_is_the_package_precedes_those_behind_it(tmp_path):
+    clone = make_package(tmp_path / 'clone', 'wanted')
+    make_package(tmp_path / 'workspace' / 'wanted', 'wanted')
+    assert PackageSearch([clone, tmp_path / 'workspace'])('wanted') == clone
+
+
 def test_this_package_is_always_found(tmp_path):
     assert PackageSearch()('rosbots_description') == str(ROOT)
     theirs = make_package(tmp_path / 'theirs', 'rosbots_description')
