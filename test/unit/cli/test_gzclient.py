@@ -1,17 +1,25 @@
 """The window as a process: it reads no robot's TF, prints little, and ends on request."""
 
+import ctypes
+import ctypes.util
 import os
 import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import yaml
 from support import ROOT
 from support.patience import PATIENCE, wait_until
 
-from rosbots_description.cli.gzclient import STARTS, config_file, rviz_environment
+from rosbots_description.cli.gzclient import (
+    STARTS,
+    config_file,
+    display_works,
+    rviz_environment,
+)
 
 WINDOW = """#!/bin/sh
 echo $$ "$@" > {folder}/arguments
@@ -154,3 +162,23 @@ def test_runtime_folder_is_made_private(tmp_path, monkeypatch):
     (tmp_path / f'rosbots-runtime-{os.getuid()}').mkdir(mode=0o777)
     made = Path(rviz_environment({}, Path('/levels'))['XDG_RUNTIME_DIR'])
     assert made.stat().st_mode & 0o777 == 0o700
+
+
+@pytest.mark.parametrize(('variable', 'library', 'opened', 'works'), [
+    (':0', 'libX11.so.6', 0x7F0000001234, True), (':0', 'libX11.so.6', None, False),
+    (':0', None, 1, False), ('', 'libX11.so.6', 1, False)])
+def test_display_works_if_x11_opens_it(monkeypatch, variable, library, opened, works):
+    closed = []
+
+    def open_display(_name):
+        return opened
+
+    x11 = SimpleNamespace(XOpenDisplay=open_display,
+                          XCloseDisplay=lambda display: closed.append(display.value))
+    monkeypatch.setenv('DISPLAY', variable)
+    monkeypatch.setattr(ctypes.util, 'find_library', lambda name: library)
+    monkeypatch.setattr(ctypes, 'CDLL', {library: x11}.__getitem__)
+    assert display_works() == works
+    if works:
+        assert open_display.restype is ctypes.c_void_p  # an address has 64 bits
+    assert closed == ([opened] if works else [])  # no connection is left open

@@ -7,6 +7,8 @@ import sys
 import pytest
 from support import ROOT
 
+from rosbots_description.cli import xacro_program
+
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 YAML = 'wheel: {radius: 0.25, sides: [left, right]}\nturn: !degrees 180/2\nwide: !millimeters 30\n'
 
@@ -67,3 +69,16 @@ def test_tags_without_prefix_are_still_expanded(expand):
     code, output, _ = expand('<property name="x" value="2"/><link name="l${x}"/>')
     assert code == 0
     assert '<link name="l2"/>' in output
+
+
+def test_a_missing_xacro_is_one_sentence_with_the_cure(monkeypatch, capsys):
+    def missing():
+        raise ImportError
+
+    monkeypatch.setattr(sys, 'path', [*sys.path])  # main changes it
+    monkeypatch.setattr(xacro_program, 'import_xacro', missing)
+    assert xacro_program.main() == 1
+    error = capsys.readouterr().err
+    assert error.count('\n') == 1
+    assert sys.executable in error
+    assert 'pip install xacro==1.13.3' in error

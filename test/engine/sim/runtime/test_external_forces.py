@@ -146,6 +146,16 @@ def test_cleared_force_ends():
         assert model.twist.linear[0] == pytest.approx(0.1, abs=0.0015)
 
 
+def test_forces_and_holds_end_with_a_reset_to_time_zero():
+    with empty_world() as world:
+        model = world.spawn(free_body(), 'body', HIGH)
+        push(world, model.links['link'], (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), duration=-1.0)
+        world.holds.hold(model, Pose((5.0, 0.0, 500.0)), lambda: True)
+        world.reset_simulation()
+        world.run(100)
+        assert model.pose == HIGH
+
+
 def test_forces_end_with_the_deletion_of_their_model():
     with empty_world() as world:
         model = world.spawn(free_body(), 'body', HIGH)
