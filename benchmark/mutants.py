@@ -17,6 +17,7 @@ import ast
 import contextlib
 import importlib
 import json
+import math
 import os
 import random
 import resource
@@ -43,9 +44,8 @@ PACKAGE = Path('src', 'rosbots_description')
 ROOMS = ('sim/plugins/drive', 'sim/sensors', 'sim/physics/bullet', 'sim/description/inertia.py',
          'gym/tasks')
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
-# A mutant hangs, which counts as noticed, if its tests take that much longer than without a change:
-# so many seconds, and so many times as long.
-HOPELESS_CPU, HOPELESS_WALL = (20.0, 5.0), (600.0, 50.0)
+# A test that takes as long hangs, which counts as noticed. The slowest takes 20 s of the processor.
+HOPELESS_CPU, HOPELESS_WALL = 120, 1800  # [s]
 # What tests import besides the product; all forks share it.
 OTHERS = ('pytest', '_pytest.assertion.rewrite', 'hypothesis', 'numpy', 'pybullet', 'lxml.etree',
           'yaml', 'msgspec', 'gymnasium', 'rospy', 'collada', 'PIL.Image', 'rosgraph',
@@ -77,10 +77,15 @@ class Report:
     seconds: dict[str, float] = field(default_factory=lambda: defaultdict(float))  # by file
     failed: list[str] = field(default_factory=list)  # names of tests, or of files without import
 
+    def pytest_runtest_setup(self) -> None:
+        """Limit the time of each test."""
+        _limit_time()
+
     def pytest_collection_modifyitems(self, config: pytest.Config,
                                       items: list[pytest.Item]) -> None:
         """Restore the order of the command line, which test/conftest.py changes."""
-        order = {Path(name).resolve(): place for place, name in enumerate(config.args)}
+        order = {Path(name.partition('::')[0]).resolve(): place
+                 for place, name in enumerate(config.args)}
         items.sort(key=lambda item: order[item.path])
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -104,36 +109,43 @@ class Tests:
 
     def __init__(self) -> None:
         self.broken: set[str] = set()
-        self._seconds: dict[str, float] = {}  # without any change, by file
+        self._sound: set[str] = set()  # tests, or all of some files, that pass without any change
+        self._seconds: dict[str, float] = {}  # by file, as far as known
 
     def notice(self, path: Path, changed: ast.Module, stages: list[list[str]]) -> str:
         """Return how tests notice that a file has another content, or '' if they do not."""
         return next(filter(None, (self._notice(path, changed, some) for some in stages)), '')
 
     def _notice(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
-        new = [name for name in tests if name not in self._seconds]
-        if new:
-            unchanged, verdict = _run(None, None, new, None)
-            if verdict not in ('', 'failed'):
-                raise SystemExit(f'without any change, {" ".join(new)} {verdict}')
-            self._seconds |= dict.fromkeys(new, 0.0) | unchanged.seconds
-            self.broken |= set(unchanged.failed)
-        files = sorted((name for name in tests if name not in self.broken),
-                       key=lambda name: self._seconds[name])
-        if not files:
-            return ''
-        usual = sum(self._seconds[name] for name in files)
-        report, verdict = _run(path, changed, [*files, *(
-            f'--deselect={name}' for name in self.broken if '::' in name)], usual)
-        return f'{verdict} {report.failed[0]}' if report.failed else verdict
+        while files := sorted(set(tests) - self.broken, key=self._order):
+            left_out = [f'--deselect={name}' for name in self.broken if '::' in name]
+            report, verdict = _run(path, changed, ['-x', *files, *left_out])
+            for name, seconds in report.seconds.items():
+                self._seconds[name] = max(seconds, self._seconds.get(name, 0.0))
+            if not verdict:
+                return ''
+            blamed = report.failed[:1] or files
+            if self._is_sound(blamed):
+                return ' '.join((verdict, *report.failed[:1]))
+            if not report.failed:
+                raise SystemExit(f'without any change, one {verdict}, too: {" ".join(files)}')
+            self.broken.add(blamed[0])
+        return ''
+
+    def _order(self, name: str) -> tuple[float, str]:
+        return self._seconds.get(name, 0.0), name
+
+    def _is_sound(self, tests: list[str]) -> bool:
+        """Tell whether tests pass without any change."""
+        called = ' '.join(tests)
+        if called not in self._sound and not _run(None, None, tests)[1]:
+            self._sound.add(called)
+        return called in self._sound
 
 
-def _run(path: Path | None, changed: ast.Module | None, arguments: list[str],
-         usual: float | None) -> tuple[Report, str]:
-    """Run pytest in a fork, up to the first failure if a file is changed.
-
-    Args:
-        usual: duration without any change [s].
+def _run(path: Path | None, changed: ast.Module | None,
+         arguments: list[str]) -> tuple[Report, str]:
+    """Run pytest in a fork, with another content of a file if given.
 
     Returns:
         the report, empty if the tests did not end by themselves; and 'failed', 'hung', 'crashed',
@@ -148,14 +160,10 @@ def _run(path: Path | None, changed: ast.Module | None, arguments: list[str],
                     os.dup2(nowhere.fileno(), 1)
                     os.dup2(nowhere.fileno(), 2)
                 resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-                if usual is not None:
-                    limit, wall = (round(more + times * usual)
-                                   for more, times in (HOPELESS_CPU, HOPELESS_WALL))
-                    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
-                    signal.alarm(wall)
+                _limit_time()
                 if path:
                     _replace(path, changed)
-                report = _run_pytest([*arguments, *(['-x'] if path else [])])
+                report = _run_pytest(arguments)
                 output.write(json.dumps(report.__dict__).encode())
                 output.flush()
             os._exit(0)
@@ -168,6 +176,13 @@ def _run(path: Path | None, changed: ast.Module | None, arguments: list[str],
         return Report(), ('hung' if -status in (signal.SIGALRM, signal.SIGXCPU) else 'crashed')
     report = Report(**json.loads(text))
     return report, 'failed' if report.failed else ''
+
+
+def _limit_time() -> None:
+    """End this process if it takes much longer from now on."""
+    used = math.ceil(time.process_time())
+    resource.setrlimit(resource.RLIMIT_CPU, (used + HOPELESS_CPU, resource.RLIM_INFINITY))
+    signal.alarm(HOPELESS_WALL)
 
 
 def _replace(path: Path, changed: ast.Module | None) -> None:
