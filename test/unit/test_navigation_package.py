@@ -128,11 +128,14 @@ def require(*names, path=''):
                           env={'ROS_PACKAGE_PATH': str(path), 'PATH': '/usr/bin:/bin'})
 
 
-def test_missing_packages_are_named_with_the_command_that_builds_them(tmp_path):
-    done = require('amcl', 'rosbots_navigation', 'move_base', path=PACKAGE)
+@pytest.mark.parametrize(('missing', 'named'), [
+    (['amcl'], 'amcl'), (['amcl', 'move_base'], 'amcl and move_base'),
+    (['map_server', 'amcl', 'move_base'], 'map_server, amcl and move_base')])
+def test_missing_packages_are_named_with_the_command_that_builds_them(missing, named):
+    done = require('rosbots_navigation', *missing, path=PACKAGE)
     assert (done.returncode, done.stdout) == (1, '')
     assert done.stderr == (
-        'rosbots_navigation needs amcl and move_base, which Debian lacks; to build what is '
+        f'rosbots_navigation needs {named}, which Debian lacks; to build what is '
         'missing, run: ./rosbots navigation\n')
 
 
