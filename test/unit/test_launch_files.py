@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import subprocess
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -112,6 +113,23 @@ def test_rviz_shows_the_robot(load):
         'joint_state_publisher': 'joint_state_publisher/joint_state_publisher',
         'robot_state_publisher': 'robot_state_publisher/robot_state_publisher',
         'rviz': 'rviz/rviz'}
+
+
+@pytest.mark.parametrize('path', FILES, ids=name)
+def test_rviz_is_started_only_where_there_is_a_display(path):
+    for node in ElementTree.parse(path).iter('node'):
+        if node.get('type') == 'rviz':
+            prefix, = shlex.split(node.get('launch-prefix'))
+            assert prefix.endswith('/with_display'), prefix
+
+
+def test_without_a_display_a_sentence_takes_the_place_of_a_window():
+    done = subprocess.run(
+        [ROOT / 'launch' / 'with_display', 'echo', 'started'], capture_output=True, text=True,
+        check=False, env={**os.environ, 'DISPLAY': ':987654'})
+    assert (done.returncode, done.stdout) == (0, '')
+    assert done.stderr == (
+        'echo: no window: there is no display to open it on (DISPLAY is :987654)\n')
 
 
 def test_rviz_and_sliders_are_optional(load):

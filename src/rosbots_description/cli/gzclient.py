@@ -54,6 +54,12 @@ def display_works() -> bool:
     return True
 
 
+def no_window() -> str:
+    """Return the sentence for those who have no display."""
+    display = os.environ.get('DISPLAY') or 'not set'
+    return f'no window: there is no display to open it on (DISPLAY is {display})'
+
+
 def config_file() -> Path:
     """Return the path of RViz's config, which is installed with the code."""
     return Path(__file__).resolve().parents[1] / 'config' / 'gzclient.rviz'
@@ -66,9 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if unknown:
         _say(f'unknown options are ignored: {" ".join(unknown)}')
     if not display_works():
-        display = os.environ.get('DISPLAY') or 'not set'
-        _say(f'no window: there is no display to open it on (DISPLAY is {display}); '
-             'the simulator runs without one, and web:=true or '
+        _say(f'{no_window()}; the simulator runs without one, and web:=true or '
              'rosrun gazebo_ros gzweb shows it in a browser')
         return 0
     rviz, config = shutil.which('rviz'), config_file()
