@@ -162,12 +162,12 @@ def _sums_of_two(moments: FloatArray) -> FloatArray:
     """Return the point (s2 + s3, s1 + s3, s1 + s2), all s >= 0, nearest to `moments`.
 
     By the Karush-Kuhn-Tucker conditions some s are zero and the others solve a least-squares
-    problem; there are seven choices of the others.
+    problem. The moments are ascending, so the s are descending, and the last ones are zero.
     """
     sums, best = np.ones((3, 3)) - np.eye(3), np.zeros(3)
-    for chosen in ([0], [1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]):
-        numbers = np.linalg.lstsq(sums[:, chosen], moments, rcond=None)[0]
-        point = sums[:, chosen] @ np.maximum(numbers, 0.0)
+    for count in (1, 2, 3):
+        numbers = np.linalg.lstsq(sums[:, :count], moments, rcond=None)[0]
+        point = sums[:, :count] @ np.maximum(numbers, 0.0)
         if np.linalg.norm(point - moments) < np.linalg.norm(best - moments):
             best = point
     return best
@@ -241,21 +241,10 @@ def _matrix(q: Quaternion) -> FloatArray:
     return np.eye(3) if q == NO_ROTATION else rotation_matrix(q)
 
 
-def _quaternion(matrix: FloatArray) -> Quaternion:
-    """Return the rotation (x, y, z, w) of an orthonormal right-handed matrix.
+def _quaternion(m: FloatArray) -> Quaternion:
+    """Return the rotation (x, y, z, w) of an orthonormal right-handed matrix with a trace above 0.
 
-    The largest component is computed first, which avoids a small divisor (Shepperd 1978).
+    4 w^2 = 1 + trace; the first three are 4 w (x, y, z).
     """
-    m = matrix
-    trace = m[0, 0] + m[1, 1] + m[2, 2]
-    squares = [m[0, 0], m[1, 1], m[2, 2], trace]
-    largest = int(np.argmax(squares))
-    q = np.empty(4)
-    if largest == 3:
-        q[:] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1.0 + trace
-    else:
-        i, j, k = largest, (largest + 1) % 3, (largest + 2) % 3
-        q[i] = 1.0 + 2.0 * m[i, i] - trace
-        q[j], q[k] = m[j, i] + m[i, j], m[k, i] + m[i, k]
-        q[3] = m[k, j] - m[j, k]
-    return normalise(as_quaternion(q))
+    return normalise(as_quaternion((
+        m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1.0 + np.trace(m))))

@@ -5,19 +5,34 @@ import math
 import numpy as np
 import pytest
 
-from rosbots_description.sim.core.transforms import IDENTITY, Pose, from_rpy, rotate
+from rosbots_description.sim.core.transforms import (
+    IDENTITY,
+    NO_ROTATION,
+    Pose,
+    compose,
+    from_rpy,
+    rotate,
+)
 from rosbots_description.sim.description import inertia
 from rosbots_description.sim.description.inertia import (
     STAND_IN_RADIUS,
     is_balanced,
     is_positive,
     merge,
+    mobility,
     possible,
     principal_axes,
     regularised,
+    rounded,
     tensor,
 )
-from rosbots_description.sim.description.model_spec import PRISMATIC, REVOLUTE, Inertial, JointSpec
+from rosbots_description.sim.description.model_spec import (
+    PRISMATIC,
+    REVOLUTE,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+)
 
 
 def in_link_axes(moments, axes):
@@ -175,3 +190,97 @@ def test_tensor_is_rotated_into_link_axes_about_the_same_centre():
 ])
 def test_a_wheel_is_balanced_and_a_lever_is_not(inertial, joint_type, balanced):
     assert is_balanced(inertial, JointSpec('j', joint_type, 'a', 'b')) == balanced
+
+
+@pytest.mark.parametrize(('inertial', 'balanced'), [  # 2 % of the moment about the axis
+    (Inertial(1.0, Pose((0.199, 0.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), True),
+    (Inertial(1.0, Pose((0.0, 0.201, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), False),
+    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, iyz=0.028), True),
+    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, iyz=0.029), False),
+])
+def test_a_wheel_may_be_out_of_balance_by_two_percent(inertial, balanced):
+    assert is_balanced(inertial, JointSpec('j', REVOLUTE, 'a', 'b')) == balanced
+
+
+def points_at(seed):
+    """Return masses (n,) and places (n, 3) of some points of a body."""
+    random = np.random.default_rng(seed)
+    return random.uniform(0.1, 1.0, 5), random.normal(size=(5, 3))
+
+
+def inertial_of(masses, places):
+    """Return the mass properties of points in the axes of their frame, by their definition."""
+    centre = masses @ places / masses.sum()
+    apart = places - centre
+    second = (masses[:, None] * apart).T @ apart
+    full = np.trace(second) * np.eye(3) - second
+    return Inertial(float(masses.sum()), Pose(tuple(centre.tolist())), full[0, 0], full[1, 1],
+                    full[2, 2], full[0, 1], full[0, 2], full[1, 2])
+
+
+def moved(pose, places):
+    return np.array([compose(pose, Pose(tuple(place))).position for place in places.tolist()])
+
+
+def assert_equal(one, other):
+    assert one.mass == pytest.approx(other.mass)
+    assert one.pose.position == pytest.approx(other.pose.position)
+    np.testing.assert_allclose(tensor(one), tensor(other), rtol=1e-9, atol=1e-9)
+
+
+def test_parts_weigh_together_what_their_points_do():
+    poses = [Pose((1.0, -2.0, 0.5), from_rpy(0.3, 0.2, 0.1)),
+             Pose((-1.0, 0.0, 3.0), from_rpy(2.0, -1.0, 0.5)), IDENTITY]
+    bodies = [points_at(seed) for seed in range(3)]
+    merged = merge([(pose, inertial_of(*body))
+                    for pose, body in zip(poses, bodies, strict=True)])
+    assert_equal(merged, inertial_of(
+        np.concatenate([masses for masses, _ in bodies]),
+        np.concatenate([moved(pose, places)
+                        for pose, (_, places) in zip(poses, bodies, strict=True)])))
+    assert merged.pose.orientation == NO_ROTATION
+
+
+def test_all_of_a_tensor_is_rotated_into_link_axes():
+    masses, places = points_at(7)
+    own = inertial_of(masses, places - masses @ places / masses.sum())
+    pose = Pose((0.1, 0.2, 0.3), from_rpy(0.4, -0.5, 2.0))
+    turned = inertia.in_link_axes(Inertial(own.mass, pose, own.ixx, own.iyy, own.izz, own.ixy,
+                                           own.ixz, own.iyz))
+    assert_equal(turned, inertial_of(
+        masses, moved(pose, places - masses @ places / masses.sum())))
+
+
+def test_wrench_at_a_point_accelerates_a_free_link_by_newton_and_euler():
+    own = Inertial(2.0, Pose((0.1, -0.2, 0.3), from_rpy(0.3, 0.2, 0.1)), 1.0, 2.0, 2.5, 0.1)
+    link = LinkSpec('l', Pose((1.0, 2.0, 3.0), from_rpy(0.5, 0.0, -1.0)), own)
+    place, turn = (0.4, 2.5, 3.3), from_rpy(0.2, -0.7, 1.5)
+    com = compose(link.pose, own.pose)
+    torque, force = np.array((0.3, -1.0, 2.0)), np.array((5.0, 1.0, -2.0))
+    arm = np.array(rotate(turn, tuple(np.subtract(com.position, place))))  # point to centre
+    axes = np.array([rotate(turn, rotate(com.orientation, axis)) for axis in np.eye(3).tolist()]).T
+    spin = np.linalg.solve(axes @ tensor(own) @ axes.T, torque - np.cross(arm, force))
+    linear = force / own.mass - np.cross(spin, arm)
+    np.testing.assert_allclose(mobility(link, place, turn) @ np.concatenate((torque, force)),
+                               np.concatenate((spin, linear)), rtol=1e-9)
+
+
+def test_numbers_are_rounded_to_12_digits_of_the_largest_and_have_no_negative_zero():
+    values = rounded(np.array([1234.567890123456, 0.1234567890123456, -1e-20]))
+    assert values.tolist() == [1234.56789012, 0.12345679, 0.0]
+    assert math.copysign(1.0, values[2]) == 1.0
+    assert rounded(np.zeros(3)).tolist() == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(('least', 'expected'), [(-0.9e-9, True), (-1.1e-9, False)])
+def test_a_moment_is_negative_beyond_a_billionth_of_the_greatest(least, expected):
+    given = Inertial(1.0, ixx=2.0, iyy=2.0, izz=2.0 * least)
+    assert is_positive(given) == expected
+    assert (possible(given) is given) == expected
+
+
+@pytest.mark.parametrize(('moment', 'is_kept'), [(2.1e-12, True), (1.9e-12, False)])
+def test_a_moment_below_that_of_a_radius_of_a_micrometre_counts_as_zero(moment, is_kept):
+    used = regularised(Inertial(2.0, ixx=1.0, iyy=1.0, izz=moment))
+    assert used.izz == (moment if is_kept else 0.4 * 2.0 * 0.1**2)
+    assert (used.ixx, used.iyy) == (1.0, 1.0)
