@@ -25,6 +25,19 @@ def test_nothing_is_reported_while_pictures_keep_up(skipped):
     assert reports(lambda k: not skipped or k % skipped != 0) == []
 
 
+@pytest.mark.parametrize(('period', 'first'), [(PERIOD, 125), (10**9, 9)])
+def test_the_rate_is_judged_after_five_seconds_and_ten_pictures(period, first):
+    rate = PictureRate()
+    found = [rate.count(7 + k * period, False) for k in range(first + 1)]
+    assert found == [None] * first + [(0.0, pytest.approx(1e9 / period))]
+
+
+@pytest.mark.parametrize(('missing', 'reported'), [(6, 0), (7, 1)])  # of 126
+@pytest.mark.parametrize('windows', [0, 3])
+def test_a_twentieth_of_the_pictures_may_be_left_out(missing, reported, windows):
+    assert len(reports(lambda k: not 0 <= k - 126 * windows < missing)) == reported
+
+
 def test_a_slow_time_after_a_fast_one_is_reported():
     assert len(reports(lambda k: k < 500 or k % 3 == 0)) == 1
 
