@@ -139,6 +139,74 @@ def test_culling_for_a_small_ball_keeps_few_rays():
     assert len(rays) == pytest.approx(2 * math.asin(0.2) / math.pi * 720, abs=2)
 
 
+LEVEL = Sweep(1, 1, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(('rows', 'centre', 'is_kept'), [
+    # A ball of 1 m, and level rays of 9 m ahead and to both sides.
+    (LEVEL, (9.99, 0.0, 0.0), True), (LEVEL, (10.01, 0.0, 0.0), False),
+    (LEVEL, (-0.99, 5.0, 0.0), True), (LEVEL, (-1.01, 5.0, 0.0), False),
+    (LEVEL, (5.0, 0.0, 0.99), True), (LEVEL, (5.0, 0.0, 1.01), False),
+    (LEVEL, (5.0, 0.0, -0.99), True), (LEVEL, (5.0, 0.0, -1.01), False),
+    # Rays between two elevations [rad]: the ball touches the cone of the last ones, or does not.
+    *((Sweep(5, 5, -0.2, 0.3), (math.cos(angle), 0.0, math.sin(angle)), kept)
+      for limit, side in ((-0.2, -1.0), (0.3, 1.0))
+      for angle, kept in ((limit + side * (math.asin(0.2) - 0.01), True),
+                          (limit + side * (math.asin(0.2) + 0.01), False))),
+])
+def test_culling_drops_balls_out_of_reach_behind_above_and_below(rows, centre, is_kept):
+    fan = RayFan(rows, Sweep(720, 720, -1.5707, 1.5707))
+    size = 5.0 if rows is not LEVEL else 1.0  # five metres away
+    centres = size * np.array([centre])
+    assert len(fan.may_meet(centres, np.ones(1), np.ones(1), 9.0)) == is_kept
+
+
+@pytest.mark.parametrize('side', [-1.0, 1.0])
+def test_culling_keeps_rays_that_graze_a_ball(side):
+    limb = math.asin(0.2) - 1e-9
+    for rows, columns in ((LEVEL, Sweep(2, 2, 0.0, side * limb)),
+                          (Sweep(2, 2, 0.0, side * limb), LEVEL)):
+        fan = RayFan(rows, columns)
+        centres, radii = np.array([[5.0, 0.0, 0.0]]), np.ones(1)
+        some = fan.may_meet(centres, radii, radii, 9.0)
+        patches = fan.near(centres[some], radii, corners_of(np.ones((1, 3))), 9.0)
+        assert sorted(fan.rays(patches)[1].tolist()) == [0, 1]
+
+
+def test_readings_between_rays_are_interpolated_in_rows_and_columns():
+    rows, columns = Sweep(2, 3, -0.1, 0.1), Sweep(3, 5, -1.0, 1.0)
+    blend = RayFan(rows, columns).blend
+    ray_row, ray_column = np.divmod(np.arange(6), 3)
+    row, column = np.divmod(np.arange(15), 5)
+    linear = blend.ranges(10.0 * ray_row + 3.0 * ray_column + 7.0)
+    np.testing.assert_allclose(linear, 10.0 * row / 2.0 + 3.0 * column / 2.0 + 7.0)
+    # The intensity is the mean of four rays, the last ones twice at the end.
+    cast = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
+    expected = [(cast[a] + cast[b] + cast[c] + cast[d]) / 4.0 for a, b, c, d in (
+        (0, 1, 3, 4), (0, 1, 3, 4), (1, 2, 4, 5), (1, 2, 4, 5), (2, 2, 5, 5))]
+    expected += [*expected, *((cast[a] + cast[b]) / 2.0 for a, b in (
+        (3, 4), (3, 4), (4, 5), (4, 5), (5, 5)))]
+    np.testing.assert_allclose(blend.intensities(cast), expected)
+    assert blend.rows.tolist() == [0.5, 0.5, 1.0]
+    assert blend.columns.tolist() == [0.5, 0.5, 1.5, 1.5, 2.0]
+
+
+def test_a_single_reading_or_ray_is_taken_as_it_is():
+    blend = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(1, 3, 0.0, 0.0)).blend
+    assert blend.ranges(np.array([5.0])).tolist() == [5.0, 5.0, 5.0]
+    blend = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(3, 1, 0.0, 1.0)).blend
+    assert blend.ranges(np.array([5.0, 6.0, 7.0])).tolist() == [5.0]
+
+
+def test_equal_fans_are_shared_and_a_single_ray_is_at_zero():
+    one = RayFan.of(LEVEL, Sweep(3, 3, -0.5, 0.5))
+    assert RayFan.of(LEVEL, Sweep(3, 3, -0.5, 0.5)) is one
+    assert RayFan.of(LEVEL, Sweep(3, 3, -0.5, 0.6)) is not one
+    assert Sweep(1, 1, 0.5, 1.0).angles.tolist() == [0.0]
+    np.testing.assert_allclose(one.ways.T, [
+        (math.cos(yaw), math.sin(yaw), 0.0) for yaw in (-0.5, 0.0, 0.5)])
+
+
 def test_culling_for_a_long_wall_keeps_the_rays_between_its_ends():
     fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(720, 720, -1.5708, 1.5708))
     half = np.array([[0.1, 2.0, 1.0]])

@@ -110,7 +110,8 @@ def test_camera_is_as_its_element_says():
         '<pose>1 2 3 0.1 0.2 0.3</pose><horizontal_fov>2</horizontal_fov><image><width>8</width>'
         '<height>6</height><format>L8</format></image><clip><near>1</near><far>2</far></clip>'
         '<noise type="gaussian"><mean>0.1</mean><stddev>0.2</stddev></noise><distortion>'
-        '<k1>-.1</k1><k2>.2</k2><k3>.3</k3><p1>.4</p1><p2>.5</p2><center>0.25 0.75</center></distortion>')
+        '<k1>-.1</k1><k2>.2</k2><k3>.3</k3><p1>.4</p1><p2>.5</p2><center>0.25 0.75</center>'
+        '</distortion>')
     assert (pose.position, pose.orientation) == ((1.0, 2.0, 3.0), from_rpy(0.1, 0.2, 0.3))
     assert (lens.width, lens.height, lens.field_of_view, encoding) == (8, 6, 2.0, 'mono8')
     assert (lens.near, lens.far, lens.noise_mean, lens.noise_stddev) == (1.0, 2.0, 0.1, 0.2)
