@@ -50,3 +50,38 @@ def test_the_architecture_names_rooms_that_exist():
     assert len(rooms) > 25
     assert not [name for name in sorted(rooms) if not any(
         path.is_dir() for path in [package / name, *package.glob(f'**/{name.rstrip("/")}')])]
+
+
+ROBOTS = ROOT / 'doc' / 'robots.md'
+PICTURES = ROOT / 'doc' / 'images' / 'robots'
+OF_A_ROBOT = {  # what a reader needs to repeat a run
+    'a picture, or why there is none': r'!\[[^]]+\]\(images/robots/[\w-]+\.webp\)|No picture: ',
+    'a date': r'\b20\d\d-\d\d-\d\d\b',
+    'a commit': r'\b[\w.-]+/[\w.-]+ [0-9a-f]{7}\b',
+    'a command': r'`[^`]*roslaunch [^`]+\.launch\b',
+    'what works': r'^- Works: ',
+    'a real-time factor': r'[Rr]eal-time factor \d\.\d\d',
+}
+
+
+def robots():
+    """Return the text of the entry of each public robot, by its name."""
+    _, *entries = re.split('^### ', ROBOTS.read_text(encoding='utf-8'), flags=re.M)
+    return dict(entry.split('\n', 1) for entry in entries)
+
+
+def test_there_are_twenty_public_robots():
+    assert len(robots()) >= 20
+
+
+@pytest.mark.parametrize('name', robots())
+@pytest.mark.parametrize('part', OF_A_ROBOT)
+def test_each_public_robot_has(name, part):
+    assert re.search(OF_A_ROBOT[part], robots()[name], re.M)
+
+
+def test_each_picture_of_a_robot_is_shown_and_small():
+    shown = set(re.findall(r'images/robots/([\w-]+\.webp)', ROBOTS.read_text(encoding='utf-8')))
+    there = {path.name: path.stat().st_size for path in PICTURES.iterdir()}
+    assert shown == set(there)
+    assert max(there.values()) < 30_000
