@@ -54,6 +54,11 @@ STEER = wheel('left', -0.15, 0.17) + wheel('right', -0.15, -0.17) + '<link name=
     + joint('fork', 0.15, 0, axis='0 0 1') \
     + wheel('front', 0, 0, 'fork')
 
+PUSHED = '<commandTopic>cmd_vel</commandTopic><odometryTopic>odom</odometryTopic><odometryFrame>' \
+    'odom</odometryFrame><odometryRate>{rate}</odometryRate><robotBaseFrame>base_footprint' \
+    '</robotBaseFrame><x_velocity_p_gain>1000.0</x_velocity_p_gain><y_velocity_p_gain>1000' \
+    '</y_velocity_p_gain><yaw_velocity_p_gain>50</yaw_velocity_p_gain>'
+
 # Tags of each drive: the body that it needs, and its parameters.
 DRIVES = {
     'diff_drive': (TWO, '<leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>'
@@ -89,7 +94,10 @@ DRIVES = {
                        '</publishWheelJointState><commandTopic>cmd_vel</commandTopic>'
                        '<odometryTopic>odom</odometryTopic><odometryFrame>odom</odometryFrame>'
                        '<robotBaseFrame>base_link</robotBaseFrame>'),
+    'force_based_move': (CASTER, PUSHED + '<publishOdometryTf>{yes}</publishOdometryTf>'),
+    'ridgeback_force_based_move': (CASTER, PUSHED + '<cmdVelTimeOut>5.0</cmdVelTimeOut>'),
 }
+WHEELS = {'diff_drive': 'left', 'skid_steer_drive': 'front_left', 'tricycle_drive': 'left'}
 
 # Plugins of the model, with their tags.
 STATES = {
@@ -213,30 +221,27 @@ ODD = [
 def urdf(k):
     """Return the URDF of robot `k`."""
     drive, (body, tags) = list(DRIVES.items())[k % len(DRIVES)]
-    link = {'diff_drive': 'left', 'skid_steer_drive': 'front_left', 'planar_move': 'caster',
-            'tricycle_drive': 'left'}[drive]
+    has_wheels, link = drive in WHEELS, WHEELS.get(drive, 'caster')
     words = {'k': k, 'yes': TRUE[k % len(TRUE)], 'no': FALSE[k % len(FALSE)],
              'rate': RATES[k % len(RATES)], 'source': ('encoder', 'world', '0', '1')[k // 4 % 4],
              'wheel': f'{link}_joint', 'wheel_link': link, 'w': 32, 'rows': '',
              'format': ('R8G8B8', 'L8', 'B8G8R8', 'BAYER_RGGB8')[k % 4]}
     parts = [FRAME, f'<link name="base_link">{BASE}</link>', body,
-             _plugin(f'libgazebo_ros_{drive}.so', 'drive', tags, k)]
+             _plugin(_library(drive), 'drive', tags, k)]
     for offset in (0, 3):
         name, inside = list(STATES.items())[(k + offset) % len(STATES)]
-        if name == 'nothing' or (drive == 'planar_move' and '{wheel' in inside):
+        if name == 'nothing' or (not has_wheels and '{wheel' in inside):
             continue
-        library = name.replace('hector_', 'libhector_gazebo_ros_') + '.so' if 'hector' in name \
-            else f'libgazebo_ros_{name}.so'
-        parts.append(_plugin(library, f'state{offset}', inside, k))
+        parts.append(_plugin(_library(name), f'state{offset}', inside, k))
     for offset in (0, 7):
         parts.append(_sensor(k, offset))
-    parts.append('' if drive == 'planar_move' else TRANSMISSIONS[k % len(TRANSMISSIONS)])
+    parts.append(TRANSMISSIONS[k % len(TRANSMISSIONS)] if has_wheels else '')
     if k % 4 == 3:  # its wheels have no transmission
         mimic, transmission, library, inside = list(GRIPPERS.values())[k // 4 % len(GRIPPERS)]
         parts += [FINGERS.replace('{mimic}', mimic), transmission,
                   _plugin(library, 'gripper', inside, k)]
     odd = ODD[k % len(ODD)]
-    parts.append('' if drive == 'planar_move' and '{wheel}' in odd else odd)
+    parts.append(odd if has_wheels or '{wheel}' not in odd else '')
     if k % 6 == 5:
         missing = missing_libraries()
         parts.append(_plugin(missing[k // 6 % len(missing)], 'missing', '', k))
@@ -244,6 +249,13 @@ def urdf(k):
     for word, value in words.items():
         text = text.replace(f'{{{word}}}', str(value))
     return f'<?xml version="1.0"?>\n<robot name="varied" xmlns:xacro="x">{text}</robot>'
+
+
+def _library(name):
+    for prefix, begin in (('hector_', 'libhector_gazebo_ros_'), ('ridgeback_', 'libridgeback_ros_')):
+        if name.startswith(prefix):
+            return f'{begin}{name.removeprefix(prefix)}.so'
+    return f'libgazebo_ros_{name}.so'
 
 
 def _plugin(filename, name, tags, k):
