@@ -61,7 +61,7 @@ WORLD = f"""<sdf version="1.6"><world name="default">
   </camera></gui>
 </world></sdf>"""
 # The picture is of the scene only, and of as many pixels however slow the processor is.
-QUERY = '&fixedDpr=0.5'
+QUERY = '&fixedDpr=1'
 SCENE_ONLY = """const style = document.createElement('style');
 style.textContent = 'body *:not(canvas):not(:has(canvas)) { visibility: hidden !important }';
 document.head.append(style)"""

@@ -79,16 +79,24 @@ def own_folder() -> Iterator[str]:
 
 def _locked_folder() -> tuple[Path, IO[str]]:
     """Return a new folder, and the file in it that is locked as long as its program lives."""
-    place = tempfile.gettempdir()
-    place = place if len(place) <= _MAX_PLACE else '/tmp'
-    for path in Path(place).glob(f'{_PREFIX}*'):
-        with contextlib.suppress(OSError):
-            _remove_if_left(path)
-    made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=place))
+    remove_left_folders()
+    made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=_place()))
     lock = (made / 'new').open('w')
     fcntl.flock(lock, fcntl.LOCK_EX)
     (made / 'new').rename(made / _LOCK)
     return made, lock
+
+
+def _place() -> str:
+    place = tempfile.gettempdir()
+    return place if len(place) <= _MAX_PLACE else '/tmp'
+
+
+def remove_left_folders() -> None:
+    """Remove the folders, and end the Ray, of programs of this user that were killed."""
+    for path in Path(_place()).glob(f'{_PREFIX}*'):
+        with contextlib.suppress(OSError):
+            _remove_if_left(path)
 
 
 def _remove_if_left(folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import mmap
 import os
 import signal
 import sys
@@ -12,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .abrupt_end import reported
+from .guarded import guarded
 from .program import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 PASSED, NOT_PASSED, USAGE = 0, 1, 2  # exit codes
 FOLDER = 'batch_output'
 REASONS = 5  # that are printed, the most frequent ones
+_done = mmap.mmap(-1, 8)  # rows so far, shared with the parent process
 
 
 def _count(text: str) -> int:
@@ -49,18 +51,16 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make the runs that have no row yet; return the exit code."""
     options = parser().parse_args(arguments)
-    output = options.output or Path(FOLDER, Path(options.scenario).stem)
+    output = _output(options)
     signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
     try:
         from ..batch import ClusterError, ScenarioError, run
     except ImportError as error:
         return _fail(f"the Python package {error.name} is not installed; ./rosbots setup or "
                      "pip install '.[ray]' installs it")
-    done = 0
 
     def count(rows: int, total: int, repeated: int) -> None:
-        nonlocal done
-        done = rows
+        _done[:] = rows.to_bytes(len(_done), 'little')
         show(rows, total, repeated)
 
     try:
@@ -70,9 +70,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (ScenarioError, ClusterError) as error:
         return _fail(str(error))
     except (KeyboardInterrupt, SystemExit):
-        _say(f'interrupted; {done} rows are in {output}, and the same command makes the others')
-        return INTERRUPTED
+        return _interrupted(output)
     return _report(result, output)
+
+
+def _output(options: argparse.Namespace) -> Path:
+    return options.output or Path(FOLDER, Path(options.scenario).stem)
+
+
+def _interrupted(output: Path) -> int:
+    _say(f'interrupted; {int.from_bytes(_done[:], "little")} rows are in {output}, and the same '
+         'command makes the others')
+    return INTERRUPTED
 
 
 def _report(result: Result, output: Path) -> int:
@@ -127,9 +136,23 @@ def _say(sentence: str) -> None:
 
 def program() -> int:
     """Run `main` as a program of its own."""
-    with reported('batch: ended by Ray, of which a process has died, or by a signal; the rows so '
-                  'far are kept, and the same command makes the others'), _own_stderr():
+    return guarded(_main_alone, _ended_by_ray)
+
+
+def _main_alone() -> int:
+    with _own_stderr():
         return main()
+
+
+def _ended_by_ray(interrupted: bool) -> int:
+    """Say how the command ended where Ray ended it, at times while it is shut down."""
+    from ..batch.local_ray import remove_left_folders
+
+    remove_left_folders()
+    if interrupted:
+        return _interrupted(_output(parser().parse_args()))
+    return _fail('ended by Ray, of which a process has died, or by a signal; the rows so far are '
+                 'kept, and the same command makes the others', NOT_PASSED)
 
 
 @contextlib.contextmanager
