@@ -112,11 +112,8 @@ class Tests:
         self._sound: set[str] = set()  # tests, or all of some files, that pass without any change
         self._seconds: dict[str, float] = {}  # by file, as far as known
 
-    def notice(self, path: Path, changed: ast.Module, stages: list[list[str]]) -> str:
+    def notice(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
         """Return how tests notice that a file has another content, or '' if they do not."""
-        return next(filter(None, (self._notice(path, changed, some) for some in stages)), '')
-
-    def _notice(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
         while files := sorted(set(tests) - self.broken, key=self._order):
             left_out = [f'--deselect={name}' for name in self.broken if '::' in name]
             report, verdict = _run(path, changed, ['-x', *files, *left_out])
@@ -244,6 +241,18 @@ def choose(arguments: argparse.Namespace) -> list[Mutant]:
     return random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
 
 
+def _is_noticed(one: Mutant, stage: int, tests: Tests, verdicts: Counter[str]) -> bool:
+    """Tell whether one stage of the tests of its file notices a mutant; print and count how."""
+    start = time.monotonic()
+    verdict, _, name = tests.notice(
+        one.path, mutant(one.tree, one.number), tests_of(one.path)[stage]).partition(' ')
+    if verdict:
+        verdicts[verdict] += 1
+        print(f'{verdict:8} {time.monotonic() - start:6.1f} s  {one}{name and "   by " + name}',
+              flush=True)
+    return bool(verdict)
+
+
 def main() -> int:
     """Make mutants; return 1 if the tests notice too few."""
     parser = argparse.ArgumentParser(prog='./rosbots bench mutants', description=__doc__,
@@ -263,18 +272,14 @@ def main() -> int:
     for name in OTHERS:
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
-    tests, verdicts = Tests(), Counter[str]()
-    for one in chosen:
-        start = time.monotonic()
-        how = tests.notice(one.path, mutant(one.tree, one.number),
-                           tests_of(one.path)[:3 if arguments.own else None])
-        verdict, _, by = (how or 'survived').partition(' ')
-        verdicts[verdict] += 1
-        print(f'{verdict:8} {time.monotonic() - start:6.1f} s  {one}{by and "   by "}{by}',
-              flush=True)
+    tests, verdicts, living = Tests(), Counter[str](), chosen
+    for stage in range(3 if arguments.own else 4):  # for all mutants the quick tests first
+        living = [one for one in living if not _is_noticed(one, stage, tests, verdicts)]
+    for one in living:
+        print(f'survived            {one}')
     for name in sorted(tests.broken):
         print(f'left out, since it fails without any change: {name}')
-    noticed = len(chosen) - verdicts['survived']
+    noticed = len(chosen) - len(living)
     print(f'{noticed} of {len(chosen)} noticed: a test failed for {verdicts["failed"]}, '
           f'{verdicts["crashed"]} crashed, {verdicts["hung"]} hung')
     return 0 if noticed >= WANTED * len(chosen) else 1

@@ -84,7 +84,7 @@ def notice(module, monkeypatch):
     path = ROOT / module.PACKAGE / FRICTION_ROLLING
     before = path.read_bytes()
     yield lambda change, tests, name=ITS_TEST: tests.notice(
-        path, ast.parse(change(before.decode())), [[name]])
+        path, ast.parse(change(before.decode())), [name])
     assert path.read_bytes() == before
     sys.modules.update(loaded)
 
