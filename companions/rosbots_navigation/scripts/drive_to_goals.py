@@ -14,7 +14,8 @@ from actionlib_msgs.msg import GoalStatus
 from gazebo_msgs.srv import GetModelState
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-ROOMS = '1.5,1.5,1.57', '6,4.2,0', '6,-1,3.14', '0,4.5,-1.57', '0,0,0'  # one in each room, and back
+# One in each room, and back
+ROOMS = '1.5,1.5,1.57', '6,4.2,0', '5.2,-0.5,3.14', '0,4.5,-1.57', '0,0,0'
 
 
 def parse(word):
