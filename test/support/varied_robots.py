@@ -252,7 +252,8 @@ def urdf(k):
 
 
 def _library(name):
-    for prefix, begin in (('hector_', 'libhector_gazebo_ros_'), ('ridgeback_', 'libridgeback_ros_')):
+    for prefix, begin in (('hector_', 'libhector_gazebo_ros_'),
+                          ('ridgeback_', 'libridgeback_ros_')):
         if name.startswith(prefix):
             return f'{begin}{name.removeprefix(prefix)}.so'
     return f'libgazebo_ros_{name}.so'

@@ -41,10 +41,10 @@ def guarded(work: Callable[[], int], abrupt: Callable[[bool], int]) -> int:
 
     before = {number: signal.signal(number, pass_on) for number in ENDING}
     try:
-        code = os.read(answer, 1)  # nothing if the child ends without it
+        answered = os.read(answer, 1)  # nothing if the child ends without it
         os.waitpid(child, 0)
     finally:
         os.close(answer)
         for number, handler in before.items():
             signal.signal(number, handler)
-    return code[0] if code else abrupt(bool(told))
+    return answered[0] if answered else abrupt(bool(told))

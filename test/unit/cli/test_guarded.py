@@ -21,7 +21,8 @@ def abrupt(told):
 sys.exit(guarded(work, abrupt))
 """
 WAIT = 'signal.pause()'
-TRAPPED = 'signal.signal(signal.SIGTERM, lambda *_: os._exit(1)); print("ready", flush=True); ' + WAIT
+TRAPPED = ('signal.signal(signal.SIGTERM, lambda *_: os._exit(1)); print("ready", flush=True); '
+           + WAIT)
 
 
 def start(work):
