@@ -4,7 +4,7 @@ A run needs no ROS. Ray, which only `run` imports, spreads runs over processes a
 """
 
 from .conditions import Condition
-from .local_ray import ClusterError
+from .local_ray import ClusterError, remove_left_folders
 from .parameters import Parameters, Run
 from .policy import Commands, Policy, PolicyError, commands_of, load_policy
 from .records import JointReading, Statistics, check_vectors, value_at
@@ -15,5 +15,5 @@ __all__ = [
     'ClusterError', 'Commands', 'Condition', 'JointReading', 'ModelEntry', 'Parameters', 'Policy',
     'PolicyError', 'Progress',
     'RecordEntry', 'Result', 'Run', 'Scenario', 'ScenarioError', 'ScenarioFile', 'Statistics',
-    'check_vectors', 'commands_of', 'load_policy', 'run', 'value_at',
+    'check_vectors', 'commands_of', 'load_policy', 'remove_left_folders', 'run', 'value_at',
 ]

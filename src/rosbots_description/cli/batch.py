@@ -146,7 +146,7 @@ def _main_alone() -> int:
 
 def _ended_by_ray(interrupted: bool) -> int:
     """Say how the command ended where Ray ended it, at times while it is shut down."""
-    from ..batch.local_ray import remove_left_folders
+    from ..batch import remove_left_folders
 
     remove_left_folders()
     if interrupted:
