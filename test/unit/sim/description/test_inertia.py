@@ -202,6 +202,14 @@ def test_a_wheel_may_be_out_of_balance_by_two_percent(inertial, balanced):
     assert is_balanced(inertial, JointSpec('j', REVOLUTE, 'a', 'b')) == balanced
 
 
+def test_a_wheel_is_balanced_about_the_axis_of_its_joint_not_of_its_link():
+    wheel = Inertial(1.0, Pose((0.3, -0.2, 5.0)), ixx=1.0, iyy=1.0, izz=2.0)
+    on, off = (JointSpec('j', REVOLUTE, 'a', 'b', pose=Pose(place))
+               for place in ((0.3, -0.2, 0.1), (-0.3, 0.2, 0.1)))
+    assert is_balanced(wheel, on)
+    assert not is_balanced(wheel, off)
+
+
 def points_at(seed):
     """Return masses (n,) and places (n, 3) of some points of a body."""
     random = np.random.default_rng(seed)

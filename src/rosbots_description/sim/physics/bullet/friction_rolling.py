@@ -16,8 +16,11 @@ def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> flo
     Only cylinders need it. PyBullet updates one end of a lying cylinder's contact line per step;
     the contact at the other end lags behind the axis and would accelerate a can from rest. Wheels
     touch at one place along the axle and need none (`crowned`, `touching_end`).
+
+    Args:
+        collisions: of the part, one or more.
     """
     radii = [one.geometry.radius for one in collisions if isinstance(one.geometry, Cylinder)]
     if len(radii) < len(collisions) or any(wheel_shape(one, joint) for one in collisions):
         return 0.0
-    return _ROLLING_RESISTANCE * max(radii, default=0.0)
+    return _ROLLING_RESISTANCE * max(radii)

@@ -6,6 +6,7 @@ from rosbots_description.sim.physics.bullet.friction_slip_compliance import (
     MIN_SCALE,
     TyreContact,
     slip_scales,
+    velocity_at,
 )
 
 AXLE = (0.0, 1.0, 0.0)
@@ -13,8 +14,8 @@ LOAD, LIMIT = 10.0, 8.0  # [N]
 STEP = 0.001  # [s]
 
 
-def touch(force=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), load=LOAD):
-    return TyreContact((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), load, force, velocity, LIMIT)
+def touch(force=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), load=LOAD, limit=LIMIT):
+    return TyreContact((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), load, force, velocity, limit)
 
 
 def held(*contacts, slips=(0.01, 0.0)):
@@ -58,3 +59,23 @@ def test_friction_is_the_force_of_the_slip_by_implicit_euler(axle):
 
 def test_least_scale_is_a_thousandth():
     assert MIN_SCALE == 1e-3
+
+
+def test_contacts_without_load_or_friction_do_not_count():
+    touching = touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.06, 0.0))
+    for other in (touch(velocity=(5.0, 5.0, 0.0), load=0.0),
+                  touch(velocity=(5.0, 5.0, 0.0), limit=0.0)):
+        assert held(other) is None
+        assert held(other, touching) == held(touching)
+
+
+def test_velocity_is_the_mean_by_load_and_forces_and_limits_are_added():
+    one = touch(force=(0.0, -1.0, 0.0), velocity=(0.0, 0.01, 0.0), load=3.0, limit=2.0)
+    two = touch(force=(0.0, -3.0, 0.0), velocity=(0.0, 0.05, 0.0), load=1.0, limit=6.0)
+    both = touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.02, 0.0), load=4.0, limit=8.0)
+    assert held(one, two) == pytest.approx(held(both))
+
+
+def test_velocity_of_a_point_is_that_of_a_rigid_body():
+    assert velocity_at((1.0, 0.0, 2.0), (0.0, 0.0, 2.0), (0.1, 0.2, 0.3), (0.0, 0.0, 2.0)) == \
+        pytest.approx((0.1, 2.2, 0.3))
