@@ -12,6 +12,7 @@ import websockets.asyncio.server
 
 from .door import TOKEN, Door, Process, new_token
 from .gate import MAX_MESSAGE, Gate, Received
+from .loop_event import leave_to_loop
 from .policy import page_headers
 
 
@@ -60,6 +61,9 @@ class Site(viser.ViserServer):
         # Viser looks for a free port by itself and takes no socket and no guard.
         with mock.patch('websockets.asyncio.server.serve', serve_here):
             super().__init__(host, port, verbose=False)
+        leave_to_loop(self._websock_server.get_message_buffer())
+        self._websock_server.on_client_connect(
+            lambda client: leave_to_loop(client.get_message_buffer()))
         gate.site = self
 
     def receive_files(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:

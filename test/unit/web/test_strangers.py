@@ -233,9 +233,9 @@ CAMERAS = [
 
 @pytest.mark.parametrize('change', CAMERAS, ids=str)
 def test_a_camera_that_looks_nowhere_is_ignored(browser, site, change):
-    _, client = max(site.get_clients().items())  # the newest
     browser.send({**CAMERA, **change})
     browser.wait_until(lambda: any('of this browser' in note for note in browser.notes()))
+    _, client = max(site.get_clients().items())  # the newest; before, it might not be listed yet
     assert all(map(math.isfinite, client.camera.position))
     browser.look_at([1.0, 2.0, 3.0])
     browser.wait_until(lambda: list(client.camera.look_at) == [1.0, 2.0, 3.0])
