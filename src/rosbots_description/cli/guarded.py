@@ -20,7 +20,7 @@ def guarded(work: Callable[[], int], abrupt: Callable[[bool], int]) -> int:
         abrupt: called if the child ends before `work` has returned, with whether such a signal has
             come; returns the exit code.
     """
-    told: list[int] = []
+    received: list[int] = []
     answer, result = os.pipe()
     parent = os.getpid()
     child = os.fork()
@@ -35,7 +35,7 @@ def guarded(work: Callable[[], int], abrupt: Callable[[bool], int]) -> int:
     os.close(result)
 
     def pass_on(number: int, _frame: object) -> None:
-        told.append(number)
+        received.append(number)
         with contextlib.suppress(ProcessLookupError):
             os.kill(child, number)
 
@@ -47,4 +47,4 @@ def guarded(work: Callable[[], int], abrupt: Callable[[bool], int]) -> int:
         os.close(answer)
         for number, handler in before.items():
             signal.signal(number, handler)
-    return answered[0] if answered else abrupt(bool(told))
+    return answered[0] if answered else abrupt(bool(received))

@@ -14,8 +14,8 @@ def work():
     print('begun', flush=True)
     {work}
 
-def abrupt(told):
-    print('abrupt, told' if told else 'abrupt', flush=True)
+def abrupt(was_signalled):
+    print('abrupt, signalled' if was_signalled else 'abrupt', flush=True)
     return 7
 
 sys.exit(guarded(work, abrupt))
@@ -48,7 +48,7 @@ def test_an_end_during_the_shutdown_after_a_signal_is_known_as_such():
     program = start(TRAPPED)
     assert program.stdout.readline() == 'ready\n'
     program.send_signal(signal.SIGTERM)
-    assert (program.communicate()[0], program.returncode) == ('abrupt, told\n', 7)
+    assert (program.communicate()[0], program.returncode) == ('abrupt, signalled\n', 7)
 
 
 def test_an_interrupt_reaches_the_work():
