@@ -1,7 +1,12 @@
 """Energy that a free rigid body gains per step in PyBullet, compared with theory."""
 
+import itertools
+
+import numpy as np
 import pytest
 
+from rosbots_description.sim.core.arrays import rotation_matrix
+from rosbots_description.sim.physics.bullet import fast_rotation
 from rosbots_description.sim.physics.bullet.fast_rotation import energy_growth_rate
 
 MOMENTS = (0.1, 0.2, 0.3)
@@ -31,3 +36,16 @@ def test_relative_gain_is_that_of_explicit_euler():
                 for v in ((x, y, z), after)]
     gained = (energies[1] / energies[0] - 1.0) / dt
     assert energy_growth_rate(MOMENTS, (x, y, z), dt) == pytest.approx(gained, rel=1e-3)
+
+
+def test_vectors_are_turned_back_into_the_frame_of_each_link():
+    random = np.random.default_rng(4)
+    turns = random.normal(size=(20, 4))
+    turns /= np.linalg.norm(turns, axis=1)[:, None]
+    vectors = random.normal(size=(20, 3))
+    expected = [rotation_matrix(tuple(turn)).T @ vector
+                for turn, vector in zip(turns, vectors, strict=True)]
+    assert np.allclose(fast_rotation._rotated_back(turns, vectors), expected, atol=1e-12)
+    pairs = list(itertools.pairwise(vectors))
+    assert (fast_rotation._cross(vectors[:-1], vectors[1:])
+            == [np.cross(one, other) for one, other in pairs]).all()
