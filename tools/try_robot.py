@@ -10,7 +10,7 @@ import argparse
 import os
 import sys
 import time
-from math import atan2, cos, hypot, pi, sin
+from math import cos, hypot, pi, sin
 from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy
@@ -29,6 +29,8 @@ from geometry_msgs.msg import Pose, Quaternion, Twist
 from PIL import Image
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image as ImageMessage
+
+from rosbots_description.sim.core.transforms import yaw_of
 
 APPEARS = 60.0  # [s, wall] timeout of the start of the simulation, and of the picture
 SENDS = 30.0  # [s, wall] timeout of the first message of a sensor
@@ -85,15 +87,15 @@ def call(service: str, kind: type[Any], **request: object) -> Any:  # noqa: ANN4
     return response
 
 
-def yaw(turned: Quaternion) -> float:
-    """Return the heading of a pose [rad]."""
-    return atan2(2 * (turned.w * turned.z + turned.x * turned.y),
-                 1 - 2 * (turned.y ** 2 + turned.z ** 2))
-
-
 def pose(model: str) -> Pose:
     """Return the true pose of a model in the world."""
     return call('get_model_state', GetModelState, model_name=model).pose
+
+
+def heading_of(pose: Pose) -> float:
+    """Return the rotation of a pose about z [rad]."""
+    turn = pose.orientation
+    return yaw_of((turn.x, turn.y, turn.z, turn.w))
 
 
 def wait_for(model: str) -> None:
@@ -161,9 +163,9 @@ def drive(model: str, publisher: rospy.Publisher, command: Twist, seconds: float
         rate.sleep()
     after = pose(model)
     publisher.publish(Twist())
-    heading = yaw(before.orientation)
+    heading = heading_of(before)
     x, y = after.position.x - before.position.x, after.position.y - before.position.y
-    turned = (yaw(after.orientation) - heading + pi) % (2 * pi) - pi
+    turned = (heading_of(after) - heading + pi) % (2 * pi) - pi
     return (f'{command.linear.x:g} m/s, {command.linear.y:g} m/s to the left and '
             f'{command.angular.z:g} rad/s for {seconds:g} s: '
             f'{x * cos(heading) + y * sin(heading):.2f} m forward, '
@@ -204,7 +206,7 @@ def camera_pose(options: argparse.Namespace) -> Pose:
     """Return the pose of the camera, which looks at the centre of the model."""
     (x, y, z), radius = extent(options.model)
     distance = options.distance or 3 * radius + 0.35
-    bearing = yaw(pose(options.model).orientation) + options.bearing
+    bearing = heading_of(pose(options.model)) + options.bearing
     made = Pose()
     made.position.x = x + distance * cos(options.pitch) * cos(bearing)
     made.position.y = y + distance * cos(options.pitch) * sin(bearing)
