@@ -116,7 +116,7 @@ class FramesTest(unittest.TestCase):
         return {child: self._edges[child] for child in (*WHEELS, 'base_link', 'base_footprint')
                 if child in self._edges}
 
-    def check(self, terminals):
+    def assert_complete_and_quiet(self, terminals):
         """Drive; assert that the TF tree is complete and terminals are quiet."""
         # RViz may be ready before the state publisher: the frames change hands meanwhile
         wait_until(lambda: self.drive(NUDGE).items() >= DRIVEN_TREE.items(), 'the tree', STEP)
@@ -143,23 +143,23 @@ class FramesTest(unittest.TestCase):
 
     def test_rviz_before_the_simulator(self):
         view = self.rviz()
-        self.check([view, self.simulator()])
+        self.assert_complete_and_quiet([view, self.simulator()])
 
     def test_rviz_after_the_simulator_and_closed_again(self):
         simulator = self.simulator()
         self.assertEqual(self.drive(), BY_THE_TAGS)
         view = self.rviz()
-        self.check([view, simulator])
+        self.assert_complete_and_quiet([view, simulator])
         self.end(view)
         wait_until(lambda: self.drive() == BY_THE_TAGS, 'the frames by the tags', STEP)
 
     def test_a_readers_own_rviz_before_the_simulator(self):
         view = self.rviz(own=True)
-        self.check([view, self.simulator()])
+        self.assert_complete_and_quiet([view, self.simulator()])
 
     def test_a_readers_own_rviz_after_the_simulator(self):
         simulator = self.simulator()
-        self.check([self.rviz(own=True), simulator])
+        self.assert_complete_and_quiet([self.rviz(own=True), simulator])
 
 
 if __name__ == '__main__':
