@@ -112,7 +112,7 @@ class WheelFramesTopic(PublishedTopic):
             if isinstance(states, WheelStatesTopic)))
 
     def send(self, reading: object) -> None:
-        """Publish a frame, unless such a node has come since we were told of readers."""
+        """Publish a frame, unless such a node has subscribed since the readers were counted."""
         if self.is_wanted():
             super().send(reading)
 

@@ -15,7 +15,7 @@ def rolling_arm(collisions: Sequence[Collision], joint: JointSpec | None) -> flo
 
     Only cylinders need it. PyBullet updates one end of a lying cylinder's contact line per step;
     the contact at the other end lags behind the axis and would accelerate a can from rest. Wheels
-    touch at one place along the axle and need none (`crowned`, `touching_end`).
+    touch the floor at one point along the axle and do not need it (`crowned`, `touching_end`).
 
     Args:
         collisions: of the part, one or more.
