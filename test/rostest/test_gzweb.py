@@ -19,7 +19,8 @@ from gazebo_msgs.srv import (
     GetWorldProperties,
     SpawnModel,
 )
-from geometry_msgs.msg import TransformStamped, Twist
+from geometry_msgs.msg import PoseStamped, TransformStamped, Twist
+from nav_msgs.msg import OccupancyGrid
 from rosbots_msgs.srv import GetFriction
 from sensor_msgs.msg import LaserScan
 from server_process import ServerProcess
@@ -86,6 +87,7 @@ class GzwebTest(unittest.TestCase):
                 self.show_contacts(browser)
                 self.edit(browser)
                 self.sense(browser)
+                self.navigate(browser)
                 server.process.kill()
                 browser.wait_until(lambda: any('does not answer' in text
                                                for text in browser.texts()))
@@ -248,11 +250,47 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: browser.control('/scan'))
         self.assertEqual(subscribed(), TOPICS)  # it has not been asked for
         browser.choose('/scan', True)
-        sensor = '/sensors/\u2215scan'
+        sensor = '/readings/\u2215scan'
         browser.wait_until(lambda: f'{sensor}/points' in browser.nodes)
         ball, lens = browser.nodes[LINK][1], browser.nodes[sensor][1]
         self.assertAlmostEqual(math.dist(ball, lens), 2.0, places=3)
         browser.wait_until(lambda: subscribed() == TOPICS | {'/scan'})  # TF is no longer needed
+
+    def navigate(self, browser):
+        """Show a map of a frame beside the ball, and set a goal in it; and show the true map."""
+        ball = browser.nodes[LINK][1]
+        placed = TransformStamped(child_frame_id='ball/body')
+        placed.header.frame_id = 'map'
+        placed.transform.translation.x, placed.transform.rotation.w = 4.0, 1.0
+        frames = rospy.Publisher('/tf', TFMessage, latch=True, queue_size=1)
+        frames.publish(TFMessage([placed]))
+        maps = rospy.Publisher('/map', OccupancyGrid, latch=True, queue_size=1)
+        grid = OccupancyGrid(data=[0, 100, -1, 0])
+        grid.header.frame_id = 'map'
+        grid.info.width = grid.info.height = 2
+        grid.info.resolution, grid.info.origin.orientation.w = 0.5, 1.0
+        maps.publish(grid)
+        goals = []
+        self.addCleanup(rospy.Subscriber(
+            '/move_base_simple/goal', PoseStamped, goals.append).unregister)
+        browser.wait_until(lambda: browser.control('/map'))
+        browser.choose('/map', True)
+        node = '/readings/\u2215map'
+        browser.wait_until(lambda: f'{node}/grid' in browser.nodes)
+        origin = ball[0] - 4.0, ball[1]
+        browser.wait_until(lambda: math.dist(browser.nodes[node][1][:2], origin) < 1e-3)
+        browser.wait_until(lambda: browser.control('2D Nav Goal'))
+        browser.click('2D Nav Goal')
+        for sentence, along in (('click on the ground', 1.0), ('Now click', 2.0)):
+            browser.wait_until(lambda sentence=sentence: any(
+                sentence in note for note in browser.notes()))
+            browser.click_ray([origin[0] + along, origin[1], 5.0], [0.0, 0.0, -1.0])
+        browser.wait_until(lambda: goals)
+        self.assertEqual(goals[0].header.frame_id, 'map')
+        self.assertAlmostEqual(goals[0].pose.position.x, 1.0, places=3)
+        self.assertAlmostEqual(goals[0].pose.orientation.w, 1.0, places=3)
+        browser.choose('true map', True)
+        browser.wait_until(lambda: '/readings/true map/grid' in browser.nodes)
 
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')

@@ -9,6 +9,7 @@ from rosbots_description.sim.description import (
     ShownLink,
     ShownModel,
     ShownMotion,
+    ShownReading,
     Visual,
 )
 
@@ -38,7 +39,8 @@ class FakeSimulator:
         self.view = self.time = self.robots = self.inspection = self.hands = self.library = \
             self.worlds = self
         self.contacts, self.joints = FakeContacts(), FakeJoints()
-        self.sensors, self.signals = FakeSensors(), FakeSignals()
+        self.sensors, self.signals = FakeTopics(), FakeSignals()
+        self.maps, self.goals = FakeMaps(), FakeGoals()
         self.names = []  # of models on the model path
         self.missing = []  # what models are spawned without
 
@@ -116,18 +118,18 @@ class FakeJoints:
         return note
 
 
-class FakeSensors:
+class FakeTopics:
     """Keeps what is open, and answers with the readings that it is given."""
 
     def __init__(self, topics=()):
-        self.topics, self.open_topics, self.readings = dict(topics), set(), {}
+        self.published, self.open_topics, self.readings = dict(topics), set(), {}
         self.place = ('base', Pose((0.0, 0.0, 0.5)))  # of every frame
 
-    def sensor_topics(self):
-        return dict(self.topics)
+    def offered(self):
+        return dict(self.published)
 
     def open(self, topic, kind):
-        assert self.topics[topic] == kind
+        assert self.published[topic] == kind
         self.open_topics.add(topic)
 
     def close(self, topic):
@@ -143,6 +145,48 @@ class FakeSensors:
     def locate(self, frame, links):
         self.links = links
         return self.place
+
+
+class FakeMaps(FakeTopics):
+    """The same, and a true map."""
+
+    def __init__(self, topics=()):
+        super().__init__(topics)
+        self.truth, self.heights = ShownReading(words='no cell'), []
+
+    def true_map(self, height):
+        self.heights.append(height)
+        if isinstance(self.truth, str):
+            raise SimError(self.truth)
+        return self.truth
+
+
+class FakeGoals:
+    """Keeps the poses that it is sent; `frames` says at which link each is, and where."""
+
+    def __init__(self):
+        self.goals, self.estimates, self.sent = (), (), []
+        self.frames = {}
+        self.is_listening = False
+
+    def goal_topics(self):
+        return self.goals
+
+    def estimate_topics(self):
+        return self.estimates
+
+    def locate(self, frame, links):
+        self.is_listening = True
+        return self.frames.get(frame)
+
+    def rest(self):
+        self.is_listening = False
+
+    def send_goal(self, *sent):
+        self.sent.append(('goal', *sent))
+
+    def send_estimate(self, *sent):
+        self.sent.append(('estimate', *sent))
 
 
 class FakeSignals:

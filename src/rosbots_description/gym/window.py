@@ -125,7 +125,7 @@ class Window:
     """Serves the page at `address` on this machine; it is what the page knows as its simulator."""
 
     # Actions come from the program.
-    robots = joints = sensors = signals = None
+    robots = joints = sensors = maps = goals = signals = None
     inspection = contacts = hands = library = worlds = None
 
     def __init__(self, world: World, port: int) -> None:

@@ -10,6 +10,7 @@ import viser
 from ..sim.core import Pose, SimError, Vector
 from ..sim.description import GROUND_PLANE, LightSpec, ModelSpec, ModelText, SceneChange
 from .choice import Choice
+from .ground_clicks import GroundClicks
 from .hands import Hands
 from .history import History
 from .panel import Panel, attempt
@@ -53,14 +54,15 @@ class InsertPanel(Panel):
     """Controls that insert where the camera looks, or at a place that was clicked on."""
 
     def __init__(self, site: Site, library: Library, hands: Hands, selection: Selection,
-                 history: History, complain: Callable[[str], None]) -> None:
+                 history: History, clicks: GroundClicks,
+                 complain: Callable[[str], None]) -> None:
         self._library, self._hands, self._selection = library, hands, selection
         self._history, self._complain = history, complain
         self._lights: Mapping[str, LightSpec] = {}
         self._refreshes = 0
         self._look = threading.Thread()
         gui = site.gui
-        self._places = Places(site.scene)
+        self._places = Places(clicks)
         place = gui.add_button('Choose the place', icon=viser.Icon.MAP_PIN,
                                hint='by a click on the ground; else it is where the camera looks')
         with gui.add_folder('Shape'):

@@ -40,6 +40,16 @@ class Models(Panel):
                 return self.link_pose(one)
         return compose(self.link_pose(shown.links[0]), inverse(shown.canonical_pose))
 
+    def links_for(self, topic: str) -> dict[str, ShownLink]:
+        """Return links by name, and by model and name; one name has that of the topic's robot."""
+        spaces = topic.split('/')
+        found: dict[str, ShownLink] = {}
+        for model in sorted(self._models.values(), key=lambda model: model.name not in spaces):
+            for link in model.links:
+                found[f'{model.name}/{link.name}'] = link
+                found.setdefault(link.name, link)
+        return found
+
     def apply(self, change: SceneChange) -> None:
         """Take in models that came, changed or went."""
         if change.reset:  # its numbers may be those of another simulator

@@ -18,6 +18,8 @@ from .contacts import Contacts, ContactsPanel
 from .drive import DrivePanel, Robots
 from .follow import FollowPanel
 from .gizmo import Gizmo
+from .goals import GoalPanel, Goals
+from .ground_clicks import GroundClicks
 from .hands import Hands, HandsPanel
 from .history import History
 from .insert import InsertPanel, Library
@@ -25,6 +27,7 @@ from .inspector import Inspector
 from .interpolation import Interpolation
 from .joints import JointPanel, Joints
 from .joystick import Joystick
+from .maps import MapPanel, Maps
 from .models import Models
 from .notices import Notices
 from .outline import Outline
@@ -32,11 +35,11 @@ from .panel import Panel
 from .plot import PlotPanel, Signals
 from .scene import SceneView
 from .selection import Selection
-from .sensors import SensorPanel, Sensors
 from .show import ShowPanel
 from .site import Site
 from .start_view import StartView
 from .take_away import TakeAwayPanel, Worlds
+from .topics import ShownTopics, TopicPanel
 from .tree import ModelTree
 from .views import ViewPanel, look
 
@@ -98,8 +101,16 @@ class Simulator(Protocol):
         """Its world as a file, if it gives that away."""
 
     @property
-    def sensors(self) -> Sensors | None:
+    def sensors(self) -> ShownTopics | None:
         """What its robots sense with, if that can be seen."""
+
+    @property
+    def maps(self) -> Maps | None:
+        """Maps of it, and what navigation makes of them, if that can be seen."""
+
+    @property
+    def goals(self) -> Goals | None:
+        """What takes goals and initial poses, if anything does."""
 
     @property
     def signals(self) -> Signals | None:
@@ -140,7 +151,7 @@ class Page:
     def _add_tabs(self, simulator: Simulator, models: Models, scene: SceneView,
                   history: History) -> None:
         site = self._site
-        keys = CameraKeys(site.gui)
+        keys, clicks = CameraKeys(site.gui), GroundClicks(site)
         tabs = site.gui.add_tab_group()
         if simulator.robots is not None:
             with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
@@ -164,7 +175,7 @@ class Page:
                     site.gui, models, self.selection, simulator.hands, history, self._notify)
                 if simulator.library is not None:
                     self._panels.append(InsertPanel(
-                        site, simulator.library, simulator.hands, self.selection, history,
+                        site, simulator.library, simulator.hands, self.selection, history, clicks,
                         self._notify))
             self._panels.append(Gizmo(
                 site, models, self.selection, simulator.hands, history, self._notify))
@@ -177,7 +188,13 @@ class Page:
                 self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
         if simulator.sensors is not None:
             with tabs.add_tab('Sensors', viser.Icon.CAMERA):
-                self._panels.append(SensorPanel(site, simulator.sensors, models))
+                self._panels.append(TopicPanel(
+                    site, simulator.sensors, models, 'sensors', 'No sensor publishes.'))
+        if simulator.maps is not None and simulator.goals is not None:
+            with tabs.add_tab('Map', viser.Icon.MAP):
+                self._panels += [
+                    GoalPanel(site.gui, simulator.goals, models, clicks, self._notify),
+                    MapPanel(site, simulator.maps, models, self._notify)]
         if simulator.signals is not None:
             with tabs.add_tab('Plot', viser.Icon.CHART_LINE):
                 self._panels.append(PlotPanel(site, simulator.signals, self._notify))

@@ -7,7 +7,7 @@ from support.window import model
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Box, Cylinder, SceneChange, Sphere
 from rosbots_description.web import insert, uploads
-from rosbots_description.web.place import on_ground
+from rosbots_description.web.ground_clicks import on_ground
 from rosbots_description.web.shapes import point_light, shape
 
 UPLOAD = 'Upload URDF, xacro or SDF'
@@ -138,13 +138,13 @@ def test_place_is_where_one_clicks_once(ready, simulator, site):
         ready.click_ray([0.0, 0.0, 4.0], [0.0, 0.0, 1.0])  # the sky
         ready.wait_until(lambda: any('not on the ground' in note for note in ready.notes()))
         ready.click_ray([0.0, 0.0, 4.0], [0.5, 0.0, -1.0])
-        ready.wait_until(lambda: any(node.startswith('/place/') for node in ready.nodes))
+        ready.wait_until(lambda: any(node.startswith('/clicked/') for node in ready.nodes))
     for _ in range(2):
         ready.click('Insert shape')
     ready.wait_until(lambda: len(inserted(simulator)) == 2)
     assert {text.pose.position for text in inserted(simulator)} == {
         (2.0, 0.0, 0.0), (1.0, 2.0, 0.0)}
-    ready.wait_until(lambda: not any(node.startswith('/place/') for node in ready.nodes))
+    ready.wait_until(lambda: not any(node.startswith('/clicked/') for node in ready.nodes))
 
 
 def test_ray_meets_the_ground_or_not():

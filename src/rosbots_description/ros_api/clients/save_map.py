@@ -5,13 +5,14 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 from rosbots_msgs.srv import SaveWorld
 
 from ...sim.core import SimError, printable
-from ...sim.public import World
+from ...sim.public import OccupancyGrid, World
 from . import service_program
 from .service_program import LAYOUT, Call
 
@@ -40,11 +41,30 @@ def run(name: str, world: str | None, ros_arguments: Sequence[str], section: Map
     return service_program.DONE
 
 
-def _save_running(call: Call, name: str, section: MapOptions, overwrite: bool) -> Iterator[str]:
+def true_map(sdf: str, height: float) -> OccupancyGrid:
+    """Return the map of a world file's text at a height [m], with the cells of `save_map`.
+
+    Raises:
+        SimError: the text is no world, or there is no such map.
+    """
+    with _file_of(sdf) as path, World.from_file(path) as world:
+        try:
+            return world.occupancy_grid(height)
+        except ValueError as error:
+            raise SimError(str(error)) from None
+
+
+@contextmanager
+def _file_of(sdf: str) -> Iterator[str]:
     with tempfile.TemporaryDirectory() as folder:
-        world = Path(folder, 'running.world')
-        world.write_text(call('save_world', SaveWorld).sdf, encoding='utf-8')
-        yield from _save(name, str(world), section, overwrite)
+        path = Path(folder, 'running.world')
+        path.write_text(sdf, encoding='utf-8')
+        yield str(path)
+
+
+def _save_running(call: Call, name: str, section: MapOptions, overwrite: bool) -> Iterator[str]:
+    with _file_of(call('save_world', SaveWorld).sdf) as world:
+        yield from _save(name, world, section, overwrite)
 
 
 def _save(name: str, world: str, section: MapOptions, overwrite: bool) -> Iterator[str]:

@@ -21,7 +21,8 @@ from .layouts import (
     floats,
 )
 from .readings import read_reading
-from .shown_readings import SENSOR_TYPES, shown_reading
+from .shown_maps import map_cells
+from .shown_readings import MAP_TYPES, SENSOR_TYPES, shown_reading
 from .shown_scene import (
     contacts_message,
     motion_message,
@@ -33,9 +34,10 @@ from .shown_scene import (
 from .validity import RequestError, require_finite
 
 __all__ = [
-    'SENSOR_TYPES', 'ImuLayout', 'JointStatesLayout', 'LaserScanLayout', 'OdometryLayout',
-    'PointCloudLayout', 'RequestError', 'TransformLayout', 'contacts_message', 'fill_pose',
-    'fill_transform', 'fill_twist', 'floats', 'motion_message', 'number_getter', 'number_paths',
-    'read_contacts', 'read_motion', 'read_pose', 'read_reading', 'read_transform', 'read_twist',
-    'read_vector', 'require_finite', 'scene_change', 'scene_message', 'shown_reading', 'stamp',
+    'MAP_TYPES', 'SENSOR_TYPES', 'ImuLayout', 'JointStatesLayout', 'LaserScanLayout',
+    'OdometryLayout', 'PointCloudLayout', 'RequestError', 'TransformLayout', 'contacts_message',
+    'fill_pose', 'fill_transform', 'fill_twist', 'floats', 'map_cells', 'motion_message',
+    'number_getter', 'number_paths', 'read_contacts', 'read_motion', 'read_pose', 'read_reading',
+    'read_transform', 'read_twist', 'read_vector', 'require_finite', 'scene_change',
+    'scene_message', 'shown_reading', 'stamp',
 ]

@@ -1,4 +1,4 @@
-"""Messages of sensors to what a window shows of them."""
+"""Messages of sensors, and others, to what a window shows of them."""
 
 import math
 from collections.abc import Callable
@@ -23,6 +23,7 @@ from sensor_msgs.msg import (
 
 from ...sim.core import Vector
 from ...sim.description import ShownReading
+from . import shown_maps
 from .clouds import cloud_points, old_cloud_points
 from .conversions import read_vector
 from .pictures import decompressed, pixels
@@ -121,12 +122,13 @@ _SHOWN: dict[type[Any], Callable[[Any], ShownReading]] = {
     NavSatFix: _numbers,
 }
 SENSOR_TYPES = {kind._type: kind for kind in _SHOWN}
+MAP_TYPES = {kind._type: kind for kind in shown_maps.SHOWN}
 
 
-def shown_reading(message: Any) -> ShownReading:  # noqa: ANN401  of one of `SENSOR_TYPES`
-    """Return what a window shows of a sensor's message.
+def shown_reading(message: Any) -> ShownReading:  # noqa: ANN401  of `SENSOR_TYPES` or `MAP_TYPES`
+    """Return what a window shows of a message.
 
     Raises:
         SimError: a sentence about what is wrong with it, without its beginning.
     """
-    return _SHOWN[type(message)](message)
+    return (_SHOWN | shown_maps.SHOWN)[type(message)](message)

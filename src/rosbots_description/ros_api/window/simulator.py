@@ -1,12 +1,15 @@
 """The simulator as the window in the browser sees it."""
 
+from ..messages import SENSOR_TYPES
 from .contacts import RosContacts
+from .goals import RosGoals
 from .hands import RosHands
 from .inspection import RosInspection
 from .joints import RosJoints
 from .library import RosLibrary
+from .maps import RosMaps
+from .readings import RosReadings
 from .robots import RosRobots
-from .sensors import RosSensors
 from .signals import RosSignals
 from .time_control import RosTimeControl
 from .topic_graph import TopicGraph
@@ -28,5 +31,7 @@ class GazeboSimulator:
         self.library = RosLibrary()
         self.hands = RosHands()
         self.worlds = RosWorlds()
-        self.sensors = RosSensors(topics)
+        self.sensors = RosReadings(topics, SENSOR_TYPES)
+        self.maps = RosMaps(topics)
+        self.goals = RosGoals(topics)
         self.signals = RosSignals(topics)

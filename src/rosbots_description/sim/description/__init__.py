@@ -37,7 +37,7 @@ from .robot_control import (
     Transmission,
 )
 from .sensor_spec import SensorSpec
-from .shown_reading import ShownReading
+from .shown_reading import ShownGrid, ShownReading
 from .shown_scene import (
     SceneChange,
     ShownContact,
@@ -62,7 +62,7 @@ __all__ = [
     'Element', 'Geometry', 'Inertial', 'JointSpec', 'LightSpec', 'LinkSpec', 'Material', 'Mesh',
     'Mimic', 'ModelSpec', 'ModelState', 'ModelText', 'PhysicsSettings', 'Plane', 'PluginSpec',
     'Reflection', 'RobotControl', 'SceneChange', 'SceneSpec', 'SensorSpec', 'ShownContact',
-    'ShownLink', 'ShownModel', 'ShownMotion', 'ShownReading', 'ShownSensor', 'SoftLimits', 'Sphere',
-    'Surface', 'Transmission', 'Visual', 'WorldSpec', 'check_physics', 'gazebo_material', 'inertia',
-    'material_of_colours',
+    'ShownGrid', 'ShownLink', 'ShownModel', 'ShownMotion', 'ShownReading', 'ShownSensor',
+    'SoftLimits', 'Sphere', 'Surface', 'Transmission', 'Visual', 'WorldSpec', 'check_physics',
+    'gazebo_material', 'inertia', 'material_of_colours',
 ]

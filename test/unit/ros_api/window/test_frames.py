@@ -100,6 +100,28 @@ def test_a_prefix_is_the_robots_name_or_none_of_a_link(finder, topics):
     assert finder.locate('r2/laser', {'base'})[0] == 'base'
 
 
+def test_a_frame_above_a_link_is_found_from_there_and_followed(finder, topics):
+    links = {'base', 'wheel'}
+    assert finder.locate('map', links) is None
+    topics.say('map', 'odom', 1.0, static=False)
+    topics.say('odom', 'base', 5.0, static=False)
+    topics.say('base', 'wheel', 0.2, static=False)  # the way from it is longer
+    link, pose = finder.locate('map', links)
+    assert (link, pose.position) == ('base', (-6.0, 0.0, 0.0))
+    topics.say('map', 'odom', 2.0, static=False)
+    assert finder.locate('map', links)[1].position == (-7.0, 0.0, 0.0)
+    assert finder.locate('/odom', links)[1].position == (-5.0, 0.0, 0.0)
+    finder.forget()
+    assert not topics.readers
+
+
+def test_a_frame_beside_all_links_is_not_found(finder, topics):
+    assert finder.locate('map', {'base'}) is None
+    topics.say('odom', 'base', 5.0, static=False)
+    topics.say('world', 'map', 1.0)
+    assert finder.locate('map', {'base'}) is None
+
+
 def test_a_loop_of_frames_ends(finder, topics):
     assert finder.locate('a', {'base'}) is None
     topics.say('b', 'a')

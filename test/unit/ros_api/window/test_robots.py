@@ -3,7 +3,7 @@
 import pytest
 import rospy
 
-from rosbots_description.ros_api.window import robots
+from rosbots_description.ros_api.window.commands import Commands
 from rosbots_description.ros_api.window.robots import RosRobots
 
 
@@ -33,7 +33,7 @@ def made(monkeypatch):
         made.append(FakePublisher(*arguments, **options))
         return made[-1]
 
-    monkeypatch.setattr(robots.rospy, 'Publisher', publisher)
+    monkeypatch.setattr(rospy, 'Publisher', publisher)
     return made
 
 
@@ -60,7 +60,7 @@ def test_of_those_that_wait_the_last_and_its_stop_stay(made):
 
 
 def test_rospy_calls_a_listener_of_this_kind():
-    assert issubclass(robots.Commands, rospy.SubscribeListener)
+    assert issubclass(Commands, rospy.SubscribeListener)
 
 
 def test_a_robot_that_connected_before_the_listener_is_served(made):

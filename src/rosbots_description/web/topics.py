@@ -1,4 +1,4 @@
-"""The sensors of robots: those whose boxes are checked are shown, and no others read."""
+"""Topics with boxes: those whose boxes are checked are shown, and no others read."""
 
 from collections.abc import Collection, Mapping
 from functools import partial
@@ -11,20 +11,19 @@ from ..sim.core import IDENTITY, Pose, SimError, compose
 from ..sim.description import SceneChange, ShownLink, ShownReading
 from .models import Models
 from .reading import ReadingPanel
-from .sensor_row import SensorRow
+from .reading_row import ReadingRow, has_shape
 from .text import Words
 
-PERIOD = 1.0 / 15.0  # [s, wall] between two looks at the sensors
+PERIOD = 1.0 / 15.0  # [s, wall] between two looks at the topics
 WORLD = ('', 'world')  # frames that are the world's own
-NONE = 'No sensor publishes.'
-MOST = 100  # sensors that have a box
+MOST = 100  # topics that have a box
 
 
-class Sensors(Protocol):
-    """Sensors by their topics."""
+class ShownTopics(Protocol):
+    """Topics that can be shown."""
 
-    def sensor_topics(self) -> Mapping[str, str]:
-        """Return the types of the topics of sensors that there are, by name."""
+    def offered(self) -> Mapping[str, str]:
+        """Return the types of the topics that there are, by name."""
 
     def open(self, topic: str, kind: str) -> None:
         """Begin to read a topic of one of these types."""
@@ -40,23 +39,31 @@ class Sensors(Protocol):
         """
 
     def locate(self, frame: str, links: Collection[str]) -> tuple[str, Pose] | None:
-        """Return the link of these that a frame is fixed to, and its pose there, if known."""
+        """Return a link of these that a frame is known to be at, and its pose there."""
 
 
-class SensorPanel(ReadingPanel):
-    """A box for each sensor."""
+class TopicPanel(ReadingPanel):
+    """A box for each topic."""
 
-    def __init__(self, site: viser.ViserServer, sensors: Sensors, models: Models) -> None:
+    def __init__(self, site: viser.ViserServer, source: ShownTopics, models: Models,
+                 plural: str, none: str) -> None:
+        """Add the boxes.
+
+        Args:
+            plural: what the topics are.
+            none: a sentence that there is none.
+        """
         super().__init__(PERIOD)
-        self._site, self._sensors, self._models = site, sensors, models
+        self._site, self._source, self._models = site, source, models
+        self._plural, self._none = plural, none
         self._offered: Mapping[str, str] = {}  # all that there are
         self._topics: Mapping[str, str] = {}  # those that have a box
-        self._rows: dict[str, SensorRow] = {}
+        self._rows: dict[str, ReadingRow] = {}
         self._checked: set[str] = set()  # also of topics that have gone, and may return
-        self._unplaced: dict[str, ShownReading] = {}  # until TF tells where they were taken
+        self._unplaced: dict[str, ShownReading] = {}  # until it is known where they are
         self._links: dict[str, dict[str, ShownLink]] = {}  # by names, for each topic
-        self._note = Words(site.gui, NONE)
-        self._folder = site.gui.add_folder('Sensors')
+        self._note = Words(site.gui, none)
+        self._folder = site.gui.add_folder(plural.capitalize())
 
     def apply(self, change: SceneChange) -> None:
         """Look for links anew."""
@@ -65,7 +72,7 @@ class SensorPanel(ReadingPanel):
 
     def refresh(self) -> None:
         """Offer the topics that there are, and read those that are chosen."""
-        topics = self._sensors.sensor_topics()
+        topics = self._source.offered()
         with self._lock:
             if topics != self._offered:
                 self._offered = topics
@@ -81,12 +88,12 @@ class SensorPanel(ReadingPanel):
             self._rows.pop(topic).remove()
         self._topics = topics
         self._note.visible = not topics or len(self._offered) > MOST
-        self._note.show(f'The first {MOST} of {len(self._offered)} sensors are listed.'
-                        if topics else NONE)
+        self._note.show(f'The first {MOST} of {len(self._offered)} {self._plural} are listed.'
+                        if topics else self._none)
         with self._folder:
             for number, (topic, kind) in enumerate(topics.items()):
                 if topic not in self._rows:
-                    self._rows[topic] = SensorRow(self._site, topic, kind, topic in self._checked,
+                    self._rows[topic] = ReadingRow(self._site, topic, kind, topic in self._checked,
                                                   partial(self._choose, topic))
                 self._rows[topic].rank(number)
 
@@ -102,12 +109,12 @@ class SensorPanel(ReadingPanel):
         return self._checked & self._topics.keys()
 
     def _begin(self, name: str) -> bool:
-        self._sensors.open(name, self._topics[name])
+        self._source.open(name, self._topics[name])
         self._rows[name].tell('Nothing has come yet.')
         return True
 
     def _end(self, name: str) -> None:
-        self._sensors.close(name)
+        self._source.close(name)
         self._unplaced.pop(name, None)
         self._rows[name].clear()
 
@@ -118,38 +125,37 @@ class SensorPanel(ReadingPanel):
                 if row.is_ready:
                     self._show(topic, row)
 
-    def _show(self, topic: str, row: SensorRow) -> None:
+    def _show(self, topic: str, row: ReadingRow) -> None:
         try:
-            reading = self._sensors.read(topic)
+            reading = self._source.read(topic)
         except SimError as error:
             row.tell(str(error))
             return
         reading = reading or self._unplaced.pop(topic, None)
         if reading is not None:
-            pose = self._pose(topic, reading.frame)
-            if pose is None:
-                self._unplaced[topic] = reading
-            row.show(reading, pose)
+            self._place(topic, reading, row)
+
+    def _place(self, topic: str, reading: ShownReading, row: ReadingRow) -> None:
+        """Show a reading where it was taken, as soon as that is known."""
+        pose = self._pose(topic, reading.frame)
+        if pose is None:
+            self._unplaced[topic] = reading
+        row.show(reading, pose, '' if pose is not None or not has_shape(reading) else (
+            'It is not in the scene: TF does not connect its frame '
+            f"'{reading.frame}' with a link."))
 
     def _pose(self, topic: str, frame: str) -> Pose | None:
-        """Return the pose of a sensor's frame in the world; None if it is not known."""
+        """Return the pose of a frame in the world; None if it is not known."""
         if frame in WORLD:
             return IDENTITY
         links = self._links_for(topic)
-        found = self._sensors.locate(frame, links)
+        found = self._source.locate(frame, links)
         if found is None:
             return None
         link, pose = found
         return compose(self._models.link_pose(links[link]), pose)
 
     def _links_for(self, topic: str) -> Mapping[str, ShownLink]:
-        """Return links by name, and by model and name; one name has that of the topic's robot."""
         if topic not in self._links:
-            spaces = topic.split('/')
-            models = sorted(self._models.all.values(), key=lambda model: model.name not in spaces)
-            self._links[topic] = found = {}
-            for model in models:
-                for link in model.links:
-                    found[f'{model.name}/{link.name}'] = link
-                    found.setdefault(link.name, link)
+            self._links[topic] = self._models.links_for(topic)
         return self._links[topic]

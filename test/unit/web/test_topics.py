@@ -1,9 +1,9 @@
-"""The sensors' boxes: what is checked is read and shown, and nothing else."""
+"""Topics with boxes: what is checked is read and shown, and nothing else."""
 
 import numpy as np
 import pytest
 from support.browser import Browser
-from support.window import FakeSensors
+from support.window import FakeTopics
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import (
@@ -14,15 +14,16 @@ from rosbots_description.sim.description import (
     ShownReading,
 )
 from rosbots_description.web.models import Models
-from rosbots_description.web.sensors import NONE, SensorPanel
+from rosbots_description.web.topics import TopicPanel
 
+NONE = 'No sensor publishes.'
 SCAN, EYE = '/scan', '/r2/eye/image'
 POINTS = np.float32([[1.0, 0.0, 0.0]])
 
 
 @pytest.fixture
 def sensors():
-    return FakeSensors({SCAN: 'sensor_msgs/LaserScan', EYE: 'sensor_msgs/Image'})
+    return FakeTopics({SCAN: 'sensor_msgs/LaserScan', EYE: 'sensor_msgs/Image'})
 
 
 @pytest.fixture
@@ -36,7 +37,7 @@ def models():
 
 @pytest.fixture
 def panel(site, sensors, models):
-    panel = SensorPanel(site, sensors, models)
+    panel = TopicPanel(site, sensors, models, 'sensors', NONE)
     panel.open()
     panel.refresh()
     yield panel
@@ -84,11 +85,11 @@ def test_what_is_checked_after_all_have_left_waits(browser, sensors, panel):
 
 def test_a_sensor_that_returns_is_read_again(browser, sensors, panel):
     check(browser, sensors, SCAN)
-    topics, sensors.topics = sensors.topics, {}
+    topics, sensors.published = sensors.published, {}
     panel.refresh()
     assert sensors.open_topics == set()
     browser.wait_until(lambda: NONE in browser.texts())
-    sensors.topics = topics
+    sensors.published = topics
     panel.refresh()
     assert sensors.open_topics == {SCAN}
     browser.wait_until(lambda: browser.control(EYE) and NONE not in browser.texts())
@@ -99,7 +100,7 @@ def test_boxes_stay_in_order_when_other_sensors_come_and_go(browser, sensors, pa
     box = browser.control(SCAN)
     sensors.readings[SCAN] = ShownReading(words='one ray')
     browser.wait_until(lambda: 'one ray' in browser.texts())
-    sensors.topics = {'/imu': 'sensor_msgs/Imu', SCAN: sensors.topics[SCAN]}
+    sensors.published = {'/imu': 'sensor_msgs/Imu', SCAN: sensors.published[SCAN]}
     panel.refresh()
     browser.wait_until(lambda: browser.control('/imu') and not browser.control(EYE))
 
@@ -117,7 +118,7 @@ def test_shapes_are_where_the_robot_is(browser, sensors, models):
     check(browser, sensors, SCAN)
     sensors.readings[SCAN] = ShownReading('laser', points=POINTS, words='one ray',
                                           lines=np.zeros((1, 2, 3), np.float32))
-    frame = '/sensors/\u2215scan'
+    frame = '/readings/\u2215scan'
     browser.wait_until(lambda: browser.nodes.get(frame, [0, 0])[1] == [5.0, 0.0, 0.5])
     browser.wait_until(lambda: {f'{frame}/points', f'{frame}/lines'} <= browser.nodes.keys())
     browser.wait_until(lambda: 'one ray' in browser.texts())
@@ -128,7 +129,7 @@ def test_shapes_are_where_the_robot_is(browser, sensors, models):
 
 def test_newer_shapes_take_the_place_of_older_ones(browser, sensors, site):
     check(browser, sensors, SCAN)
-    name = '/sensors/\u2215scan/points'
+    name = '/readings/\u2215scan/points'
 
     def sent(kind, part=None):
         return len([m for m in browser.messages if m['type'] == kind and m['name'] == name
@@ -148,14 +149,14 @@ def test_of_links_of_one_name_that_of_the_topics_robot_is_meant(browser, sensors
     check(browser, sensors, EYE)
     sensors.readings[EYE] = ShownReading('eye', points=POINTS)
     browser.wait_until(lambda: browser.nodes.get(
-        '/sensors/\u2215r2\u2215eye\u2215image', [0, 0])[1] == [2.0, 0.0, 0.5])
+        '/readings/\u2215r2\u2215eye\u2215image', [0, 0])[1] == [2.0, 0.0, 0.5])
 
 
 def test_shapes_in_the_world_need_no_link(browser, sensors):
     check(browser, sensors, SCAN)
     sensors.place = None
     sensors.readings[SCAN] = ShownReading('world', points=POINTS)
-    browser.wait_until(lambda: '/sensors/\u2215scan/points' in browser.nodes)
+    browser.wait_until(lambda: '/readings/\u2215scan/points' in browser.nodes)
 
 
 def test_a_frame_that_nobody_knows_is_told_of(browser, sensors):
@@ -164,9 +165,9 @@ def test_a_frame_that_nobody_knows_is_told_of(browser, sensors):
     sensors.readings[SCAN] = ShownReading('moon', points=POINTS, words='one ray')
     browser.wait_until(lambda: any("one ray\nIt is not in the scene: TF does not connect its "
                                    "frame 'moon' with a link." in text for text in browser.texts()))
-    assert '/sensors/\u2215scan' not in browser.nodes
+    assert '/readings/\u2215scan' not in browser.nodes
     sensors.place = ('base', Pose())  # TF was only late
-    browser.wait_until(lambda: '/sensors/\u2215scan' in browser.nodes)
+    browser.wait_until(lambda: '/readings/\u2215scan' in browser.nodes)
     browser.wait_until(lambda: 'one ray' in browser.texts())
 
 

@@ -1,4 +1,4 @@
-"""A sensor on the page: its checkbox, and what it senses below it and in the scene."""
+"""A topic on the page: its checkbox, and what it says below it and in the scene."""
 
 import time
 from collections.abc import Callable
@@ -7,18 +7,22 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from ..sim.core import Pose
-from ..sim.description import ShownReading
-from .nodes import node, place
+from ..sim.core import Pose, compose
+from ..sim.description import ShownGrid, ShownReading
+from .nodes import node, place, wxyz
 from .text import Rows, Words, plain
 
 RATE = 2e6  # of points and lines that are sent to a browser [bytes/s]
-COLOUR, LINE_COLOUR = (230, 60, 40), (255, 160, 140)
-POINT, LINE = 0.02, 1.0  # [m] of a point, [pixels] of a line
+COLOUR = (230, 60, 40)  # of points without colours of their own
+POINT = 0.02  # [m]
+LIFT = 0.008  # [m] of a map above its plane, in which there is a ground that hid it in part
+FLAT = (1.0, 0.0, 0.0, 0.0)  # a half turn about x: a picture's y axis points down
+PIXELS = 1024  # along an edge of a map with fewer cells
+PACKED = 20  # of a map's bytes, about one of so many is sent
 
 
-class SensorRow:
-    """Shows a sensor while its box is checked; not thread-safe."""
+class ReadingRow:
+    """Shows a topic while its box is checked; not thread-safe."""
 
     def __init__(self, site: viser.ViserServer, topic: str, kind: str, checked: bool,
                  choose: Callable[[], None]) -> None:
@@ -50,19 +54,27 @@ class SensorRow:
         """Tell whether browsers have had time for what was sent last."""
         return time.monotonic() >= self._next
 
-    def show(self, reading: ShownReading, pose: Pose | None) -> None:
-        """Show a reading, whose frame has that pose in the world; None if nobody knows it."""
-        words = reading.words
+    def show(self, reading: ShownReading, pose: Pose | None, note: str = '') -> None:
+        """Show a reading, and a note below its words.
+
+        Args:
+            pose: of its frame in the world; None: what is in the scene is left out.
+        """
         if reading.picture is not None:
             self._show_picture(reading.picture)
-        if reading.points is not None or reading.lines is not None:
-            if pose is None:
-                words += ("\nIt is not in the scene: TF does not connect its frame "
-                          f"'{reading.frame}' with a link.")
-            else:
-                with self._site.atomic():
-                    self._show_shape(reading, pose)
-        self.tell(words, reading.rows)
+        if has_shape(reading) and pose is not None:
+            with self._site.atomic():
+                self._show_shape(reading, pose)
+        self.say(reading, note)
+
+    def say(self, reading: ShownReading, note: str = '') -> None:
+        """Show the words and rows of a reading, and a note below its words."""
+        self.tell(f'{reading.words}\n{note}' if note else reading.words, reading.rows)
+
+    def move(self, pose: Pose) -> None:
+        """Let the frame of what is in the scene have another pose in the world."""
+        if self._frame is not None:
+            place(self._frame, pose)
 
     def tell(self, words: str, rows: Rows = ()) -> None:
         """Show words below the box."""
@@ -92,7 +104,7 @@ class SensorRow:
             self._picture.image = picture
 
     def _show_shape(self, reading: ShownReading, pose: Pose) -> None:
-        scene, name = self._site.scene, f'/sensors/{node(self._topic)}'
+        scene, name = self._site.scene, f'/readings/{node(self._topic)}'
         if self._frame is None:
             self._frame = scene.add_frame(name, show_axes=False)
         place(self._frame, pose)
@@ -108,9 +120,28 @@ class SensorRow:
         if reading.lines is not None:
             if self._lines is None:
                 self._lines = scene.add_line_segments(
-                    f'{name}/lines', reading.lines, LINE_COLOUR, thickness=LINE,
-                    thickness_units='screen')
+                    f'{name}/lines', reading.lines, reading.line_colour,
+                    thickness=reading.line_width, thickness_units='screen')
             else:
                 self._lines.points = reading.lines
             sent += reading.lines.nbytes
+        if reading.grid is not None:
+            sent += self._show_grid(reading.grid, f'{name}/grid')
         self._next = time.monotonic() + sent / RATE
+
+    def _show_grid(self, grid: ShownGrid, name: str) -> int:
+        """Draw a map; return how much of it was sent [bytes], about."""
+        rows, columns = grid.cells.shape[:2]
+        size = grid.cell * columns, grid.cell * rows
+        centre = compose(grid.origin, Pose((size[0] / 2.0, size[1] / 2.0, LIFT), FLAT))
+        # Browsers blur a picture: a cell has some pixels, so that its edges are seen.
+        pixels = max(1, PIXELS // max(rows, columns))
+        self._site.scene.add_image(
+            name, grid.cells.repeat(pixels, axis=0).repeat(pixels, axis=1), *size, format='png',
+            cast_shadow=False, receive_shadow=False, position=centre.position, wxyz=wxyz(centre))
+        return grid.cells.nbytes // PACKED
+
+
+def has_shape(reading: ShownReading) -> bool:
+    """Tell whether any of it is in the scene."""
+    return any(part is not None for part in (reading.points, reading.lines, reading.grid))

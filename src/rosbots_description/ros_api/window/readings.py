@@ -1,35 +1,36 @@
-"""The sensors of robots, while they are looked at.
+"""Topics whose messages are shown, while they are looked at.
 
 Subscribes:
     the topics of `open`, until they are closed.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from ...sim.core import Pose, SimError
 from ...sim.description import ShownReading
-from ..messages import SENSOR_TYPES, shown_reading
+from ..messages import shown_reading
 from .feed import Feed
 from .frames import FrameFinder
 from .topic_graph import TopicGraph
 
 
-class RosSensors:
-    """Sensors by their topics."""
+class RosReadings:
+    """Topics of some types, such as those of sensors."""
 
-    def __init__(self, topics: TopicGraph) -> None:
-        self._topics = topics
+    def __init__(self, graph: TopicGraph, types: Mapping[str, type[Any]]) -> None:
+        self._graph, self._types = graph, types
         self._feeds: dict[str, Feed] = {}
         self._frames = FrameFinder()
 
-    def sensor_topics(self) -> dict[str, str]:
-        """Return the types of the topics of sensors that other nodes publish, by name."""
-        return {name: kind for name, kind in self._topics.published().items()
-                if kind in SENSOR_TYPES}
+    def offered(self) -> dict[str, str]:
+        """Return the types of the topics of these types that other nodes publish, by name."""
+        return {name: kind for name, kind in self._graph.published().items()
+                if kind in self._types}
 
     def open(self, topic: str, kind: str) -> None:
         """Subscribe to a topic of one of these types."""
-        self._feeds[topic] = Feed(topic, SENSOR_TYPES[kind])
+        self._feeds[topic] = Feed(topic, self._types[kind])
 
     def close(self, topic: str) -> None:
         """Unsubscribe."""
@@ -50,8 +51,9 @@ class RosSensors:
             raise SimError(f'A message of {topic} is not shown: {error}.') from error
 
     def locate(self, frame: str, links: Collection[str]) -> tuple[str, Pose] | None:
-        """Return the link of these that a frame is fixed to, with its pose there; None if unknown.
+        """Return a link of these that TF connects a frame with, and the frame's pose in it.
 
-        It listens to TF until it has found all that it was asked for.
+        None if none is connected. It listens to TF until it knows where all frames are fixed that
+        it was asked for.
         """
         return self._frames.locate(frame, links)
