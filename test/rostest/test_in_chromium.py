@@ -125,7 +125,7 @@ class Page:
             if monotonic() > end:
                 rows, columns = np.nonzero(red)
                 raise AssertionError(
-                    f'not within {SLOW:g} s: {what} at ({x}, {y}); {len(rows)} pixels are red, around '
+                    f'not within {SLOW:g} s: {what} at ({x}, {y}); {len(rows)} red pixels, around '
                     f'({np.mean(columns):.0f}, {np.mean(rows):.0f}); the page: {self.text()!r}')
 
     def red(self):
