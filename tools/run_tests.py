@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
 
-Phases: lint (ruff, mypy, catkin_lint, launch files) beside unit (pytest, no ROS master), engine
-(pytest, PyBullet without a window), each with processes side by side, and rostest (each
-test/rostest/*.test with its own master, several side by side). A phase without any test counts as
-failed. What failed is listed at the end with the command that repeats it.
+Phases: lint (ruff, mypy, the documentation's site, catkin_lint, launch files) beside unit (pytest,
+no ROS master), engine (pytest, PyBullet without a window), each with processes side by side, and
+rostest (each test/rostest/*.test with its own master, several side by side). A phase without any
+test counts as failed. What failed is listed at the end with the command that repeats it.
 """
 
 from __future__ import annotations
@@ -74,6 +74,7 @@ def run_lint(_word: str) -> Count:
     checks = {
         'ruff': ['ruff', 'check', '--quiet', '--output-format', 'concise', '.'],
         **type_checks(),
+        'site': [sys.executable, 'tools/make_site.py', str(REPORTS / 'site')],
         # the folder of a clone may have any name
         'catkin_lint': ['catkin_lint', '-W2', '--strict', '--ignore', 'package_path_name', '.',
                         *map(str, sorted((ROOT / 'companions').iterdir()))],

@@ -13,8 +13,8 @@ from support import ROOT
 
 DOCTOR = runpy.run_path(str(ROOT / 'tools' / 'doctor.py'))
 ROWS = ('platform', 'clone', 'versions', 'set demo', 'set base', 'set web', 'set gym', 'set batch',
-        'set navigation', 'set test', 'set bench', 'workspace', 'OpenGL', 'display', 'ports',
-        'terminal')
+        'set navigation', 'set doc', 'set test', 'set bench', 'workspace', 'OpenGL', 'display',
+        'ports', 'terminal')
 
 
 def doctor(clone, *arguments, **environment):

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
+from rosbots_description import batch, gym, sim
+
 DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').glob('*.md'))]
 LINK = re.compile(r'\[[^]]*\]\(([^)\s]+)\)')
 
@@ -25,6 +27,14 @@ def test_every_link_has_an_existing_target(document):
         file = document.parent / name if name else document
         assert file.exists(), target
         assert not anchor or anchor in anchors(file), target
+
+
+@pytest.mark.parametrize('room', [sim, gym, batch], ids=lambda room: room.__name__)
+def test_the_api_reference_has_every_public_name(room):
+    (section,) = re.findall(rf'^## {re.escape(room.__name__)}\n(.*?)^```$',
+                            (ROOT / 'doc' / 'api.md').read_text(encoding='utf-8'), re.M | re.S)
+    named = set(re.findall(r'^\.\. auto\w+:: (\S+)', section, re.M))
+    assert named == set(room.__all__) or named == {room.__name__}
 
 
 def test_the_readme_names_the_tutorial():

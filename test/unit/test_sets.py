@@ -10,7 +10,7 @@ from support import ROOT
 
 REQUIREMENTS = ROOT / 'requirements'
 # Of which commands ask for one.
-SETS = ('demo', 'base', 'web', 'gym', 'batch', 'navigation', 'test', 'bench')
+SETS = ('demo', 'base', 'web', 'gym', 'batch', 'navigation', 'doc', 'test', 'bench')
 INNER = 'core'  # which others include
 
 
@@ -60,7 +60,8 @@ def sets_of(tmp_path):
     ('launch gazebo_ros empty_world.launch web:=True', 'web'),
     ('launch gazebo_ros empty_world.launch web:=false', 'base'),
     ('batch scenario.yaml', 'batch'), ('bench web', 'bench'), ('test unit', 'test'),
-    ('link workspace', 'base'), ('navigation', 'navigation'), ('setup', 'base'),
+    ('link workspace', 'base'), ('navigation', 'navigation'), ('doc', 'doc'),
+    ('setup', 'base'),
     ('setup gym web', 'gym web'),
     ('setup --all', ' '.join(SETS)),
 ])
@@ -72,7 +73,7 @@ def test_unknown_set_is_named_with_the_known_ones(sets_of):
     result = sets_of('setup', 'base', 'moon')
     assert (result.returncode, result.stdout) == (2, '')
     assert result.stderr == ("rosbots: there is no set 'moon'; the sets are demo base web gym "
-                             'batch navigation test bench, and --all is all of them\n')
+                             'batch navigation doc test bench, and --all is all of them\n')
 
 
 def test_files_are_those_of_the_sets():
@@ -88,7 +89,7 @@ def test_first_line_says_what_a_set_is_for_and_how_large_it_is(name):
 
 def test_included_sets_come_first_and_once():
     assert in_setup('with_included gym test; echo "${CHOSEN[@]}"') == [
-        'core demo base gym web batch test']
+        'core demo base gym web batch doc test']
 
 
 def test_python_packages_are_pinned_or_come_from_debian():

@@ -6,7 +6,7 @@
 
 REQUIREMENTS=$ROOT/requirements
 # shellcheck disable=SC2034  # ./rosbots checks names by it
-SETS=(demo base web gym batch navigation test bench)
+SETS=(demo base web gym batch navigation doc test bench)
 
 # Set DEBIAN to 12 or 13, and to nothing on another system; ARCHITECTURE to Debian's name of it.
 find_platform() {
