@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -92,12 +96,41 @@ def with_exit_code(count: Count, code: int) -> Count:
     return count
 
 
-def say_result(phase: str, name: str, count: Count, seconds: float, *more: str) -> None:
+class Stopwatch:
+    """Measures a process and those of its descendants that end before it."""
+
+    def __init__(self) -> None:
+        self._start = time.monotonic()
+        self._taken = ''
+
+    def wait(self, process: subprocess.Popen[Any]) -> int:
+        """Return the exit code of a process when it has ended."""
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self._taken = (f'{time.monotonic() - self._start:.1f} s, '
+                       f'{usage.ru_utime + usage.ru_stime:.0f} s of a processor')
+        return process.returncode
+
+    def __str__(self) -> str:
+        return self._taken
+
+
+def run_logged(command: list[str], log: Path,
+               environment: dict[str, str] | None = None) -> tuple[int, Stopwatch]:
+    """Run a command in the clone, with its output in a log; return its exit code and its time."""
+    watch = Stopwatch()
+    with log.open('wb') as output, subprocess.Popen(
+            command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=output,
+            stderr=subprocess.STDOUT) as process:
+        return watch.wait(process), watch
+
+
+def say_result(phase: str, name: str, count: Count, watch: Stopwatch, *more: str) -> None:
     """Print one line with the result of a check, and further ones."""
     verdict = 'FAILED' if count.failed else 'ok'
     skipped = f', {count.skipped} skipped' if count.skipped else ''
     say(f'{phase:8} {name:42} {verdict:6} {count.passed} passed, {count.failed} failed{skipped}'
-        f'  {seconds:.1f} s', *more)
+        f'  {watch}', *more)
 
 
 def end_of(log: Path) -> list[str]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import time
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -17,6 +15,7 @@ from results import (
     Failure,
     end_of,
     read_report,
+    run_logged,
     say,
     say_result,
     with_exit_code,
@@ -61,11 +60,7 @@ def run_rostest(path: Path) -> Count:
                    'ROS_LOG_DIR': str(results / 'log')}
     for name in NOT_OURS:
         environment.pop(name, None)
-    start = time.monotonic()
-    with log.open('wb') as output:
-        code = subprocess.run(['/usr/bin/rostest', str(path)], cwd=ROOT, env=environment,
-                              stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
-                              check=False).returncode
+    code, watch = run_logged(['/usr/bin/rostest', str(path)], log, environment)
     reports = [read_report(report) for report in results.rglob('rosunit-*.xml')]
     count = with_exit_code(sum((report.count for report in reports), Count()), code)
     failed = [case for report in reports for case in report.failed]
@@ -78,6 +73,6 @@ def run_rostest(path: Path) -> Count:
         command = f'./rosbots test {path.relative_to(ROOT)}'
         reason = '\n'.join(case.reason for case in failed[:1])
         count += Count(failures=(Failure(name, command, log, reason),))
-    say_result('rostest', path.name, count, time.monotonic() - start,
+    say_result('rostest', path.name, count, watch,
                *(end_of(log) if count.failed else ()), *(f'    {error}' for error in logged))
     return count

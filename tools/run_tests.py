@@ -29,8 +29,10 @@ from results import (
     ROOT,
     Count,
     Failure,
+    Stopwatch,
     end_of,
     read_report,
+    run_logged,
     say,
     say_failures,
     say_result,
@@ -48,16 +50,13 @@ HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows
 
 def run_command(phase: str, name: str, command: list[str]) -> Count:
     """Run a check that passes or fails as a whole; show its output if it fails."""
-    start = time.monotonic()
     log = REPORTS / f'{phase} {name}.log'.replace(' ', '_').replace('/', '_')
-    with log.open('wb') as output:
-        code = subprocess.run(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT,
-                              check=False).returncode
+    code, watch = run_logged(command, log)
     count = Count(passed=1)
     if code:
         again = f'./rosbots exec {shlex.join(command)}'
         count = Count(failed=1, failures=(Failure(name, again, log),))
-    say_result(phase, name, count, time.monotonic() - start, *(end_of(log) if code else ()))
+    say_result(phase, name, count, watch, *(end_of(log) if code else ()))
     return count
 
 
@@ -92,7 +91,7 @@ def run_lint(_word: str) -> Count:
 def run_pytest(phase: str, options: list[str]) -> Count:
     """Run tests of test/<phase>."""
     report, log = REPORTS / f'{phase}.xml', REPORTS / f'{phase}.log'
-    start = time.monotonic()
+    watch = Stopwatch()
     with log.open('w') as written, subprocess.Popen(
             [sys.executable, '-m', 'pytest', '-q', f'--timeout={HOPELESS}',
              f'--junitxml={report}', *options], cwd=ROOT, stdout=subprocess.PIPE,
@@ -101,6 +100,7 @@ def run_pytest(phase: str, options: list[str]) -> Count:
         for line in process.stdout:
             written.write(line)
             say(line.rstrip('\n'))
+        watch.wait(process)
     read = read_report(report)
     count = with_exit_code(read.count, process.returncode)
     again = {node: case.reason for case in read.failed
@@ -109,7 +109,7 @@ def run_pytest(phase: str, options: list[str]) -> Count:
         count += Count(failures=tuple(
             Failure(node, f'./rosbots test {shlex.quote(node)}', log, reason)
             for node, reason in again.items()))
-    say_result(phase, f'test/{phase}', count, time.monotonic() - start)
+    say_result(phase, f'test/{phase}', count, watch)
     return count
 
 
