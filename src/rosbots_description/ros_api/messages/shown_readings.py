@@ -8,7 +8,6 @@ import numpy as np
 from gazebo_msgs.msg import ContactsState
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
-from numpy.typing import NDArray
 from sensor_msgs.msg import (
     CompressedImage,
     Image,
@@ -23,14 +22,11 @@ from sensor_msgs.msg import (
 
 from ...sim.core import Vector
 from ...sim.description import ShownReading
+from ...sim.sensors import ray_lines, shown_contacts, shown_rays
 from . import shown_maps
 from .clouds import cloud_points, old_cloud_points
 from .conversions import read_vector
 from .pictures import decompressed, pixels
-
-MAX_RAYS = 1000  # that are shown; of more, every second, third … is
-NORMAL = 0.1  # [m] of a shown normal of a contact
-MAX_CONTACTS = 8  # that are told in words
 
 
 def _picture(message: Image) -> ShownReading:
@@ -46,19 +42,14 @@ def _scan(message: LaserScan) -> ShownReading:
     hit = (ranges >= message.range_min) & (ranges <= message.range_max)  # never for NaN
     angles = (message.angle_min + message.angle_increment * np.arange(len(ranges)))[hit]
     met = ranges[hit]
-    points = np.stack([met * np.cos(angles), met * np.sin(angles), np.zeros(len(met))],
-                      axis=1).astype(np.float32)
-    words = f'{len(met)} of {len(ranges)} rays meet something'
-    if len(met):
-        words += f', the nearest at {met.min():.3f} m'
-    sampled = points[::max(1, -(-len(points) // MAX_RAYS))]
-    return ShownReading(message.header.frame_id, points=points, lines=_rays(sampled), words=words)
+    points = np.stack([met * np.cos(angles), met * np.sin(angles), np.zeros(len(met))], axis=1)
+    return shown_rays(points, len(ranges), message.header.frame_id)
 
 
 def _range(message: Range) -> ShownReading:
     end = np.array([[message.range, 0.0, 0.0]], np.float32)
     ends = end[np.isfinite(end).all(axis=1)]
-    return ShownReading(message.header.frame_id, points=ends, lines=_rays(ends),
+    return ShownReading(message.header.frame_id, points=ends, lines=ray_lines(ends),
                         words=f'{message.range:.3f} m')
 
 
@@ -76,20 +67,13 @@ def _old_cloud(message: PointCloud) -> ShownReading:
 def _contacts(message: ContactsState) -> ShownReading:
     points: list[Vector] = []
     normals: list[Vector] = []
-    words = []
+    forces = []
     for state in message.states:
         points += map(read_vector, state.contact_positions)
         normals += map(read_vector, state.contact_normals)
         force = math.hypot(*read_vector(state.total_wrench.force))
-        words.append(f'{state.collision1_name} and {state.collision2_name}: {force:.2f} N')
-    here = np.array(points, np.float32).reshape(-1, 3)
-    there = here + NORMAL * np.array(normals, np.float32).reshape(-1, 3)
-    told = sorted(set(words))
-    if len(told) > MAX_CONTACTS:
-        told[MAX_CONTACTS:] = [f'and {len(told) - MAX_CONTACTS} more']
-    return ShownReading(message.header.frame_id, points=here,
-                        lines=np.stack([here, there], axis=1),
-                        words='\n'.join(told) or 'no contact')
+        forces.append((state.collision1_name, state.collision2_name, force))
+    return shown_contacts(points, normals, forces, message.header.frame_id)
 
 
 def _numbers(message: Any) -> ShownReading:  # noqa: ANN401  any message
@@ -109,10 +93,6 @@ def _leaves(message: Any, name: str) -> list[tuple[str, list[float]]]:  # noqa: 
     if {'x', 'y', 'z'} <= {slot for slot, _ in own}:
         return [(name, [value for _, value in own])]
     return [(f'{name} {slot}'.strip(), [value]) for slot, value in own] + found
-
-
-def _rays(ends: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.stack([np.zeros_like(ends), ends], axis=1)
 
 
 _SHOWN: dict[type[Any], Callable[[Any], ShownReading]] = {

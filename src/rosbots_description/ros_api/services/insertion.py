@@ -1,8 +1,6 @@
 """Services by which a window inserts models where there is room, and copies them; not in Gazebo."""
 
-import re
 from dataclasses import dataclass, replace
-from itertools import count
 
 from gazebo_msgs.srv import SetModelConfigurationRequest, SpawnModelRequest, SpawnModelResponse
 from rosbots_msgs.srv import (
@@ -20,16 +18,13 @@ from rosbots_msgs.srv import (
 from ...sim.core.arrays import FloatArray
 from ...sim.description import LightSpec
 from ...sim.formats import copy_of_model
+from ...sim.placement import box_around, free_name, placed
 from ...sim.resources import model_names, own_name
-from ...sim.runtime import World
 from ..messages import RequestError, fill_pose, require_finite
 from ..server import Server
 from .model_setters import set_model_configuration
-from .placement import box_around, placed
 from .registry import EXTENSIONS, refuse, service
 from .spawning import PreparedModel, read_description, spawn_model
-
-_NUMBER = re.compile(r'_\d+$')
 
 
 @dataclass(frozen=True)
@@ -98,15 +93,6 @@ def get_model_library(
 ) -> GetModelLibraryResponse:
     """Return the names of the models along the model path."""
     return GetModelLibraryResponse(model_names(server.find_model))
-
-
-def free_name(world: World, name: str) -> str:
-    """Return the name, with another number at its end if a model or light has it."""
-    taken = world.models.keys() | world.lights.keys()
-    if name not in taken:
-        return name
-    stem = _NUMBER.sub('', name)
-    return next(other for n in count() if (other := f'{stem}_{n}') not in taken)
 
 
 def _response(response: SpawnModelResponse, name: str = '') -> InsertModelResponse:

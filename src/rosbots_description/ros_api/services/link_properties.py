@@ -1,7 +1,5 @@
 """Services about the inertial properties of links."""
 
-from dataclasses import replace
-
 from gazebo_msgs.srv import (
     GetLinkProperties,
     GetLinkPropertiesRequest,
@@ -12,10 +10,10 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Point
 
-from ...sim.core import MAX_INERTIA, MAX_LENGTH, MAX_MASS, MIN_MASS, Pose
+from ...sim.core import MAX_LENGTH, Pose
 from ...sim.description import Inertial
-from ...sim.description.inertia import in_link_axes, is_positive, regularised
-from ...sim.runtime import Link
+from ...sim.description.inertia import in_link_axes
+from ...sim.runtime import set_inertial
 from ..messages import RequestError, read_vector, require_finite
 from ..server import Server
 from .links import NO_LINK, find_link
@@ -68,36 +66,5 @@ def set_link_properties(
             f"com.position of link '{link.scoped_name}' is {farthest:g} m from its frame; "
             f'at most {MAX_LENGTH:g} m are accepted'
         )
-    if not link.model.static:
-        inertial = _movable(link, inertial)
-    model = link.model
-    changed = replace(link.spec, inertial=inertial, gravity=request.gravity_mode)
-    links = tuple(changed if spec is link.spec else spec for spec in model.spec.links)
-    model.respecify(replace(model.spec, links=links))
+    set_inertial(link, inertial, request.gravity_mode)
     return SetLinkPropertiesResponse(True, 'SetLinkProperties: properties set')
-
-
-def _movable(link: Link, inertial: Inertial) -> Inertial:
-    """Return an inertial that can be simulated.
-
-    Raises:
-        RequestError: mass or inertia are out of range for a moving link.
-
-    """
-    if inertial.mass <= 0.0:
-        raise RequestError(
-            f"mass is {inertial.mass}; link '{link.scoped_name}' moves, so it must be greater "
-            'than zero [kg]'
-        )
-    moments = (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz)
-    if not MIN_MASS <= inertial.mass <= MAX_MASS or max(map(abs, moments)) > MAX_INERTIA:
-        raise RequestError(
-            f"mass or inertia of link '{link.scoped_name}' is out of range: "
-            f'{MIN_MASS:g} to {MAX_MASS:g} kg and at most {MAX_INERTIA:g} kg m^2 are accepted'
-        )
-    if not is_positive(inertial):
-        raise RequestError(
-            f"the inertia tensor for link '{link.scoped_name}' has a negative principal moment; "
-            'give the tensor about the centre of mass [kg m^2]'
-        )
-    return regularised(inertial)

@@ -5,6 +5,7 @@ from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
 from .plugin import Plugin
 from .population import describe, populate
+from .properties import collisions_named, set_friction, set_inertial
 from .saved_state import SavedState
 from .scheduler import NEVER, Hook, PreRunPublisher
 from .sensor import SensorLife
@@ -14,5 +15,6 @@ from .world import WORLD_FRAMES, Entity, World
 __all__ = [
     'NEVER', 'WORLD_FRAMES', 'CollisionFrame', 'Entity', 'FrameTransform', 'Hook', 'Joint',
     'JointStates', 'Link', 'Model', 'Odometry', 'Output', 'Plugin', 'PreRunPublisher', 'SavedState',
-    'SensorLife', 'ShownWorld', 'World', 'add_empty_world', 'describe', 'populate',
+    'SensorLife', 'ShownWorld', 'World', 'add_empty_world', 'collisions_named', 'describe',
+    'populate', 'set_friction', 'set_inertial',
 ]

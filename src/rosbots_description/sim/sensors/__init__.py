@@ -20,9 +20,19 @@ from .laser import LaserPlugin
 from .link_imu import LinkImu
 from .range import Distance, RangePlugin
 from .ray import Scan
+from .shown_readings import (
+    ENCODINGS,
+    picture_stride,
+    ray_lines,
+    shown_contacts,
+    shown_picture,
+    shown_rays,
+    shown_reading,
+)
 from .velodyne import RingCloud, VelodynePlugin
 
 __all__ = [
+    'ENCODINGS',
     'MAX_BURST',
     'BlockLaserPlugin',
     'BumperPlugin',
@@ -56,4 +66,10 @@ __all__ = [
     'TriggeredCameraPlugin',
     'TriggeredMultiCameraPlugin',
     'VelodynePlugin',
+    'picture_stride',
+    'ray_lines',
+    'shown_contacts',
+    'shown_picture',
+    'shown_rays',
+    'shown_reading',
 ]

@@ -20,8 +20,9 @@ from sensor_msgs.msg import (
     Range,
 )
 
-from rosbots_description.ros_api.messages import clouds, pictures, shown_reading, shown_readings
+from rosbots_description.ros_api.messages import clouds, shown_reading
 from rosbots_description.sim.core import SimError
+from rosbots_description.sim.sensors.shown_readings import GREATEST, MAX_RAYS
 
 
 def image(encoding, values, **changes):
@@ -86,7 +87,7 @@ def test_a_large_picture_is_made_smaller():
     picture = shown_reading(image('mono8', values)).picture
     assert picture.shape == (1, 434, 3)
     assert picture[0, 2, 0] == 6
-    assert max(picture.shape) <= pictures.GREATEST
+    assert max(picture.shape) <= GREATEST
 
 
 def test_a_compressed_picture_is_decoded():
@@ -134,7 +135,7 @@ def test_rays_are_limited():
     scan = LaserScan(angle_increment=0.001, range_max=5.0, ranges=[1.0] * 2500)
     reading = shown_reading(scan)
     assert (len(reading.points), len(reading.lines)) == (2500, 834)
-    assert len(reading.lines) <= shown_readings.MAX_RAYS
+    assert len(reading.lines) <= MAX_RAYS
 
 
 @pytest.mark.parametrize(('distance', 'rays'), [(0.5, 1), (math.inf, 0)])

@@ -2,21 +2,24 @@
 
 import contextlib
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...sim.core import ModelError, Pose, compose
-from ...sim.core.arrays import FloatArray
-from ...sim.description import Geometry, LinkSpec, Mesh, ModelSpec
-from ...sim.meshes import extent, rough_extent
-from ...sim.runtime import World
+from ..core import ModelError, Pose, compose
+from ..core.arrays import FloatArray
+from ..description import Geometry, LinkSpec, Mesh, ModelSpec
+from ..meshes import extent, rough_extent
+from ..runtime import World
 
 BoolArray = NDArray[np.bool_]
 
 GAP = 0.05  # [m] between models, horizontally
 DEPTH = 1e-3  # [m] vertically, up to which boxes touch
+_NUMBER = re.compile(r'_\d+$')
 RINGS = 12  # of places that are tried, each a model's width wider than the one within
 
 
@@ -51,6 +54,15 @@ def placed(world: World, pose: Pose, box: FloatArray, on_ground: bool, beside: b
         shift += _Obstacles(world).way_around(box + shift)
     x, y, z = np.add(pose.position, shift).tolist()
     return Pose((x, y, z), pose.orientation)
+
+
+def free_name(world: World, name: str) -> str:
+    """Return the name, with another number at its end if a model or light has it."""
+    taken = world.models.keys() | world.lights.keys()
+    if name not in taken:
+        return name
+    stem = _NUMBER.sub('', name)
+    return next(other for n in count() if (other := f'{stem}_{n}') not in taken)
 
 
 class _Obstacles:
