@@ -15,8 +15,8 @@ from pathlib import Path
 import rostest
 
 ROOT = Path(__file__).resolve().parents[2]
-PARTS = ('LICENSE', 'package.xml', 'pyproject.toml', 'setup.py', 'meshes', 'requirements',
-         'src', 'urdf')
+PARTS = ('LICENSE', 'package.xml', 'pyproject.toml', 'setup.cfg', 'setup.py', 'meshes',
+         'requirements', 'src', 'urdf')
 PATIENCE = 800.0  # [s, wall]
 NO_INDEX = re.compile(r'Temporary failure in name resolution|NewConnectionError|ProxyError')
 EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
@@ -77,6 +77,14 @@ class PipInstallTest(unittest.TestCase):
         share = self.venv / 'share' / 'rosbots_description'
         for part in ('package.xml', 'meshes/base.dae', 'urdf/rosbots.xacro'):
             self.assertTrue((share / part).is_file(), part)
+
+    def test_the_program_is_installed_and_says_what_it_lacks(self):
+        ran = subprocess.run(
+            [str(self.venv / 'bin' / 'rosbots-view'), 'room'], cwd=self.folder, text=True,
+            env={'PATH': '/usr/bin:/bin', 'HOME': str(self.folder)}, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
+        self.assertEqual(ran.returncode, 1, ran.stdout)
+        self.assertIn("pip install 'rosbots_description[web]'", ran.stdout)
 
     def test_the_examples_of_the_pages_run(self):
         pages = [(ROOT / 'doc' / name).read_text(encoding='utf-8')

@@ -4,21 +4,21 @@ import argparse
 import gc
 import importlib.util
 import logging
-import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Sequence
+from contextlib import nullcontext
 
 from .gzserver import split_remappings
 from .heap import use_one_heap
-from .web_browser import is_readable_by_others, opened, private_page
+from .page_token import VARIABLE, announced, given_token
+from .web_browser import opened
 
 logger = logging.getLogger(__name__)
 
 HOST, PORT = '127.0.0.1', 8080
 PERIOD = 0.5  # between looks at the simulator [s, wall]
-NAME, VARIABLE = 'gzweb', 'GZWEB_TOKEN'
+NAME = 'gzweb'
 
 
 def parser() -> argparse.ArgumentParser:
@@ -79,41 +79,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     page = Page(site, GazeboSimulator())
     gc.freeze()  # otherwise each full collection, as after a visit, scans all modules
     gc.collect()
-    with (_told(site.address, site.token),
+    with (announced(NAME, site.address, site.token),
           opened(site.address) if options.open else nullcontext()):
         while is_running():
             page.poll()
             time.sleep(PERIOD)
     site.stop()
     return 0
-
-
-def given_token(path: str) -> str:
-    """Return the token of a file, else of the environment, else ''.
-
-    Raises:
-        OSError: the file cannot be read, or others can read it.
-    """
-    if not path:
-        return os.environ.get(VARIABLE, '')
-    with open(path, encoding='utf-8', errors='replace') as file:
-        status = os.fstat(file.fileno())
-        if status.st_mode & 0o077 or status.st_uid != os.geteuid():
-            raise PermissionError('others can read it; make it your own, and chmod 600')
-        return file.read(1000).strip()
-
-
-@contextmanager
-def _told(address: str, token: str) -> Iterator[None]:
-    """Say where the world is; where others could read the token, where a page leads there."""
-    if not token or not is_readable_by_others(sys.stderr):
-        _say(f'the world is at {address}')
-        yield
-        return
-    with private_page(address) as page:
-        _say(f'the world is at {address.partition("?")[0]}; {page} opens it, with the token, which '
-             'others could read here')
-        yield
 
 
 def _fail(sentence: str) -> int:

@@ -17,7 +17,7 @@ from .randomisation import Randomisation
 from .stage import Setting, Stage
 
 if TYPE_CHECKING:
-    from .window import Window
+    from ..viewer import Window
 
 ROSBOTS = 'package://rosbots_description/urdf/rosbots.xacro'
 _ABOVE = Pose((0.0, 0.0, 0.5))
@@ -254,6 +254,6 @@ def open_window(world: World, port: int) -> 'Window':
     if not has_window():
         raise SimError("render_mode 'web' needs the Python package viser; "
                        "pip install 'rosbots_description[web]' installs it")
-    from .window import Window
+    from ..viewer import Window
 
     return Window(world, port)

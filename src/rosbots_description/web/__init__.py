@@ -1,7 +1,22 @@
 """The window in the browser, on viser: what it shows and what it asks for, without ROS."""
 
+from .change import Inspection
+from .contacts import Contacts
 from .door import LOOPBACK
+from .drive import Robots
+from .goals import Goals
+from .hands import Hands
+from .insert import Library
+from .joints import Joints
+from .maps import Maps
 from .page import Page, Simulator
+from .plot import Signals
+from .recorder import Recorder
 from .site import Site, WindowError
+from .take_away import Worlds
+from .topics import ShownTopics
 
-__all__ = ['LOOPBACK', 'Page', 'Simulator', 'Site', 'WindowError']
+__all__ = [
+    'LOOPBACK', 'Contacts', 'Goals', 'Hands', 'Inspection', 'Joints', 'Library', 'Maps', 'Page',
+    'Recorder', 'Robots', 'ShownTopics', 'Signals', 'Simulator', 'Site', 'WindowError', 'Worlds',
+]

@@ -18,14 +18,15 @@ import zstandard
 
 from .camera_keys import HANDLERS
 
+_NOTEBOOKS = 'http://127.0.0.1:* http://localhost:* vscode-webview:'
 _SCRIPT = re.compile(r'<script\b([^>]*)>(.*?)</script>', re.DOTALL)
 _ATTRIBUTE = re.compile(r'\bdata-(p|ss|cs)="([^"]*)"')
 # All printable characters that need no escape in an attribute; four bytes are five of them.
 _ALPHABET = bytes(code for code in range(0x21, 0x7f) if code not in b'"&<>\'`')
 
 
-def page_headers() -> dict[str, str]:
-    """Return the headers of every response."""
+def page_headers(is_framed: bool = False) -> dict[str, str]:
+    """Return the headers of every response; pages of this machine may frame it, if it says so."""
     scripts = ' '.join(_hash(script) for script in (*_client_scripts(), *HANDLERS))
     policy = {
         'default-src': "'none'",
@@ -36,11 +37,12 @@ def page_headers() -> dict[str, str]:
         'media-src': 'data: blob:',
         'worker-src': 'data: blob:',
         'connect-src': "'self' data: blob:",  # 'self' has the WebSocket, too
-        'base-uri': "'none'", 'form-action': "'none'", 'frame-ancestors': "'none'",
+        'base-uri': "'none'", 'form-action': "'none'",
+        'frame-ancestors': _NOTEBOOKS if is_framed else "'none'",
     }
     return {
         'Content-Security-Policy': '; '.join(f'{name} {value}' for name, value in policy.items()),
-        'X-Frame-Options': 'DENY', 'X-Content-Type-Options': 'nosniff',
+        **({} if is_framed else {'X-Frame-Options': 'DENY'}), 'X-Content-Type-Options': 'nosniff',
         'Referrer-Policy': 'no-referrer', 'Cache-Control': 'no-store',
         'Cross-Origin-Opener-Policy': 'same-origin',
         'Cross-Origin-Resource-Policy': 'same-origin',

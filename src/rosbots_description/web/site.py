@@ -23,13 +23,15 @@ class WindowError(Exception):
 class Site(viser.ViserServer):
     """Viser's server for those who have the token."""
 
-    def __init__(self, host: str, port: int, token: str = '', *, is_open: bool = False) -> None:
+    def __init__(self, host: str, port: int, token: str = '', *, is_open: bool = False,
+                 is_framed: bool = False) -> None:
         """Begin to serve.
 
         Args:
             host: address or name of the interface; port: 0 for any that is free.
             token: what requests need, 16 to 128 letters, digits, - and _; '' for a new one.
             is_open: let in everybody who reaches the port; there is no token then.
+            is_framed: pages of this machine, such as notebooks, may show it in a frame.
         Raises:
             WindowError: the address is not this machine's, the port is in use, or the token is
                 not one.
@@ -44,7 +46,7 @@ class Site(viser.ViserServer):
             shown = socket.gethostname()
         self.address = f'http://{shown}:{port}/' + (f'?token={self.token}' if self.token else '')
         self._gate = gate = Gate()
-        door = Door(host, port, self.token, page_headers())
+        door = Door(host, port, self.token, page_headers(is_framed))
         serve = websockets.asyncio.server.serve
 
         def serve_here(handler: Any, *_address: Any, process_request: Process,  # noqa: ANN401

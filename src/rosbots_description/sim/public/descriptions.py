@@ -35,8 +35,7 @@ class Descriptions:
             lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
             os.path.expanduser('~/.gazebo/models'),
         ])
-        self.find_file = FileSearch([
-            lambda: path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', ''))])
+        self.find_file = FileSearch([_resource_path])
 
     def packages(self, inside: str | None = None) -> PackageSearch:
         """Return the package search for a description in the file `inside`."""
@@ -60,7 +59,7 @@ class Descriptions:
         load = load_urdf if tag == 'robot' else load_sdf
         return load(text, name or own_name(text, source), source=source,
                     find_package=self._packages_of(source), find_model=self.find_model,
-                    find_file=self.find_file)
+                    find_file=self._files_of(source))
 
     def text(
         self, description: Description, arguments: Mapping[str, str]
@@ -90,6 +89,12 @@ class Descriptions:
     def _packages_of(self, source: str) -> PackageSearch:
         return self.packages(None if source == _TEXT else source)
 
+    def _files_of(self, source: str) -> FileSearch:
+        """Return the search for the files of a description; its own folder comes last."""
+        if source == _TEXT:
+            return self.find_file
+        return FileSearch([_resource_path, os.path.dirname(os.path.abspath(source))])
+
     def _path(self, address: str) -> str:
         """Return the file of an address or a path."""
         if not address.startswith('package://'):
@@ -100,3 +105,7 @@ class Descriptions:
             raise ModelError(f"package '{package}' of {address} is unknown; add the folder that "
                              'holds it to package_path or to ROS_PACKAGE_PATH')
         return os.path.join(folder, inner)
+
+
+def _resource_path() -> list[str]:
+    return path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', ''))

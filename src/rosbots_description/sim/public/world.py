@@ -1,11 +1,12 @@
 """The world for scripts: models from files and texts, plugins, time, forces."""
 
+import importlib.util
 import math
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Self, SupportsIndex
+from typing import TYPE_CHECKING, Self, SupportsIndex
 
 from .. import controllers, plugins, runtime, sensors  # noqa: F401  register what is loaded
 from ..core import (
@@ -21,9 +22,12 @@ from ..description import ModelSpec, PhysicsSettings
 from ..formats import open_world, sdf_of_world
 from ..mapping import OccupancyGrid, occupancy_grid, write_map
 from ..physics import CompiledModel, EngineFactory, make_engine
-from ..resources import find_world, path_directories, write_world
+from ..resources import find_world, model_names, path_directories, write_world
 from ..runtime import Joint, Link, Model, add_empty_world, describe, populate
 from .descriptions import Description, Descriptions, Paths
+
+if TYPE_CHECKING:
+    from ...viewer import Recording, Viewer
 
 _LIBRARY = Path(__file__).resolve().parents[2]  # holds worlds/
 _NO_VECTOR: Vector = (0.0, 0.0, 0.0)
@@ -54,6 +58,7 @@ class World(runtime.World):
             make_engine: makes the physics engine.
         """
         self._closed = False
+        self._run: Callable[[int], int] = super().run
         self._descriptions = Descriptions(package_path, model_path)
         super().__init__(physics, make_engine)
 
@@ -181,8 +186,64 @@ class World(runtime.World):
             return super().spawn(model, name or model.name, pose)
         if isinstance(model, CompiledModel):
             return super().spawn(model, name or model.spec.name, pose)
-        spec, own_pose = self._descriptions.read(model, name, arguments or {})
+        spec, own_pose = self.read_model(model, name, arguments=arguments)
         return super().spawn(spec, spec.name, compose(pose, own_pose))
+
+    def read_model(self, model: Description, name: str = '', *,
+                   arguments: Mapping[str, str] | None = None) -> tuple[ModelSpec, Pose]:
+        """Return the description of a model for `spawn`, and the pose that its text gives it.
+
+        Args:
+            model: as in `spawn`; name: '' for the one in the description.
+            arguments: for a xacro file.
+        Raises:
+            ModelError: it cannot be read or simulated.
+        """
+        return self._descriptions.read(model, name, arguments or {})
+
+    def available_models(self) -> list[str]:
+        """Return the names of the models along `model_path` and GAZEBO_MODEL_PATH."""
+        return model_names(self._descriptions.find_model)
+
+    def show(self, *, port: int = 0, height: int = 600) -> 'Viewer':
+        """Show this world on a page in the browser; in a notebook, below the cell.
+
+        From now on `run` keeps to the pace of the page while a browser is connected. In a notebook
+        the world runs between two cells, too, once Play is clicked on.
+
+        Args:
+            port: of the page on this machine; 0 for any that is free.
+            height: of the page in a notebook [pixels].
+        Returns:
+            the page; its `serve` runs the world until Ctrl-C.
+
+        Raises:
+            SimError: the port is in use, or viser is not installed.
+        """
+        self._require_open()
+        _require_viser('World.show')
+        from ...viewer import show
+
+        return show(self, port, height)
+
+    def recording(self, path: str | os.PathLike[str] | None = None) -> 'Recording':
+        """Record what moves from now on, as a page that plays in any browser; for `with`.
+
+        Args:
+            path: of the file that is written at the end, such as 'drive.html'; without one the
+                recording is in `html`, and a notebook shows it.
+        Raises:
+            SimError: viser is not installed.
+        """
+        self._require_open()
+        _require_viser('World.recording')
+        from ...viewer import Recording
+
+        return Recording(self, path)
+
+    def run_by(self, run: Callable[[int], int] | None) -> None:
+        """Let `run` advance by that function from now on: steps -> steps made; None: by itself."""
+        self._run = super().run if run is None else run
 
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> tuple[str, ...]:
         """Write the world as it stands as a world file, for `from_file`.
@@ -280,7 +341,7 @@ class World(runtime.World):
                              f'for a time give seconds={steps}')
         if steps < 0:
             raise ValueError(f'time goes forward only; {steps} steps cannot be made')
-        return super().run(steps)
+        return self._run(steps)
 
     def apply_wrench(
         self,
@@ -325,6 +386,12 @@ class World(runtime.World):
     def _require_open(self) -> None:
         if self._closed:
             raise SimError('this world is closed; open another one')
+
+
+def _require_viser(what: str) -> None:
+    if importlib.util.find_spec('viser') is None:
+        raise SimError(f"{what} needs the Python package viser; "
+                       "pip install 'rosbots_description[web]' installs it")
 
 
 def _require_finite(what: str, numbers: tuple[float, ...]) -> None:

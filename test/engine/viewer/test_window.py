@@ -11,8 +11,9 @@ import pytest
 from support.browser import Browser
 from support.patience import PATIENCE, wait_until
 
-from rosbots_description.gym import SimEnv, window
+from rosbots_description.gym import SimEnv
 from rosbots_description.sim import SimError
+from rosbots_description.viewer import window
 
 DRIVE = np.array([0.5, 0.2])
 

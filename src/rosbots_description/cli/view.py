@@ -1,0 +1,112 @@
+"""Front end of rosbots-view: a robot or world in the browser, without ROS."""
+
+import argparse
+import importlib.util
+import re
+import signal
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from typing import NoReturn
+
+from .page_token import announced, given_token
+from .program import run
+from .web_browser import opened
+
+NAME = 'rosbots-view'
+MOST_FAULTS = 20  # that are printed
+ARGUMENT = re.compile(r'(\w+):=(.*)', re.DOTALL)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the options."""
+    made = argparse.ArgumentParser(
+        prog=NAME, allow_abbrev=False, formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+        description='Show a robot or a world in the browser: see it, move its joints, drive it, '
+                    'read its sensors. Ctrl-C ends.')
+    made.add_argument('file', help='a URDF, xacro, SDF or world file, or the name of a world: '
+                                   'empty, room, rooms, maze, line, shapes')
+    made.add_argument('arguments', nargs='*', metavar='NAME:=VALUE', help='arguments of xacro')
+    made.add_argument('--host', default='127.0.0.1',
+                      help='address to serve at; 0.0.0.0 is all of this machine')
+    made.add_argument('--port', type=int, default=0, help='0 for any that is free')
+    made.add_argument('--token-file', metavar='FILE', default='',
+                      help='has the token that the address ends with; only its owner can read it')
+    made.add_argument('--paused', action='store_true', help='begin paused')
+    made.add_argument('--no-open', action='store_true', help='print the address only')
+    return made
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Serve the page until Ctrl-C; return the exit code."""
+    options = parser().parse_args(arguments)
+    values = {}
+    for given in options.arguments:
+        match = ARGUMENT.fullmatch(given)
+        if match is None:
+            return _fail(f"'{given}' is no argument of xacro; write NAME:=VALUE")
+        values[match[1]] = match[2]
+    if importlib.util.find_spec('viser') is None:
+        return _fail('no page: the Python package viser is not installed; '
+                     "pip install 'rosbots_description[web]' or ./rosbots setup web does that")
+    from ..sim.core import SimError
+    from ..viewer import Viewer, open_file
+    from ..web import LOOPBACK, Site, WindowError
+
+    try:
+        site = Site(options.host, options.port, given_token(options.token_file))
+    except WindowError as error:
+        return _fail(str(error))
+    except OSError as error:
+        return _fail(f"no token in '{options.token_file}': {error.strerror or error}")
+    try:
+        file = open_file(options.file, values)
+    except (SimError, OSError) as error:
+        site.stop()
+        return _fail(str(error))
+    _list(file.faults)
+    if options.host not in LOOPBACK:
+        _say('whoever has this address sees and controls the simulation, and the connection is '
+             'not encrypted')
+    with file.world as world, _until_terminated():
+        viewer = Viewer(world, site, paused=options.paused)
+        with (announced(NAME, site.address, site.token),
+              nullcontext() if options.no_open else opened(site.address)):
+            viewer.serve_until_interrupted()
+    return 0
+
+
+def script() -> NoReturn:
+    """Run as the script that pip installs."""
+    sys.exit(run(main))
+
+
+def _list(faults: Sequence[str]) -> None:
+    """Print what is wrong with the file."""
+    for fault in faults[:MOST_FAULTS]:
+        _say(fault)
+    if len(faults) > MOST_FAULTS:
+        _say(f'and {len(faults) - MOST_FAULTS} more')
+
+
+@contextmanager
+def _until_terminated() -> Iterator[None]:
+    """End as by Ctrl-C when the process is terminated."""
+    before = signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _fail(sentence: str) -> int:
+    _say(sentence)
+    return 1
+
+
+def _say(sentence: str) -> None:
+    sys.stderr.write(f'{NAME}: {sentence}\n')
+
+
+if __name__ == '__main__':
+    script()

@@ -1,0 +1,107 @@
+"""A world on its page below the cell of a notebook, or beside a script."""
+
+import html
+import json
+import threading
+from typing import Any
+
+from ..sim import World
+from .viewer import Viewer
+from .window import open_site
+
+
+class ShownViewer(Viewer):
+    """The page of a world that a script or a notebook owns.
+
+    In a notebook the world belongs to the cell while one runs, and else to a thread that runs it
+    as the page says.
+    """
+
+    def __init__(self, world: World, port: int, height: int) -> None:
+        """Begin to serve; see `World.show`."""
+        super().__init__(world, open_site(port, is_framed=True), paused=_shell() is not None)
+        self._height = height
+        world.run_by(self.run)
+        world.resources.callback(self.close)
+        shell = _shell()
+        if shell is not None:
+            self._turns = Turns(self)
+            shell.events.register('pre_run_cell', self._turns.begin_cell)
+            shell.events.register('post_run_cell', self._turns.end_cell)
+
+    def close(self) -> None:
+        """Stop serving; the world runs on its own again."""
+        shell, turns = _shell(), getattr(self, '_turns', None)
+        if turns is not None and not turns.is_over:
+            turns.end()
+            if shell is not None:
+                shell.events.unregister('pre_run_cell', turns.begin_cell)
+                shell.events.unregister('post_run_cell', turns.end_cell)
+        self._world.run_by(None)
+        super().close()
+
+    def _repr_html_(self) -> str:
+        """Return a frame with the page, at the name by which the notebook itself is reached."""
+        address = html.escape(self.address)
+        return (
+            f'<iframe width="100%" height="{self._height}" style="border:0"></iframe>'
+            f'<p><a href="{address}" target="_blank" rel="noreferrer">in a window of its own</a>'
+            '</p><script>(() => {'
+            'const frame = document.currentScript.parentElement.querySelector("iframe");'
+            'const name = ["localhost", "127.0.0.1"].includes(location.hostname)'
+            ' ? location.hostname : "127.0.0.1";'
+            f'frame.src = {json.dumps(self.address)}.replace("127.0.0.1", name);'
+            '})()</script>')
+
+
+class Turns:
+    """Lets cells and the page take turns with a world; it begins within a cell."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self.is_over = False
+        self._is_free = threading.Event()  # no cell runs or waits
+        self._owner = threading.Lock()
+        self._has_cell = True
+        self._owner.acquire()
+        threading.Thread(target=self._run, name='world', daemon=True).start()
+
+    def begin_cell(self, *_information: object) -> None:
+        """Take the world from the page, once it has made its step."""
+        if not self._has_cell:
+            self._is_free.clear()
+            self._owner.acquire()
+            self._has_cell = True
+
+    def end_cell(self, *_result: object) -> None:
+        """Give the world to the page."""
+        if self._has_cell:
+            self._has_cell = False
+            self._owner.release()
+            self._is_free.set()
+
+    def end(self) -> None:
+        """Leave the world to cells from now on."""
+        self.is_over = True
+        self._is_free.set()
+
+    def _run(self) -> None:
+        while not self.is_over:
+            self._is_free.wait()
+            with self._owner:
+                if self._is_free.is_set() and not self.is_over:
+                    self._viewer.turn()
+
+
+def show(world: World, port: int = 0, height: int = 600) -> ShownViewer:
+    """Show a world on a page; see `World.show`."""
+    return ShownViewer(world, port, height)
+
+
+def _shell() -> Any:  # noqa: ANN401  of IPython, which needs not be installed
+    """Return the shell of the notebook that runs this; None elsewhere."""
+    try:
+        from IPython import get_ipython
+    except ImportError:
+        return None
+    return get_ipython()

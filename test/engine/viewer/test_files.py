@@ -1,0 +1,132 @@
+"""Robots and worlds from files of any kind, with what is wrong with them."""
+
+import logging
+
+import pytest
+from support import ROOT
+
+from rosbots_description.sim import SimError, World
+from rosbots_description.viewer import open_file
+
+LINK = """<link name="{name}"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{shape}</link>"""
+BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+URDF = f'<robot name="crate">{LINK.format(name="box", shape=BOX)}</robot>'
+MODEL = ('<sdf version="1.7"><model name="ball"><pose>1 2 7 0 0 0</pose><link name="l"><collision '
+         'name="c"><geometry><sphere><radius>0.5</radius></sphere></geometry></collision></link>'
+         '</model></sdf>')
+WORLD = ('<sdf version="1.7"><world name="w"><include><uri>model://ground_plane</uri></include>'
+         '<include><uri>model://nowhere</uri></include></world></sdf>')
+
+
+def written(folder, name, text):
+    path = folder / name
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+@pytest.mark.parametrize(('name', 'text', 'height'), [
+    ('crate.urdf', URDF, 0.5), ('ball.sdf', MODEL, 0.5),
+])
+def test_a_model_stands_on_the_ground(tmp_path, name, text, height):
+    opened = open_file(written(tmp_path, name, text))
+    with opened.world as world:
+        robot = world.model(name.partition('.')[0])
+        assert robot.pose.position[2] == pytest.approx(height)
+        assert opened.faults == ()
+        world.reset_world()
+        assert robot.pose.position[2] == pytest.approx(height)
+
+
+def test_xacro_takes_arguments(tmp_path):
+    text = URDF.replace('<robot', '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"', 1).replace(
+        'name="box"', 'name="$(arg link)"')
+    with open_file(written(tmp_path, 'a.xacro', text), {'link': 'given'}).world as world:
+        assert list(world.model('crate').links) == ['given']
+
+
+def test_the_robot_of_this_package_has_all_its_parts():
+    opened = open_file(ROOT / 'urdf' / 'rosbots.xacro')
+    with opened.world as world:
+        assert world.model('rosbots').left_out == []
+        assert any('not read by this plugin: <legacyMode>' in fault for fault in opened.faults)
+
+
+def test_a_robot_that_is_fixed_to_the_world_stays_where_it_is_described(tmp_path):
+    text = URDF.replace('</robot>', '<link name="world"/><joint name="j" type="fixed">'
+                        '<parent link="world"/><child link="box"/></joint></robot>')
+    with open_file(written(tmp_path, 'a.urdf', text)).world as world:
+        assert world.model('crate').pose.position[2] == 0.0
+
+
+@pytest.mark.parametrize('name', ['a.world', 'a.sdf'])
+def test_a_world_file_is_opened_and_what_is_missing_named(tmp_path, name):
+    opened = open_file(written(tmp_path, name, WORLD))
+    with opened.world as world:
+        assert list(world.models) == ['ground_plane']
+        (fault,) = opened.faults
+        assert 'line 1' in fault
+        assert 'GAZEBO_MODEL_PATH' in fault
+
+
+def test_included_worlds_are_opened_by_name():
+    with open_file('room').world as world:
+        assert len(world.models) > 1
+
+
+def test_meshes_beside_the_file_are_found(tmp_path):
+    mesh = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
+    for there in ('cube.stl', 'missing.stl'):
+        text = f'<robot name="r">{LINK.format(name="a", shape=mesh.format(there))}</robot>'
+        written(tmp_path, f'{there}.urdf', text)
+    (tmp_path / 'cube.stl').write_text(
+        'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1\n'
+        'endloop\nendfacet\nendsolid s\n', encoding='utf-8')
+    with open_file(tmp_path / 'cube.stl.urdf').world:
+        pass
+    opened = open_file(tmp_path / 'missing.stl.urdf')
+    with opened.world as world:
+        assert any('missing.stl' in fault and 'line ' in fault for fault in opened.faults)
+        assert world.model('r').left_out
+
+
+def test_faults_are_collected_and_not_logged_meanwhile(tmp_path, caplog):
+    text = URDF.replace('</robot>', '<gazebo><plugin name="p" filename="libnone.so"/></gazebo>'
+                        '</robot>')
+    with caplog.at_level(logging.WARNING):
+        opened = open_file(written(tmp_path, 'a.urdf', text))
+    with opened.world:
+        assert any("unknown library 'libnone.so'" in fault for fault in opened.faults)
+        assert caplog.records == []
+
+
+@pytest.mark.parametrize(('name', 'text', 'sentence'), [
+    ('a.urdf', '<robot><', 'not well-formed'), ('a.urdf', '<robot name="r"/>', 'link'),
+    ('a.urdf', '', 'not a model'), ('a.sdf', '<sdf version="1.7"/>', 'model'),
+    ('a.world', '<sdf version="1.7"/>', '<world>'), ('a.txt', 'text', 'not a model'),
+    ('a.xacro', '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:x/></robot>',
+     'x'),
+])
+def test_what_cannot_be_simulated_is_one_sentence(tmp_path, name, text, sentence):
+    with pytest.raises(SimError, match=sentence) as raised:
+        open_file(written(tmp_path, name, text))
+    assert '\n' not in str(raised.value)
+
+
+def test_a_file_that_does_not_exist_is_named(tmp_path):
+    for name in ('nothing.urdf', 'nothing.world', 'nothing'):
+        with pytest.raises(SimError, match=name):
+            open_file(tmp_path / name)
+
+
+def test_a_world_is_closed_when_its_model_cannot_be_read(tmp_path, monkeypatch):
+    closed, close = [], World.close
+
+    def note(world):
+        closed.append(world)
+        close(world)
+
+    monkeypatch.setattr(World, 'close', note)
+    with pytest.raises(SimError):
+        open_file(written(tmp_path, 'a.urdf', '<robot/>'))
+    assert len(closed) == 1
