@@ -4,6 +4,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 
 from ..sim import World
 from ..sim.description import SceneChange, ShownMotion
@@ -12,6 +13,7 @@ from .pace import Pace
 
 Change = Callable[[SceneChange], None]
 Motion = Callable[[ShownMotion], None]
+SILENCE = 1.0  # [s, wall]
 
 
 class WorldView:
@@ -25,6 +27,7 @@ class WorldView:
         self._motion: Motion | None = None
         self._is_new = False
         self._begun = time.monotonic()
+        self._last: ShownMotion | None = None
 
     @property
     def is_open(self) -> bool:
@@ -57,7 +60,18 @@ class WorldView:
         if changed is not None:
             change(changed)
         self._world.paused = self._pace.paused
-        motion(self._shown.motion(time.monotonic() - self._begun))
+        self._last = self._shown.motion(time.monotonic() - self._begun)
+        motion(self._last)
+
+    def repeat(self) -> None:
+        """Call back, from any thread, with the clock as it was shown last, if that is long ago.
+
+        The page takes a longer silence for the end of the program, which may compute something
+        else, or wait for its next cell.
+        """
+        motion, last, now = self._motion, self._last, time.monotonic() - self._begun
+        if motion is not None and last is not None and now - last.real_time > SILENCE:
+            motion(replace(last, real_time=now, poses={}))
 
 
 class ReleasingView(WorldView):

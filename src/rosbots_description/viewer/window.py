@@ -121,6 +121,7 @@ class Window:
 
     def _poll(self) -> None:
         while not self._ended.wait(_POLL):
+            self.view.repeat()
             self._page.poll()
 
 

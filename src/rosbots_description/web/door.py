@@ -2,7 +2,8 @@
 
 The printed address carries the token. It leads to a path that is as hard to guess, and sets a
 cookie for that path. Browsers send the cookies of a host to all its ports; by the path, the
-server of another user at another port of this machine does not get this one.
+server of another user at another port of this machine does not get this one. A second token lets
+browsers in that may look only.
 """
 
 import base64
@@ -13,8 +14,9 @@ import ipaddress
 import re
 import secrets
 import socket
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
@@ -28,6 +30,8 @@ OTHER_PAGE = 'This window is not for other pages.'
 OTHER_HOST = 'Without a token, this window has no name but those of its machine.'
 MALFORMED = 'The address in this request is malformed.'
 
+CONTROLS = 'may_control'  # of connections that may
+
 Process = Callable[[ServerConnection, Request], Response | None]
 
 
@@ -36,21 +40,48 @@ def new_token() -> str:
     return secrets.token_urlsafe(32)
 
 
-class Door:
-    """Decides which requests are let in."""
+@dataclass(frozen=True)
+class Pass:
+    """A token, the path that its address leads to, and the cookie for that path."""
 
-    def __init__(self, host: str, port: int, token: str, headers: dict[str, str]) -> None:
+    token: str
+    may_control: bool
+    cookie: str
+
+    @cached_property
+    def path(self) -> str:
+        """Return the first part of the path, without slashes."""
+        digest = hmac.digest(self.token.encode(), b'path', hashlib.sha256)
+        return base64.urlsafe_b64encode(digest)[:22].decode()
+
+    def is_token(self, text: str) -> bool:
+        """Tell whether a text is the token."""
+        return hmac.compare_digest(text.encode(errors='replace'), self.token.encode())
+
+    def is_inside(self, path: str) -> bool:
+        """Tell whether a path begins with that of this pass."""
+        first = path.removeprefix('/').partition('/')[0]
+        return path.startswith('/') and hmac.compare_digest(
+            first.encode(errors='replace'), self.path.encode())
+
+
+class Door:
+    """Decides which requests are let in, and which of the connections may control."""
+
+    def __init__(self, host: str, port: int, token: str, viewing_token: str,
+                 headers: dict[str, str]) -> None:
         """Make the door of a server.
 
         Args:
             host: the address that is served; port: its port.
-            token: what requests need; '' for none.
+            token: what requests need to control; '' for none.
+            viewing_token: what requests need to look only; '' for none.
             headers: of every response.
         """
-        self._host, self._token, self._headers = host, token, headers
-        self._cookie = f'rosbots_window_{port}'
-        digest = hmac.digest(token.encode(), b'path', hashlib.sha256)
-        self._path = base64.urlsafe_b64encode(digest)[:22].decode()
+        self._host, self._headers = host, headers
+        self._passes = [Pass(value, may_control, f'rosbots_{called}_{port}')
+                        for value, may_control, called in (
+            (token, True, 'window'), (viewing_token, False, 'viewing')) if value]
 
     def guarding(self, process: Process) -> Process:
         """Return `process` for those requests only that are let in."""
@@ -67,58 +98,62 @@ class Door:
 
     def _answer(self, connection: ServerConnection, request: Request,
                 process: Process) -> Response | None:
-        reason = self._refusal(request.path, request.headers)
+        reason = self._refusal(request.headers)
         if reason:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f'{reason}\n')
-        if not self._token or request.headers.get('Upgrade', '').lower() == 'websocket':
-            return process(connection, request)
+        if not self._passes:
+            return self._process(connection, request, process, may_control=True)
         url = urlsplit(request.path)
-        if self._is_inside(url.path):
-            inner = url.path.removeprefix(f'/{self._path}') or '/'
+        shown = next((one for one in self._passes if _has_token(one, url.query)), None)
+        if request.headers.get('Upgrade', '').lower() == 'websocket':
+            shown = shown or next((one for one in self._passes if one.is_inside(url.path)
+                                   and self._has_cookie(one, request.headers)), None)
+            if shown is None:
+                return connection.respond(http.HTTPStatus.FORBIDDEN, f'{NO_TOKEN}\n')
+            return self._process(connection, request, process, may_control=shown.may_control)
+        # The file of the page is no secret; what it connects to is.
+        inside = next((one for one in self._passes if one.is_inside(url.path)), None)
+        if inside is not None:
+            inner = url.path.removeprefix(f'/{inside.path}') or '/'
             response = process(connection, replace(request, path=inner))
-        else:
+        elif shown is not None:
             rest = urlencode([(name, value) for name, value in parse_qsl(url.query, True)
                               if name != 'token'])
             response = connection.respond(http.HTTPStatus.SEE_OTHER, '')
-            response.headers['Location'] = f'/{self._path}/' + (f'?{rest}' if rest else '')
-        if response is not None and self._knows_token(url.query):
+            response.headers['Location'] = f'/{shown.path}/' + (f'?{rest}' if rest else '')
+        else:
+            return connection.respond(http.HTTPStatus.FORBIDDEN, f'{NO_TOKEN}\n')
+        if response is not None and shown is not None:
             response.headers['Set-Cookie'] = (
-                f'{self._cookie}={self._token}; Path=/{self._path}; HttpOnly; SameSite=Strict')
+                f'{shown.cookie}={shown.token}; Path=/{shown.path}; HttpOnly; SameSite=Strict')
         return response
 
-    def _refusal(self, path: str, headers: Any) -> str:  # noqa: ANN401  a mapping without its type
-        """Return why a request is refused, in a sentence; '' if it is not."""
+    @staticmethod
+    def _process(connection: ServerConnection, request: Request, process: Process, *,
+                 may_control: bool) -> Response | None:
+        """Let a request in; a connection that is not told otherwise may only look."""
+        if may_control:
+            setattr(connection, CONTROLS, True)
+        return process(connection, request)
+
+    def _refusal(self, headers: Any) -> str:  # noqa: ANN401  a mapping without its type
+        """Return why a request is refused whatever its token, in a sentence; '' if it is not."""
         host, origin = headers.get('Host', ''), headers.get('Origin', '')
         if origin and urlsplit(origin).netloc != host:
             return OTHER_PAGE
-        if not self._token:
-            return '' if self._is_own_name(urlsplit(f'//{host}').hostname or '') else OTHER_HOST
-        url = urlsplit(path)
-        if self._knows_token(url.query):
-            return ''
-        is_socket = headers.get('Upgrade', '').lower() == 'websocket'
-        has_cookie = any(self._is_token(value) for value in self._cookies(headers))
-        # The file of the page is no secret; what it connects to is.
-        return '' if self._is_inside(url.path) and (has_cookie or not is_socket) else NO_TOKEN
+        if not self._passes and not self._is_own_name(urlsplit(f'//{host}').hostname or ''):
+            return OTHER_HOST
+        return ''
 
-    def _knows_token(self, query: str) -> bool:
-        return any(name == 'token' and self._is_token(value) for name, value in parse_qsl(query))
-
-    def _cookies(self, headers: Any) -> Iterator[str]:  # noqa: ANN401
-        """Yield the values of this server's cookie; other servers of the host can set others."""
+    @staticmethod
+    def _has_cookie(one: Pass, headers: Any) -> bool:  # noqa: ANN401
+        """Tell whether a cookie has the token; other servers of the host can set others."""
         for header in headers.get_all('Cookie'):
             for part in header.split(';'):
                 name, _, value = part.strip().partition('=')
-                if name == self._cookie:
-                    yield value
-
-    def _is_token(self, text: str) -> bool:
-        return hmac.compare_digest(text.encode(errors='replace'), self._token.encode())
-
-    def _is_inside(self, path: str) -> bool:
-        first = path.removeprefix('/').partition('/')[0]
-        return path.startswith('/') and hmac.compare_digest(
-            first.encode(errors='replace'), self._path.encode())
+                if name == one.cookie and one.is_token(value):
+                    return True
+        return False
 
     def _is_own_name(self, name: str) -> bool:
         """Tell whether a name leads here for sure, as one of a foreign domain does not."""
@@ -131,3 +166,7 @@ class Door:
         except ValueError:
             return name in {self._host, socket.gethostname(), socket.getfqdn()}
         return True
+
+
+def _has_token(one: Pass, query: str) -> bool:
+    return any(name == 'token' and one.is_token(value) for name, value in parse_qsl(query))

@@ -3,18 +3,24 @@
 import asyncio
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import Any
 
 import viser
-from viser._messages import FileTransferPartAck
+from viser._messages import (
+    FileTransferPartAck,
+    GuiUpdateMessage,
+    SetOrientationMessage,
+    SetPositionMessage,
+)
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
 from .allowance import Allowance
 from .client_messages import MalformedError, RefusedError, check_value, read
+from .door import CONTROLS
 from .notices import left_out, show
 from .uploads import Upload, Uploads, content
 
@@ -22,6 +28,11 @@ logger = logging.getLogger(__name__)
 
 MOST_CLIENTS = 16
 FULL = 'This window has no room for another browser.'
+LOOKS = 'This address is for looking: its browsers see everything and change nothing.'
+# What a browser may send that may only look: where its camera is, pictures that it is asked for,
+# and confirmations of parts of a download. Parts of uploads are dropped, as none has begun.
+OF_VIEWERS = {'ViewerCameraMessage', 'GetRenderResponseMessage', 'FileTransferPartAck',
+              'FileTransferPart'}
 MAX_MESSAGE = 24_000_000  # [bytes], that of a large picture
 RATE, BURST = 1000.0, 5000.0  # messages of a browser in a second, and at once
 BACKLOG = 200  # commands that wait to be carried out; further ones are not read meanwhile
@@ -31,6 +42,7 @@ BUSY = 'The simulator is busy: some of what was done here is left out'
 PAUSE = 1.0  # [s, wall] between two notices of refusals
 
 Received = Callable[[viser.ClientHandle, str, bytes], object]
+Control = viser.GuiButtonHandle | viser.GuiButtonGroupHandle | viser.CommandHandle
 
 
 @dataclass
@@ -38,6 +50,7 @@ class Visitor:
     """A connection, and what is known of it."""
 
     connection: ServerConnection
+    may_control: bool
     messages: Allowance = field(default_factory=lambda: Allowance(BURST, RATE))
     next_notice: float = 0.0  # [s, monotonic]
     left_out: int = 0  # notices since the last one
@@ -46,7 +59,10 @@ class Visitor:
 class Gate:
     """Reads the messages of all connections; on the server's own thread."""
 
-    def __init__(self) -> None:
+    def __init__(self, most_clients: int = MOST_CLIENTS) -> None:
+        """Begin; there is room for so many browsers that control, and as many that look."""
+        self._most_clients = most_clients
+        self._for_viewers: set[str] = set()  # numbers of controls
         self.site: viser.ViserServer | None = None  # when it is complete
         self._visitors: dict[int, Visitor] = {}  # by the identity of the connection
         self._uploads = Uploads()
@@ -55,6 +71,16 @@ class Gate:
     def receive(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:
         """Call back, on a thread, with browser, name and content of each file of a button."""
         self._receivers[button._impl.uuid] = received
+
+    def allow_viewers(self, controls: Iterable[Control]) -> None:
+        """Let browsers that may only look use controls that act on their own browser only."""
+        self._for_viewers |= {control._impl.uuid for control in controls}
+
+    def greet(self, client: viser.ClientHandle) -> None:
+        """Tell a browser that may only look so."""
+        if any(not visitor.may_control and self._client(visitor) is client
+               for visitor in tuple(self._visitors.values())):
+            show(client, LOOKS)
 
     def connection_class(self) -> type[ServerConnection]:
         """Return the class of connections whose messages are checked here."""
@@ -73,10 +99,12 @@ class Gate:
     def counting(self, handler: Callable[[ServerConnection], Any]) -> Callable[..., Any]:
         """Return the handler of a connection with a limit on how many there are."""
         async def counted(connection: ServerConnection) -> None:
-            if self.site is None or len(self._visitors) >= MOST_CLIENTS:
+            may_control = getattr(connection, CONTROLS, False)
+            alike = [one for one in self._visitors.values() if one.may_control == may_control]
+            if self.site is None or len(alike) >= self._most_clients:
                 await connection.close(1013, FULL)
                 return
-            visitor = self._visitors[id(connection)] = Visitor(connection)
+            visitor = self._visitors[id(connection)] = Visitor(connection, may_control)
             try:
                 await handler(connection)
             finally:
@@ -94,7 +122,10 @@ class Gate:
             await asyncio.sleep(0)  # viser has yet to take in the first camera message
         try:
             await self._wait_for_room()
-            return self._check(visitor, read(raw))
+            message = read(raw)
+            if not visitor.may_control:
+                self._check_viewer(visitor, message)
+            return self._check(visitor, message)
         except RefusedError as error:
             self._notify(visitor, str(error))
         except MalformedError as error:
@@ -128,6 +159,37 @@ class Gate:
             if control is not None:
                 check_value(control, message.updates['value'])
         return True
+
+    def _check_viewer(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401  a struct
+        """Refuse what changes anything but the view of a browser that may only look.
+
+        Raises:
+            RefusedError: it does.
+        """
+        if type(message).__name__ in OF_VIEWERS or (
+                getattr(message, 'uuid', None) in self._for_viewers):
+            return
+        self._undo(visitor, message)
+        raise RefusedError(LOOKS)
+
+    def _undo(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
+        """Show a browser again what is true, in place of what was done there."""
+        assert self.site is not None
+        client, kind = self._client(visitor), type(message).__name__
+        if client is None:
+            return
+        send = client._websock_connection.queue_message
+        if kind == 'GuiUpdateMessage':
+            control = self.site.gui._gui_input_handle_from_uuid.get(message.uuid)
+            if control is not None:
+                send(GuiUpdateMessage(message.uuid, {'value': control.value}))
+        elif kind.startswith('TransformControls'):
+            handle = self.site.scene._handle_from_node_name.get(message.name)
+            if handle is not None:
+                send(SetPositionMessage(message.name, tuple(handle.position)))
+                send(SetOrientationMessage(message.name, tuple(handle.wxyz)))
+        elif kind == 'FileTransferStartUpload':
+            self._acknowledge(visitor, message, message.size_bytes)  # ends it in the browser
 
     def _start(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
         if message.source_component_uuid not in self._receivers:

@@ -180,7 +180,7 @@ class Page:
             self._panels.append(Gizmo(
                 site, models, self.selection, simulator.hands, history, self._notify))
         with tabs.add_tab('Show', viser.Icon.EYE):
-            ViewPanel(site.gui, models, self.selection, self._start)
+            ViewPanel(site, models, self.selection, self._start)
             self._panels += [
                 FollowPanel(site, models, self.selection),
                 ShowPanel(site, scene, models, self.selection, self._lock)]

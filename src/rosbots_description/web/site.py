@@ -11,7 +11,7 @@ import viser
 import websockets.asyncio.server
 
 from .door import TOKEN, Door, Process, new_token
-from .gate import MAX_MESSAGE, Gate, Received
+from .gate import MAX_MESSAGE, MOST_CLIENTS, Control, Gate, Received
 from .loop_event import leave_to_loop
 from .policy import page_headers
 
@@ -23,30 +23,40 @@ class WindowError(Exception):
 class Site(viser.ViserServer):
     """Viser's server for those who have the token."""
 
-    def __init__(self, host: str, port: int, token: str = '', *, is_open: bool = False,
-                 is_framed: bool = False) -> None:
+    def __init__(self, host: str, port: int, token: str = '', *, viewing_token: str = '',
+                 is_open: bool = False, is_framed: bool = False,
+                 most_viewers: int = MOST_CLIENTS) -> None:
         """Begin to serve.
 
         Args:
             host: address or name of the interface; port: 0 for any that is free.
             token: what requests need, 16 to 128 letters, digits, - and _; '' for a new one.
-            is_open: let in everybody who reaches the port; there is no token then.
+            viewing_token: what lets a browser in that may only look; '' for a new one.
+            is_open: let in everybody who reaches the port; there are no tokens then.
             is_framed: pages of this machine, such as notebooks, may show it in a frame.
+            most_viewers: browsers at once, by each of the two tokens.
         Raises:
             WindowError: the address is not this machine's, the port is in use, or the token is
                 not one.
         """
-        if token and not TOKEN.fullmatch(token):
-            raise WindowError('the token is not one: it has 16 to 128 letters, digits, - and _')
+        for given in filter(None, (token, viewing_token)):
+            if not TOKEN.fullmatch(given):
+                raise WindowError(
+                    'the token is not one: it has 16 to 128 letters, digits, - and _')
+        if token and token == viewing_token:
+            raise WindowError('the token for viewing is that for control; give it another one')
         listener = _listen(host, port)
         port = listener.getsockname()[1]
         self.token = '' if is_open else token or new_token()
         shown = f'[{host}]' if ':' in host else host
         if host in {'0.0.0.0', '::'}:
             shown = socket.gethostname()
-        self.address = f'http://{shown}:{port}/' + (f'?token={self.token}' if self.token else '')
-        self._gate = gate = Gate()
-        door = Door(host, port, self.token, page_headers(is_framed))
+        self.viewing_token = '' if is_open else viewing_token or new_token()
+        place = f'http://{shown}:{port}/'
+        self.address = place + (f'?token={self.token}' if self.token else '')
+        self.viewing_address = f'{place}?token={self.viewing_token}' if self.viewing_token else ''
+        self._gate = gate = Gate(most_viewers)
+        door = Door(host, port, self.token, self.viewing_token, page_headers(is_framed))
         serve = websockets.asyncio.server.serve
 
         def serve_here(handler: Any, *_address: Any, process_request: Process,  # noqa: ANN401
@@ -67,10 +77,15 @@ class Site(viser.ViserServer):
         self._websock_server.on_client_connect(
             lambda client: leave_to_loop(client.get_message_buffer()))
         gate.site = self
+        self.on_client_connect(gate.greet)
 
     def receive_files(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:
         """Call back, on a thread, with browser, name and content of each file of a button."""
         self._gate.receive(button, received)
+
+    def allow_viewers(self, *controls: Control) -> None:
+        """Let browsers that may only look use controls that act on their own browser only."""
+        self._gate.allow_viewers(controls)
 
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to publish this page through viser's servers."""

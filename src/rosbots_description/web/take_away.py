@@ -12,6 +12,7 @@ from PIL import Image
 from ..sim.core import SimError
 from ..sim.description import ShownMotion
 from .panel import Panel
+from .site import Site
 from .takes import PATIENCE, SceneTake, Take, VideoTake
 from .text import plain
 
@@ -34,7 +35,7 @@ class Worlds(Protocol):
 class TakeAwayPanel(Panel):
     """Downloads for the browser that asks."""
 
-    def __init__(self, site: viser.ViserServer, worlds: Worlds | None, complain: Complain) -> None:
+    def __init__(self, site: Site, worlds: Worlds | None, complain: Complain) -> None:
         self._complain = complain
         self._lock = threading.Lock()
         self._served: set[int] = set()  # browsers that are being given a file
@@ -42,8 +43,8 @@ class TakeAwayPanel(Panel):
         if worlds is not None:
             self._button('World', viser.Icon.WORLD_DOWNLOAD, partial(_give_world, worlds), gui,
                          'a world file: everything as it is now')
-        self._button('Picture', viser.Icon.CAMERA, _give_picture, gui,
-                     'what this browser shows, as PNG')
+        site.allow_viewers(self._button('Picture', viser.Icon.CAMERA, _give_picture, gui,
+                                        'what this browser shows, as PNG'))
         self._takes = (
             TakeButton(gui, 'video', 'video.mp4', 'what this browser shows, as MP4',
                        VideoTake, complain),
@@ -67,7 +68,7 @@ class TakeAwayPanel(Panel):
             take.drop(client)
 
     def _button(self, label: str, icon: Any, act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
-                gui: viser.GuiApi, hint: str) -> None:
+                gui: viser.GuiApi, hint: str) -> viser.GuiButtonHandle:
         def click(event: Click) -> None:
             client = event.client
             if client is None:
@@ -83,7 +84,9 @@ class TakeAwayPanel(Panel):
             finally:
                 self._served.discard(client.client_id)
 
-        gui.add_button(label, icon=icon, hint=hint).on_click(click)
+        button = gui.add_button(label, icon=icon, hint=hint)
+        button.on_click(click)
+        return button
 
 
 def _give_world(worlds: Worlds, client: viser.ClientHandle) -> None:

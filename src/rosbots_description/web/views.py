@@ -15,6 +15,7 @@ from .descriptions import chosen_links
 from .models import Models
 from .panel import Panel
 from .selection import Selection
+from .site import Site
 from .start_view import StartView
 
 ROOM = 1.1  # around what is looked at
@@ -26,9 +27,10 @@ TOP, FRONT = (-STEEP, 0.0, 1.0), (1.0, 0.0, 0.25)  # from what is looked at to t
 class ViewPanel(Panel):
     """The view of a browser: as at first, from the top, from ahead, or as it is, but nearer."""
 
-    def __init__(self, gui: viser.GuiApi, models: Models, selection: Selection,
+    def __init__(self, site: Site, models: Models, selection: Selection,
                  start: StartView) -> None:
         self._models, self._selection = models, selection
+        gui = site.gui
         buttons = gui.add_button_group('View', ('Home', 'Top', 'Front', 'Fit all', 'Go to'), hint=(
             'keys H, T, F, E; G goes to what is selected'))
         looks: dict[str, tuple[str, Callable[[viser.CameraHandle], None]]] = {
@@ -38,11 +40,13 @@ class ViewPanel(Panel):
             'Fit all': ('E', lambda camera: self._fit(camera, self._everything())),
             'Go to': ('G', lambda camera: self._fit(camera, self._chosen())),
         }
+        site.allow_viewers(buttons)
         buttons.on_click(lambda event: _turn(looks[buttons.value][1], event))
         for name, (key, turn) in looks.items():
             label = 'Go to what is selected' if name == 'Go to' else f'View: {name}'
             command = gui.add_command(label, hotkey=key)  # type: ignore[arg-type]  # any letter
             command.on_trigger(partial(_turn, turn))
+            site.allow_viewers(command)
 
     def _everything(self) -> list[Vector]:
         return self._corners(link for model in self._models.all.values() for link in model.links)

@@ -9,7 +9,7 @@ from support.patience import PATIENCE, wait_until
 
 from rosbots_description.sim import Pose, SimError, Twist, World
 from rosbots_description.sim.description import CommandTopic, ModelText
-from rosbots_description.viewer import Viewer
+from rosbots_description.viewer import Viewer, scene
 from rosbots_description.web import Site
 
 ROBOT = 'package://rosbots_description/urdf/rosbots.xacro'
@@ -274,3 +274,15 @@ def test_a_page_that_waits_does_not_hold_up_the_world(world):
         viewer.view.open(lambda _change: states.append(viewer.inspection.state('crate', None)),
                          lambda _motion: None)
         wait_until(lambda: states, 'the state')
+
+
+def test_a_program_that_does_something_else_does_not_count_as_ended(world, monkeypatch):
+    monkeypatch.setattr(scene, 'SILENCE', 0.0)
+    viewer = Viewer(world, Site('127.0.0.1', 0))
+    pages = Pages(viewer)
+    viewer.run(1)  # and no more
+    wait_until(lambda: len(pages.motions) > 2, 'the clock again')
+    first, *_, last = pages.motions
+    assert last.real_time > first.real_time
+    assert (last.time, last.poses) == (0.001, {})
+    viewer.close()

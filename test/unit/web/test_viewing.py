@@ -1,0 +1,232 @@
+"""The token for viewing: whoever has it sees everything, and changes nothing but the own view."""
+
+import io
+import re
+
+import pytest
+from PIL import Image
+from support.browser import CAMERA, Browser
+from support.patience import wait_until
+from support.window import FakeSimulator, clock, model
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
+
+from rosbots_description.sim.core import Pose
+from rosbots_description.sim.description import CommandTopic, SceneChange
+from rosbots_description.web import Page, Site, WindowError
+from rosbots_description.web.client_messages import KINDS
+from rosbots_description.web.gate import LOOKS, OF_VIEWERS
+from rosbots_description.web.gizmo import NODE
+
+UPLOAD = 'Upload URDF, xacro or SDF'
+SECRET, VIEWING = 'the-token-of-this-test', 'the-token-for-viewing'
+
+
+@pytest.fixture(scope='module')
+def served():
+    site = Site('127.0.0.1', 0, SECRET, viewing_token=VIEWING, most_viewers=3)
+    simulator = FakeSimulator()
+    simulator.topics = ('/cmd_vel',)
+    simulator.joints.topics = (CommandTopic('/position'),)
+    page = Page(site, simulator)
+    yield site, simulator, page
+    site.stop()
+
+
+@pytest.fixture
+def site(served):
+    return served[0]
+
+
+@pytest.fixture
+def viewer(served):
+    """A browser that may only look, at a page where a model is selected and all can be done."""
+    site, simulator, page = served
+    with Browser(site.address) as owner, Browser(site.viewing_address) as browser:
+        owner.wait_until(lambda: simulator.change)
+        simulator.change(SceneChange(True, (model('box', 1), model('other', 2))))
+        page.poll()
+        page.selection.choose('box')
+        browser.wait_until(lambda: NODE in browser.nodes and browser.control(UPLOAD)
+                           and browser.control('Forward'))
+        browser.wait_until(lambda: LOOKS in browser.notes())  # as it came in
+        browser.messages.clear()
+        simulator.told.clear()
+        simulator.joints.told.clear()
+        yield browser
+        page.selection.choose(None)
+
+
+# Everything that a page can send, but what is in OF_VIEWERS.
+ACTS = {
+    'GuiUpdateMessage': [lambda b, label=label: b.click(label) for label in (
+        'Pause', 'Step', 'Reset world', 'Reset time and world', 'Duplicate', 'Delete', 'Push',
+        'Set pose', 'Set velocity', 'Set friction', 'Insert shape', 'Insert light', 'World',
+        'Record a video', 'Record a recording', 'Release', 'Add curve', 'Insert model')],
+    'GuiButtonHoldMessage': [lambda b: b.hold('Forward')],
+    'CommandTriggerMessage': [lambda b, key=key: b.press(key) for key in (
+        'space', 'I', 'delete', 'escape', 'D')],
+    'SceneNodeClickMessage': [lambda b: b.click_node('/models/other/link')],
+    'SceneNodeDragMessage': [lambda b: b.send({
+        'type': 'SceneNodeDragMessage', 'name': '/models/box', 'phase': 'start', 'owner': '',
+        'instance_index': None, 'button': 'left', 'modifier': None,
+        **dict.fromkeys(('start_position', 'end_position'), [0.0] * 3),
+        **dict.fromkeys(('start_screen_pos', 'end_screen_pos'), [0.5] * 2)})],
+    'ScenePointerMessage': [lambda b: b.click_ray([0.0, 0.0, 5.0], [0.0, 0.0, -1.0])],
+    'TransformControlsDragStartMessage': [lambda b: b.grab(NODE)],
+    'TransformControlsUpdateMessage': [lambda b: b.drag(NODE, [9.0, 0.0, 0.0])],
+    'TransformControlsDragEndMessage': [lambda b: b.let_go(NODE)],
+    'FileTransferStartUpload': [lambda b: b.upload(UPLOAD, 'x.urdf', b'<robot/>')],
+}
+EXPECTED = [(kind, act) for kind, acts in ACTS.items() for act in acts]
+
+
+def test_each_kind_of_message_is_allowed_or_tried():
+    assert set(KINDS) == set(ACTS) | OF_VIEWERS
+
+
+@pytest.mark.parametrize(('_kind', 'act'), EXPECTED,
+                         ids=[f'{kind}-{n}' for n, (kind, _) in enumerate(EXPECTED)])
+def test_what_changes_anything_is_refused_with_one_notice(viewer, served, _kind, act):
+    _, simulator, page = served
+    act(viewer)
+    viewer.wait_until(lambda: LOOKS in viewer.notes())
+    viewer.look_at([1.0, 2.0, 3.0])  # read after it
+    viewer.read(0.1)
+    assert viewer.notes() == [LOOKS]
+    assert [one for one in simulator.told if one[0] != 'state'] == []
+    assert simulator.joints.told == []
+    assert (page.selection.model, page.selection.link) == ('box', None)
+
+
+def test_a_value_that_was_changed_is_shown_as_it_is_again(viewer):
+    before = viewer.value('Speed')
+    viewer.choose('Speed', '10x')
+    viewer.wait_until(lambda: any(
+        message['type'] == 'GuiUpdateMessage' and message['updates'] == {'value': before}
+        for message in viewer.messages))
+
+
+def test_a_handle_that_was_dragged_is_shown_where_it_is_again(viewer):
+    viewer.nodes[NODE][1] = [9.0, 0.0, 0.0]
+    viewer.drag(NODE, [9.0, 0.0, 0.0])
+    viewer.wait_until(lambda: viewer.nodes[NODE][1] == [0.0, 0.0, 0.0])
+
+
+def test_the_own_camera_moves_by_hand_and_by_the_buttons_of_the_view(viewer, site):
+    viewer.look_at([1.0, 2.0, 3.0])
+    clients = site.get_clients().values()
+    viewer.wait_until(lambda: any(list(client.camera.look_at) == [1.0, 2.0, 3.0]
+                                  for client in clients))
+    for act in (lambda: viewer.choose('View', 'Top'), lambda: viewer.press('F')):
+        viewer.messages.clear()
+        act()
+        viewer.wait_until(lambda: any(message['type'] == 'SetCameraPositionMessage'
+                                      for message in viewer.messages))
+        assert viewer.notes() == []
+
+
+def test_a_picture_of_the_own_view_is_given(viewer):
+    made = io.BytesIO()
+    Image.new('RGB', (100, 100)).save(made, 'PNG')
+    viewer.click('Picture')
+    viewer.wait_until(lambda: viewer.answer_render(made.getvalue()))
+    viewer.wait_until(viewer.download)
+    assert viewer.download()[0] == 'picture.png'
+    assert viewer.notes() == []
+
+
+def test_the_scene_and_its_motion_are_seen(viewer, served):
+    served[1].motion(clock(1.0, 1.0, _1=Pose((4.0, 5.0, 6.0))))
+    viewer.wait_until(lambda: viewer.nodes['/models/box/link'][1] == [4.0, 5.0, 6.0])
+
+
+def test_many_refusals_are_counted(viewer):
+    for _ in range(50):
+        viewer.click('Pause')
+    told = re.compile(r'(\d+) more notices? (is|are) left out')
+    viewer.wait_until(lambda: sum(
+        int(match[1]) if (match := told.fullmatch(note)) else note == LOOKS
+        for note in viewer.notes()) == 50)
+
+
+def test_the_two_addresses_have_two_tokens_two_paths_and_two_cookies(site):
+    assert site.address.endswith(f'?token={SECRET}')
+    assert site.viewing_address.endswith(f'?token={VIEWING}')
+    control, viewing = (one for one in site_passes(site))
+    assert control.path != viewing.path
+    assert control.cookie != viewing.cookie
+    root = site.address.partition('?')[0]
+    with Browser(f'{root}{viewing.path}', {'Cookie': f'{viewing.cookie}={VIEWING}'}) as browser:
+        browser.wait_until(lambda: LOOKS in browser.notes())
+    with Browser(f'{root}{control.path}', {'Cookie': f'{control.cookie}={SECRET}'}) as browser:
+        browser.wait_until(lambda: browser.control('Pause'))
+        assert browser.notes() == []
+
+
+def site_passes(site):
+    """Return the passes of its door."""
+    from rosbots_description.web.door import Pass
+
+    port = site.get_port()
+    return (Pass(SECRET, True, f'rosbots_window_{port}'),
+            Pass(VIEWING, False, f'rosbots_viewing_{port}'))
+
+
+@pytest.mark.parametrize('cookie', [
+    'rosbots_window_PORT={viewing}', 'rosbots_viewing_PORT={secret}', 'may_control=True',
+    'rosbots_window_PORT=; rosbots_viewing_PORT='])
+@pytest.mark.parametrize('inside', [0, 1])
+def test_no_cookie_of_one_address_opens_the_other(site, cookie, inside):
+    port = site.get_port()
+    given = cookie.replace('PORT', str(port)).format(viewing=VIEWING, secret=SECRET)
+    root = site.address.partition('?')[0]
+    with pytest.raises(InvalidStatus, match='403'):
+        Browser(f'{root}{site_passes(site)[inside].path}', {'Cookie': given})
+
+
+def test_the_token_for_viewing_in_any_place_gives_no_control(site):
+    root = site.address.partition('?')[0]
+    control, _ = site_passes(site)
+    for address in (f'{root}{control.path}?token={VIEWING}', f'{root}?a=b&token={VIEWING}',
+                    f'{root}?token=x&token={VIEWING}&may_control=1'):
+        with Browser(address) as browser:
+            browser.wait_until(lambda: LOOKS in browser.notes())
+
+
+def test_viewers_take_no_room_of_those_who_control(site):
+    browsers = []
+    try:
+        with pytest.raises((ConnectionClosed, InvalidHandshake)):
+            for _ in range(4):
+                browsers.append(Browser(site.viewing_address))
+                browsers[-1].wait_until(lambda: browsers[-1].messages)
+        assert len(browsers) in (3, 4)
+        with Browser(site.address) as owner:
+            owner.wait_until(lambda: owner.control('Pause'))
+    finally:
+        for browser in browsers:
+            browser._connection.close()
+    wait_until(lambda: not site._gate._visitors, 'the end of the connections')
+
+
+def test_the_camera_may_come_with_any_number_that_can_be_used(viewer):
+    viewer.send({**CAMERA, 'fov': 0.0})
+    viewer.wait_until(lambda: any('of this browser' in note for note in viewer.notes()))
+
+
+@pytest.mark.parametrize('viewing', ['short', SECRET])
+def test_a_token_for_viewing_that_cannot_be_is_refused(viewing):
+    with pytest.raises(WindowError, match='token'):
+        Site('127.0.0.1', 0, SECRET, viewing_token=viewing)
+
+
+def test_without_tokens_everybody_controls():
+    site = Site('127.0.0.1', 0, is_open=True)
+    try:
+        assert site.viewing_address == ''
+        Page(site, FakeSimulator())
+        with Browser(site.address) as browser:
+            browser.wait_until(lambda: browser.control('Pause'))
+            assert browser.notes() == []
+    finally:
+        site.stop()
