@@ -101,8 +101,8 @@ class GzwebTest(unittest.TestCase):
         window.process.send_signal(signal.SIGINT)
         wait_until(lambda: window.process.poll() is not None, 'the end')
         self.assertEqual(window.process.returncode, 0)
-        # It said the address, and what the simulator refused.
-        said = re.sub(r'\x1b\[\d*m', '', window.shown()).split('\r\n')[1:]
+        # It said both addresses, and what the simulator refused.
+        said = re.sub(r'\x1b\[\d*m', '', window.shown()).split('\r\n')[2:]
         refused = [line for line in said if line]
         self.assertEqual(len(refused), 2, refused)
         self.assertIn('mass is -1.0', refused[0])

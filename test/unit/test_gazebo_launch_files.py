@@ -45,7 +45,7 @@ ARGUMENTS = {
 }
 # Ours, of every launch file.
 WEB = {'web': 'false', 'web_host': '127.0.0.1', 'web_port': '8080', 'web_open': 'true',
-       'web_token': 'true'}
+       'web_token': 'true', 'web_max_viewers': '16'}
 HANDED_ON = {name: f'$(arg {name})' for name in WEB}
 FIXED = {
     'paused': 'false', 'use_sim_time': 'true', 'gui': 'true', 'headless': 'false',

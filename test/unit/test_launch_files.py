@@ -207,9 +207,19 @@ def test_each_world_can_be_seen_in_a_browser(load, file):
     file = f'{file}.launch' if isinstance(file, str) else file
     assert 'gzweb' not in nodes(load(file))
     config = load(file, 'web:=true', 'web_host:=0.0.0.0', 'web_port:=8081')
-    assert arguments(config, 'gzweb') == '--host 0.0.0.0 --port 8081 --open'
-    config = load(file, 'web:=true', 'web_open:=false', 'web_token:=false')
-    assert arguments(config, 'gzweb') == '--host 127.0.0.1 --port 8080 --no-token'
+    assert arguments(config, 'gzweb') == (
+        '--host 0.0.0.0 --port 8081 --max-viewers 16 --open')
+    config = load(file, 'web:=true', 'web_open:=false', 'web_token:=false',
+                  'web_max_viewers:=30')
+    assert arguments(config, 'gzweb') == (
+        '--host 127.0.0.1 --port 8080 --max-viewers 30 --no-token')
+
+
+def test_each_student_has_a_page_at_a_port_of_their_own(load):
+    for student, port in ((1, 8101), (20, 8120)):
+        config = load('student.launch', f'student:={student}')
+        assert arguments(config, 'gzweb') == f'--host 127.0.0.1 --port {port} --max-viewers 16'
+        assert 'gazebo_gui' not in nodes(config)
 
 
 def test_simulation_passes_its_arguments_to_the_simulator(load):

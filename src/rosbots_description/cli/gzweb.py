@@ -11,12 +11,12 @@ from contextlib import nullcontext
 
 from .gzserver import split_remappings
 from .heap import use_one_heap
-from .page_token import VARIABLE, announced, given_token
+from .page_token import add_options, announced, given_tokens
 from .web_browser import opened
 
 logger = logging.getLogger(__name__)
 
-HOST, PORT = '127.0.0.1', 8080
+PORT = 8080
 PERIOD = 0.5  # between looks at the simulator [s, wall]
 NAME = 'gzweb'
 
@@ -27,12 +27,8 @@ def parser() -> argparse.ArgumentParser:
         prog=NAME, description='See and control the simulated world in a browser.',
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
         allow_abbrev=False)  # --token is no --token-file
-    made.add_argument('--host', default=HOST,
-                      help='address to serve at; 0.0.0.0 is all of this machine')
+    add_options(made)
     made.add_argument('--port', type=int, default=PORT, help='0 for any that is free')
-    made.add_argument('--token-file', metavar='FILE', default='',
-                      help='only its owner can read it; it has the token that the address ends '
-                           f'with, as the variable {VARIABLE} may; made at random without both')
     made.add_argument('--no-token', action='store_true',
                       help='let in everybody who reaches the port, every user of this machine '
                            'included')
@@ -61,13 +57,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from ..web import LOOPBACK, Page, Site, WindowError
 
     try:
-        site = Site(options.host, options.port, given_token(options.token_file),
-                    is_open=options.no_token)
+        token, viewing_token = given_tokens(options)
+        site = Site(options.host, options.port, token, viewing_token=viewing_token,
+                    is_open=options.no_token, most_viewers=options.max_viewers)
         start_node(NAME, remappings, wall_time=True)
     except (WindowError, AddressError) as error:
         return _fail(str(error))
     except OSError as error:
-        return _fail(f"no token in '{options.token_file}': {error.strerror or error}")
+        return _fail(f"no token in '{error.filename}': {error.strerror or error}")
     connect_logging(time.time_ns)
     watch_master(Registrar(), ())
     if not site.token:
@@ -79,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     page = Page(site, GazeboSimulator())
     gc.freeze()  # otherwise each full collection, as after a visit, scans all modules
     gc.collect()
-    with (announced(NAME, site.address, site.token),
+    with (announced(NAME, site.address, site.viewing_address),
           opened(site.address) if options.open else nullcontext()):
         while is_running():
             page.poll()

@@ -1,13 +1,16 @@
 """Tokens of pages: given by a file or the environment, and told to nobody else."""
 
+import argparse
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 from .web_browser import is_readable_by_others, private_page
 
-VARIABLE = 'GZWEB_TOKEN'
+HOST = '127.0.0.1'
+VARIABLE, VIEWING_VARIABLE = 'GZWEB_TOKEN', 'GZWEB_VIEWING_TOKEN'
+MOST_VIEWERS, MANY_VIEWERS = 16, 1000
 
 
 def given_token(path: str, variable: str = VARIABLE) -> str:
@@ -21,18 +24,56 @@ def given_token(path: str, variable: str = VARIABLE) -> str:
     with open(path, encoding='utf-8', errors='replace') as file:
         status = os.fstat(file.fileno())
         if status.st_mode & 0o077 or status.st_uid != os.geteuid():
-            raise PermissionError('others can read it; make it your own, and chmod 600')
+            raise PermissionError(
+                0, 'others can read it; make it your own, and chmod 600', path)
         return file.read(1000).strip()
 
 
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of pages: where they are served, to whom, and to how many."""
+    parser.add_argument('--host', default=HOST,
+                        help='address to serve at; 0.0.0.0 is all of this machine')
+    for who, variable in (('', VARIABLE), ('viewing-', VIEWING_VARIABLE)):
+        parser.add_argument(
+            f'--{who}token-file', metavar='FILE', default='',
+            help='only its owner can read it; it has the token that the address '
+                 f'{"for looking " if who else ""}ends with, as the variable {variable} may; made '
+                 'at random without both')
+    parser.add_argument('--max-viewers', type=_number_of_browsers, default=MOST_VIEWERS,
+                        metavar='N', help='browsers at once by each of the two addresses: for '
+                                          'control, and for looking only')
+
+
+def _number_of_browsers(text: str) -> int:
+    if text.isascii() and text.isdigit() and 1 <= int(text) <= MANY_VIEWERS:
+        return int(text)
+    raise argparse.ArgumentTypeError(f"'{text}' is no number from 1 to {MANY_VIEWERS}")
+
+
+def given_tokens(options: argparse.Namespace) -> tuple[str, str]:
+    """Return the tokens for control and for looking; '' for those that are not given.
+
+    Raises:
+        OSError: a file cannot be read, or others can read it; its `filename` says which.
+    """
+    return (given_token(options.token_file, VARIABLE),
+            given_token(options.viewing_token_file, VIEWING_VARIABLE))
+
+
 @contextmanager
-def announced(program: str, address: str, token: str, what: str = 'the world') -> Iterator[None]:
-    """Print where a page is; where others could read the token, a page that leads there."""
-    if not token or not is_readable_by_others(sys.stderr):
-        sys.stderr.write(f'{program}: {what} is at {address}\n')
-        yield
-        return
-    with private_page(address) as page:
-        sys.stderr.write(f'{program}: {what} is at {address.partition("?")[0]}; {page} opens it, '
-                         'with the token, which others could read here\n')
+def announced(program: str, address: str, viewing_address: str) -> Iterator[None]:
+    """Print where a page is; where others could read tokens, files that lead there.
+
+    Args:
+        address: for control; viewing_address: for looking only, '' for none.
+    """
+    with ExitStack() as stack:
+        for what, one in (('the world is at', address), ('to look at it only:', viewing_address)):
+            place, _, token = one.partition('?')
+            if token and is_readable_by_others(sys.stderr):
+                page = stack.enter_context(private_page(one))
+                sys.stderr.write(f'{program}: {what} {place}; {page} opens it, with the token, '
+                                 'which others could read here\n')
+            elif one:
+                sys.stderr.write(f'{program}: {what} {one}\n')
         yield

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import NoReturn
 
-from .page_token import announced, given_token
+from .page_token import add_options, announced, given_tokens
 from .program import run
 from .web_browser import opened
 
@@ -27,11 +27,8 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument('file', help='a URDF, xacro, SDF or world file, or the name of a world: '
                                    'empty, room, rooms, maze, line, shapes')
     made.add_argument('arguments', nargs='*', metavar='NAME:=VALUE', help='arguments of xacro')
-    made.add_argument('--host', default='127.0.0.1',
-                      help='address to serve at; 0.0.0.0 is all of this machine')
+    add_options(made)
     made.add_argument('--port', type=int, default=0, help='0 for any that is free')
-    made.add_argument('--token-file', metavar='FILE', default='',
-                      help='has the token that the address ends with; only its owner can read it')
     made.add_argument('--paused', action='store_true', help='begin paused')
     made.add_argument('--no-open', action='store_true', help='print the address only')
     return made
@@ -54,11 +51,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from ..web import LOOPBACK, Site, WindowError
 
     try:
-        site = Site(options.host, options.port, given_token(options.token_file))
+        token, viewing_token = given_tokens(options)
+        site = Site(options.host, options.port, token, viewing_token=viewing_token,
+                    most_viewers=options.max_viewers)
     except WindowError as error:
         return _fail(str(error))
     except OSError as error:
-        return _fail(f"no token in '{options.token_file}': {error.strerror or error}")
+        return _fail(f"no token in '{error.filename}': {error.strerror or error}")
     try:
         file = open_file(options.file, values)
     except (SimError, OSError) as error:
@@ -70,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
              'not encrypted')
     with file.world as world, _until_terminated():
         viewer = Viewer(world, site, paused=options.paused)
-        with (announced(NAME, site.address, site.token),
+        with (announced(NAME, site.address, site.viewing_address),
               nullcontext() if options.no_open else opened(site.address)):
             viewer.serve_until_interrupted()
     return 0
