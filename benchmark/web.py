@@ -38,14 +38,16 @@ BALL = """<robot name="ball"><link name="body"><inertial><mass value="1"/><inert
 
 
 class Window:
-    """The process gzweb of a server."""
+    """The process gzweb of a server, with the addresses of its page."""
 
-    def __init__(self) -> None:
+    def __init__(self, *options: str) -> None:
         self._process = subprocess.Popen(
-            ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0'], stderr=subprocess.PIPE, text=True)
+            ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0', *options], stderr=subprocess.PIPE,
+            text=True)
         assert self._process.stderr is not None
         self.process = self._process.pid  # rosrun has become the program
         self.address = self._process.stderr.readline().split()[-1]
+        self.viewing_address = self._process.stderr.readline().split()[-1]
 
     def __enter__(self) -> Window:
         return self

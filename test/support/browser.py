@@ -42,6 +42,10 @@ class Browser:
         return self
 
     def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Leave."""
         self._connection.close()
 
     def send(self, message):
