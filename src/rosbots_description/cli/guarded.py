@@ -23,8 +23,10 @@ def guarded(work: Callable[[], int], abrupt: Callable[[bool], int]) -> int:
     received: list[int] = []
     answer, result = os.pipe()
     parent = os.getpid()
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)  # until they are passed on
     child = os.fork()
     if not child:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         os.setpgid(0, 0)
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
         if os.getppid() != parent:  # it has ended before that
@@ -40,6 +42,7 @@ def guarded(work: Callable[[], int], abrupt: Callable[[bool], int]) -> int:
             os.kill(child, number)
 
     before = {number: signal.signal(number, pass_on) for number in ENDING}
+    signal.pthread_sigmask(signal.SIG_SETMASK, mask)
     try:
         answered = os.read(answer, 1)  # nothing if the child ends without it
         os.waitpid(child, 0)
