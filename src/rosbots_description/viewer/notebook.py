@@ -2,6 +2,7 @@
 
 import html
 import json
+import sys
 import threading
 from typing import Any
 
@@ -100,8 +101,5 @@ def show(world: World, port: int = 0, height: int = 600) -> ShownViewer:
 
 def _shell() -> Any:  # noqa: ANN401  of IPython, which needs not be installed
     """Return the shell of the notebook that runs this; None elsewhere."""
-    try:
-        from IPython import get_ipython
-    except ImportError:
-        return None
-    return get_ipython()
+    ipython = sys.modules.get('IPython')  # a notebook has imported it
+    return None if ipython is None else ipython.get_ipython()

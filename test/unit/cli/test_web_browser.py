@@ -8,7 +8,7 @@ import sys
 import pytest
 from support.patience import wait_until
 
-from rosbots_description.cli.gzweb import VARIABLE, _told, given_token
+from rosbots_description.cli.page_token import VARIABLE, announced, given_token
 from rosbots_description.cli.web_browser import is_readable_by_others, opened
 
 ADDRESS = 'http://127.0.0.1:1/?token=secret&a=1'
@@ -100,7 +100,7 @@ def test_a_log_that_others_may_read_gets_no_token(tmp_path, monkeypatch, mode):
     with open(tmp_path / 'log', 'w+', encoding='utf-8') as log:
         os.chmod(log.name, mode)
         monkeypatch.setattr(sys, 'stderr', log)
-        with _told(ADDRESS, 'secret'):
+        with announced('gzweb', ADDRESS, ''):
             log.flush()
             said = (tmp_path / 'log').read_text(encoding='utf-8')
             assert ('secret' in said) == (mode == 0o600)
