@@ -1,5 +1,6 @@
 """Read a model from a file, an address or a text."""
 
+import logging
 import os
 from collections.abc import Iterable, Mapping
 from xml.sax.saxutils import escape
@@ -19,6 +20,8 @@ from ..resources import (
     read_file,
     root_tag,
 )
+
+logger = logging.getLogger(__name__)
 
 Paths = Iterable[str | os.PathLike[str]]
 Description = str | os.PathLike[str]
@@ -70,6 +73,9 @@ class Descriptions:
             ModelError: it cannot be read, or is not a model.
         """
         given = os.fspath(description)
+        if arguments and not given.endswith('.xacro'):
+            logger.warning('arguments are for xacro files only; %s are ignored',
+                           ', '.join(map(repr, arguments)))
         if given.startswith('model://'):
             given = f'<sdf version="1.7"><world name="w"><include><uri>{escape(given)}</uri>' \
                 '</include></world></sdf>'

@@ -38,6 +38,29 @@ def test_substitution_is_replaced_by_its_value(tmp_path, written, meant):
     assert f'<link name="{meant}"/>' in expand(tmp_path, body, given='by the caller')
 
 
+@pytest.mark.parametrize(('name', 'said'), [
+    ('lazer', "r.xacro: there is no xacro argument 'lazer'; did you mean 'laser'?"),
+    ('wings', "'wings'; there are 'laser', 'height', 'undeclared'"),
+    ('laser', ''),
+    ('height', ''),  # declared in an included file
+    ('undeclared', ''),  # but used
+])
+def test_argument_that_no_file_declares_is_a_warning_with_the_nearest_name(
+        tmp_path, caplog, name, said):
+    (tmp_path / 'inner.xacro').write_text(
+        f'{HEAD}<xacro:arg name="height" default="1"/></robot>', encoding='utf-8')
+    expand(tmp_path, '<xacro:arg name="laser" default="no"/><xacro:include filename="inner.xacro"/>'
+           '<link name="$(arg undeclared)"/>', **{'undeclared': 'a', name: 'x'})
+    assert said in caplog.text
+    assert len(caplog.records) == bool(said)
+
+
+def test_argument_may_be_a_number_or_a_truth_value(tmp_path):
+    body = '<xacro:arg name="a" default=""/><xacro:if value="$(arg a)"><link name="l"/></xacro:if>'
+    for value, is_there in ((True, True), (0, False), ('true', True)):
+        assert ('name="l"' in expand(tmp_path, body, a=value)) == is_there
+
+
 def test_include_is_relative_to_the_including_file(tmp_path):
     (tmp_path / 'inner.xacro').write_text(f'{HEAD}<link name="inner"/></robot>')
     for name in ('inner.xacro', '$(dirname)/inner.xacro'):

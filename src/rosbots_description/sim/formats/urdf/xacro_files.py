@@ -1,20 +1,44 @@
 """Expand xacro files with the module `xacro`, if it is installed; ROS is not needed."""
 
+import logging
 import os
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from types import ModuleType
 
-from ...core import ModelError
+from ...core import ModelError, suggestion
 from ...resources import FindPackage
 from ...xacro_module import import_xacro
+
+logger = logging.getLogger(__name__)
 
 _SUBSTITUTION = re.compile(r'\$\((find|arg|env|optenv|dirname|cwd)\b([^()]*)\)')
 
 
+class _Arguments(dict[str, str]):
+    """The arguments of a xacro file; `asked` has the names that the file declares or uses."""
+
+    def __init__(self, given: Mapping[str, str]) -> None:
+        super().__init__(given)
+        self.asked: dict[str, None] = {}
+
+    def __contains__(self, name: object) -> bool:
+        """Tell whether it has a value: asked for each <xacro:arg>."""
+        self.asked[str(name)] = None
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        """Return a value: asked for each $(arg NAME)."""
+        self.asked[name] = None
+        return super().__getitem__(name)
+
+
 def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPackage) -> str:
     """Return the URDF that a xacro file expands to.
+
+    An argument that neither the file nor its includes declare or use is a warning in the log.
 
     Args:
         path: of the file; its includes are searched beside it.
@@ -33,12 +57,18 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         ) from None
     resolve = xacro.eval_extension
     vars(xacro)['eval_extension'] = partial(_resolved, xacro, resolve, find_package, path)
+    known = _Arguments({name: str(value) for name, value in arguments.items()})
     try:
-        return str(xacro.process_file(path, mappings=dict(arguments)).toxml())
+        text = str(xacro.process_file(path, mappings=known).toxml())
     except Exception as error:  # whatever an expression in the file raises
         raise ModelError(f'{path}: xacro rejects it: {error}') from error
     finally:
         vars(xacro)['eval_extension'] = resolve
+    for name in arguments:
+        if name not in known.asked:
+            logger.warning("%s: there is no xacro argument '%s'%s", path, name,
+                           suggestion(name, known.asked))
+    return text
 
 
 def _resolved(
@@ -57,7 +87,9 @@ def _resolved(
     if kind == 'find':
         found = find_package(value)
     elif kind == 'arg':
-        found = xacro.substitution_args_context['arg'].get(value)
+        found = None
+        with suppress(KeyError):
+            found = xacro.substitution_args_context['arg'][value]
     elif kind == 'env':
         found = os.environ.get(value)
     elif kind == 'optenv':
