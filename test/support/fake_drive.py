@@ -50,7 +50,7 @@ def load_plugin(plugin_class, model, element):
     spec = PluginSpec('drive', 'libgazebo_ros_drive.so', element)
     plugin = plugin_class(model.world, model, spec)
     plugin.start()
-    model.plugins.append(plugin)
+    model.plugins[plugin.name] = plugin
     model.world.schedule.add(plugin)
     return plugin
 

@@ -94,14 +94,14 @@ def drive(
             latest[:] = reading.pose, (reading.twist.linear[0], reading.twist.angular[2])
 
         if model.plugins:
-            model.plugins[0].odometry.connect(on_odometry)
+            next(iter(model.plugins.values())).odometry.connect(on_odometry)
         world.run(one.settled)
         odometry_start = latest[0]
         start, yaw, samples, waiting = None, 0.0, [], list(commands)
         for k in range(round(duration * 1000) + 1):
             while waiting and k >= round(1000 * waiting[0][0]):
                 _, x, y, w = waiting.pop(0)
-                for plugin in model.plugins:
+                for plugin in model.plugins.values():
                     plugin.command(x, w, y)
             world.run(1)
             pose, ((vx, vy, _), (_, _, turning)) = model.state()

@@ -30,4 +30,4 @@ def spawn_robot(world, robot, x=0.0, yaw=0.0):
     """Spawn a recorded robot; return its model and its camera."""
     text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
     model = world.spawn(text, 'robot', Pose((x, 0.0, 0.0), from_rpy(0.0, 0.0, yaw)))
-    return model, model.sensors[0]
+    return model, next(iter(model.sensors.values()))

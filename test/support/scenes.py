@@ -136,7 +136,7 @@ def drive(
     place = Pose((0.0, 0.0, spec_height(spec)), from_rpy(0.0, 0.0, yaw))
     model = world.spawn(spec, 'robot', place)
     world.run(SETTLED)
-    model.plugins[0].command(speed, 0.0)
+    next(iter(model.plugins.values())).command(speed, 0.0)
     world.run(1000 * seconds)
     return model
 

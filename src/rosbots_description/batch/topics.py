@@ -59,7 +59,7 @@ class Topics:
 
 def _plugins(world: World) -> Iterable[ModelPlugin]:
     for model in world.models.values():
-        for plugin in model.plugins:
+        for plugin in model.plugins.values():
             if isinstance(plugin, ModelPlugin):
                 yield plugin
 

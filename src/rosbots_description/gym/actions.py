@@ -70,9 +70,10 @@ def _effort(world: World, joint: Joint) -> Command:
 
 
 def _commands(world: World, robot: Model, names: Sequence[str] | None) -> Iterator[Command]:
-    loaded = (one for plugin in robot.plugins for one in plugin.controllers.values())
+    plugins = robot.plugins.values()
+    loaded = (one for plugin in plugins for one in plugin.controllers.values())
     of_plugins = {one.name: one for one in (
-        *map(_of_plugin, robot.plugins), *map(_of_controller, loaded)) if one}
+        *map(_of_plugin, plugins), *map(_of_controller, loaded)) if one}
     if names is None:
         yield from of_plugins.values()
         return

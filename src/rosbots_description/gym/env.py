@@ -106,6 +106,10 @@ class SimEnv(gymnasium.Env[Observation, Any]):
                          'render_fps': max(1, round(1.0 / period))}
         self._ready = False
 
+    def __repr__(self) -> str:
+        """Return what Gymnasium calls it: its class, and its name there."""
+        return str(self)
+
     def _require_mode(self, render_mode: str | None) -> None:
         modes = self.metadata['render_modes']
         if render_mode is not None and render_mode not in modes:

@@ -50,7 +50,7 @@ def observed(robot: Model, names: Sequence[str] | None) -> list[Observed]:
     for name in names:
         if name in known:
             found.append(known[name])
-        elif name in {one.name for one in robot.sensors}:
+        elif name in robot.sensors:
             raise SimError(f"sensor '{name}' of model '{robot.name}' cannot be observed; what can "
                            f"be: {', '.join(known) or 'nothing'}")
         else:
@@ -61,21 +61,21 @@ def observed(robot: Model, names: Sequence[str] | None) -> list[Observed]:
 
 def forget(robot: Model) -> None:
     """Forget the readings that sensors have sent; until the next one they are read as they are."""
-    for sensor in robot.sensors:
+    for sensor in robot.sensors.values():
         if isinstance(sensor, Sensor):
             sensor.readings.latched = None
 
 
 def _all(robot: Model) -> Iterator[Observed]:
-    for plugin in robot.plugins:
+    for plugin in robot.plugins.values():
         if isinstance(plugin, Drive):
             yield Observed('odometry', _ODOMETRY, partial(_odometry, plugin))
             break
-    for sensor in robot.sensors:
+    for name, sensor in robot.sensors.items():
         if isinstance(sensor, Sensor):
             for kind, make in _SENSORS.items():
                 if sensor.spec.type == kind:
-                    yield make(sensor)
+                    yield make(sensor)._replace(name=name)
 
 
 _ODOMETRY = box(6, (_MOST, _MOST, math.pi, _MOST, _MOST, _MOST))

@@ -110,7 +110,8 @@ def _are_shifts(numbers: list[float]) -> bool:
 
 
 def _noisy(robot: Model) -> list[Sensor]:
-    return [one for one in robot.sensors if isinstance(one, Sensor) and one.is_noisy]
+    return [one for one in robot.sensors.values()
+            if isinstance(one, Sensor) and one.is_noisy]
 
 
 def _brighter(colour: Colour, factor: float) -> Colour:

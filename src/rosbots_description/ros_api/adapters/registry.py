@@ -117,4 +117,4 @@ class Adapters:
 
 def _with_topics(model: Model) -> list[ModelPlugin]:
     """Return the plugins of a model that may have topics."""
-    return [plugin for plugin in model.plugins if isinstance(plugin, ModelPlugin)]
+    return [plugin for plugin in model.plugins.values() if isinstance(plugin, ModelPlugin)]

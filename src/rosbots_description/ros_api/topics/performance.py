@@ -97,7 +97,8 @@ def advertise_performance(server: Server) -> None:
         message = PerformanceMetrics(real_time_factor=factor.update(clock.now, now))
         models = server.world.models.values()
         message.sensors = rates.update(
-            server.world.name, (sensor for model in models for sensor in model.sensors), now)
+            server.world.name, (sensor for model in models
+            for sensor in model.sensors.values()), now)
         message.header.stamp = stamp(clock.now_ns)
         if publisher.get_num_connections() > 0:
             publisher.publish(message)

@@ -303,7 +303,7 @@ class SimulatedRobot:
     def _find_mimics(self) -> Iterator[MimicJoint]:
         """Yield the joints that follow others, and that nothing else moves."""
         joints = self.model.joints
-        of_plugins = {plugin.follower for plugin in self.model.plugins
+        of_plugins = {plugin.follower for plugin in self.model.plugins.values()
                       if isinstance(plugin, MimicJointPlugin)}
         for name, described in self.control.joints.items():
             is_free = name in joints and name not in self.joints and name not in of_plugins

@@ -45,6 +45,12 @@ class ControllerManager:
         self._running: tuple[Controller, ...] = ()
         self._wake = wake
 
+    def __repr__(self) -> str:
+        """Return its robot, and its controllers with their states."""
+        loaded = ', '.join(f'{one.name} ({one.state})' for one in self.controllers.values())
+        return f'<{type(self).__name__} of {self.robot.model.name} with ' \
+            f'{loaded or "no controller"}>'
+
     @staticmethod
     def types() -> Sequence[tuple[str, str]]:
         """Return the types that can be loaded, each with its base class, sorted."""

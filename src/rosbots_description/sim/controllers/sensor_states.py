@@ -62,13 +62,13 @@ class SensorController(Controller):
             self.output(name)
 
     def _find_imus(self) -> Iterator[tuple[str, Source]]:
-        sensors: list[Any] = [*self.model.sensors]
+        sensors: list[Any] = [*self.model.sensors.values()]
         for sensor in sensors:
             if sensor.spec.type == 'imu' and sensor.measures:
                 yield sensor.name, Source(sensor.link.name, sensor.readings, _Newest())
 
     def _find_wrenches(self) -> Iterator[tuple[str, Source]]:
-        for plugin in self.model.plugins:
+        for plugin in self.model.plugins.values():
             if isinstance(plugin, ModelPlugin) and 'wrench' in plugin.outputs:
                 yield plugin.spec.name, Source(
                     plugin.params.string('frame'), plugin.outputs['wrench'], _Newest())

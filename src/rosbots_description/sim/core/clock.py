@@ -16,6 +16,10 @@ class SimClock:
         self._origin_ns = 0  # time at which the current step size took effect
         self._origin_steps = 0
 
+    def __repr__(self) -> str:
+        """Return its time and step count."""
+        return f'<{type(self).__name__} at {self.now} s, step {self.steps}>'
+
     @property
     def now_ns(self) -> int:
         """Return the simulated time [ns]."""

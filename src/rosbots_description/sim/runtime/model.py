@@ -102,6 +102,10 @@ class CollisionFrame:
         self.scoped_name = f'{link.scoped_name}::{spec.name}'
         self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
 
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.scoped_name}>'
+
     @property
     def pose(self) -> Pose:
         """Return the pose of the shape in the world."""
@@ -175,8 +179,10 @@ class Joint:
 class Model:
     """A model in the world. Its frame moves with its first link, the canonical one.
 
-    `links` and `joints` (the movable ones) are by name, in the order of the description; `plugins`
-    are the loaded ones, and `left_out` lists the parts that were left out.
+    `links`, `joints` (the movable ones), `plugins` and `sensors` are dicts by name, in the order of
+    the description. Plugins are those that were loaded, also in sensors. Where several have the
+    same name, the first has it as its key; the key of another begins with its link and sensor, or
+    ends with a number. `left_out` lists the parts that were left out.
     """
 
     def __init__(
@@ -196,8 +202,8 @@ class Model:
             for joint in spec.joints
             if joint.name in self.body.joints
         }
-        self.plugins: list[Plugin] = []  # those in sensors, too
-        self.sensors: list[SensorLife] = []
+        self.plugins: dict[str, Plugin] = {}
+        self.sensors: dict[str, SensorLife] = {}
         self.left_out = list(spec.left_out)  # parts that were left out, each in a few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)
@@ -354,13 +360,12 @@ class Model:
             NotFoundError: the model has no such plugin, or it was left out as it was loaded.
         """
         libraries = (library_name(name), library_name(f'gazebo_ros_{name}'))
-        for plugin in self.plugins:
-            if plugin.spec.name == name:
-                return plugin
-        for plugin in self.plugins:
+        if name in self.plugins:
+            return self.plugins[name]
+        for plugin in self.plugins.values():
             if library_name(plugin.spec.filename) in libraries:
                 return plugin
-        known = ', '.join(f"'{one.spec.name}' ({one.spec.filename})" for one in self.plugins)
+        known = ', '.join(f"'{key}' ({one.spec.filename})" for key, one in self.plugins.items())
         raise NotFoundError(
             f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}")
 
@@ -370,7 +375,8 @@ class Model:
         Raises:
             NotFoundError: no such controller is loaded.
         """
-        loaded = {own: one for plugin in self.plugins for own, one in plugin.controllers.items()}
+        loaded = {own: one for plugin in self.plugins.values()
+                  for own, one in plugin.controllers.items()}
         if name not in loaded:
             raise NotFoundError(f"model '{self.name}' has no controller '{name}'; its controllers: "
                                 f"{', '.join(loaded) or 'none'}")
@@ -379,7 +385,7 @@ class Model:
     @property
     def parts(self) -> list[ModelPart]:
         """Return plugins and sensors, as they were loaded."""
-        return [*self.plugins, *self.sensors]
+        return [*self.plugins.values(), *self.sensors.values()]
 
     def sensor(self, name: str) -> Any:  # noqa: ANN401  each type has its own attributes
         """Return the sensor of that name, or `LINK::NAME`; the first, if there are several.
@@ -387,10 +393,13 @@ class Model:
         Raises:
             NotFoundError: the model has no such sensor, or it was left out as it was loaded.
         """
-        for sensor in self.sensors:
-            if name in (sensor.name, sensor.scoped_name.removeprefix(f'{self.name}::')):
-                return sensor
-        known = ', '.join(one.scoped_name.removeprefix(f'{self.name}::') for one in self.sensors)
+        if name in self.sensors:
+            return self.sensors[name]
+        inner = {one.scoped_name.removeprefix(f'{self.name}::'): one
+                 for one in reversed(self.sensors.values())}
+        if name in inner:
+            return inner[name]
+        known = ', '.join(reversed(inner))
         raise NotFoundError(
             f"model '{self.name}' has no sensor '{name}'; its sensors: {known or 'none'}")
 

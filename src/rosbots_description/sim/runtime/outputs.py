@@ -46,6 +46,12 @@ class Output(Generic[Reading]):
         self.latched: Reading | None = None  # see `newest`
         self.wanted = False
 
+    def __repr__(self) -> str:
+        """Return how many read it, and whether it stores the newest reading."""
+        readers = f'{self.readers} reader{"" if self.readers == 1 else "s"}'
+        latched = ', latched' if self.is_read_by(self._latch) else ''
+        return f'<{type(self).__name__} with {readers}{latched}>'
+
     @property
     def readers(self) -> int:
         """Return how many there are."""

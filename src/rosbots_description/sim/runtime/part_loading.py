@@ -1,6 +1,8 @@
 """Load the plugins and sensors of a model that is being spawned."""
 
 import logging
+from collections.abc import Collection
+from itertools import chain, count
 from typing import TYPE_CHECKING
 
 from ..core import SimError, shortened
@@ -56,26 +58,37 @@ class PartLoader:
         sensor = cls(self._world, link, spec)
         if not self._start(sensor, where, called):
             return
-        model.sensors.append(sensor)
+        scope = f'{link.name}::{sensor.name}'
+        model.sensors[free_key(model.sensors, sensor.name, scope)] = sensor
         for inner in spec.plugins:
             plugin_cls = sensor_plugin_class(inner.filename)
             plugin = None if plugin_cls is None else plugin_cls(sensor, inner)
-            self._start_plugin(inner, plugin, where, f'{called} ({inner.filename})')
+            self._start_plugin(inner, plugin, where, f'{called} ({inner.filename})', scope)
         if not (spec.plugins or sensor.measures):
             logger.warning('%s: sensors of this type are not simulated yet; see %s', where, PAGE)
             model.left_out.append(called)
 
     def _start_plugin(
-        self, spec: PluginSpec, plugin: Plugin | None, where: str, called: str
+        self, spec: PluginSpec, plugin: Plugin | None, where: str, called: str, scope: str = ''
     ) -> None:
-        """Load a plugin; None stands for one whose library is not here."""
+        """Load a plugin; None stands for one whose library is not here.
+
+        Args:
+            spec: of the plugin, as the rest.
+            plugin: in the model, or in a sensor.
+            where: it is, for messages.
+            called: what it is, for messages.
+            scope: of the sensor, LINK::SENSOR; '' for a plugin in the model.
+        """
         if plugin is None:
             known = library_name(spec.filename) in missing_libraries()
             logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
                        where, library_remark(spec.filename), PAGE)
             self._model.left_out.append(called)
         elif self._start(plugin, where, called):
-            self._model.plugins.append(plugin)
+            plugins = self._model.plugins
+            inner = f'{scope}::{plugin.name}' if scope else plugin.name
+            plugins[free_key(plugins, plugin.name, inner)] = plugin
 
     def _start(self, part: ModelPart, where: str, called: str) -> bool:
         """Start and schedule a plugin or sensor; after an error the model is spawned without it."""
@@ -87,3 +100,11 @@ class PartLoader:
             return False
         self._world.schedule.add(part)
         return True
+
+
+def free_key(taken: Collection[str], name: str, scoped_name: str) -> str:
+    """Return the name, or the scoped name, or this with a number: the first that is not taken."""
+    if name not in taken:
+        return name
+    numbered = (f'{scoped_name}_{number}' for number in count(2))
+    return next(key for key in chain((scoped_name,), numbered) if key not in taken)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..description import PluginSpec
+from ..plugin_registry import library_name
 from .model_part import ModelPart
 
 
@@ -14,7 +15,12 @@ class Plugin(ModelPart):
 
     def __repr__(self) -> str:
         """Return its kind and name."""
-        return f'<{type(self).__name__} {self.spec.name}>'
+        return f'<{type(self).__name__} {self.name}>'
+
+    @property
+    def name(self) -> str:
+        """Return the name in its <plugin>; the file name of its library if there is none."""
+        return self.spec.name or library_name(self.spec.filename)
 
     @property
     def controllers(self) -> Mapping[str, Any]:

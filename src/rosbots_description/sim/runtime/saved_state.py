@@ -20,7 +20,7 @@ class SavedState:
         """Save the state of a world between two runs, and that of its own hooks."""
         self._world = world
         self._models = tuple(world.models.values())
-        self._clock = dict(vars(world.clock))
+        self._clock, self._time = dict(vars(world.clock)), world.clock.now
         self._physics, self._lights, self._paused = world.physics, dict(world.lights), world.paused
         self._seed = world.seed
         self._snapshot = world.engine.snapshot()
@@ -28,6 +28,10 @@ class SavedState:
         owners = (*hooks, *self._components())
         self._hooks = [(owner, self._copied(vars(owner))) for owner in owners]
         self._newest = [(output, output.latched) for output in self._outputs()]
+
+    def __repr__(self) -> str:
+        """Return its time and models."""
+        return f'<{type(self).__name__} at {self._time} s with {_listed(self._models)}>'
 
     def restore(self, world: 'World') -> None:
         """Restore this state.

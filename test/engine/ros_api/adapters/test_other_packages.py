@@ -56,7 +56,7 @@ def wire(monkeypatch):
 ])
 def test_topics_frames_and_rates_are_those_of_upstream(wire, text, expected, services):
     with closing(World.empty()) as world:
-        (plugin,) = world.spawn(ROBOT.format(text), 'r', z=1.0).plugins
+        (plugin,) = world.spawn(ROBOT.format(text), 'r', z=1.0).plugins.values()
         joined = wire.join(plugin)
         joined.server.loop.call = lambda command: command()
         for topic in wire.publishers.values():

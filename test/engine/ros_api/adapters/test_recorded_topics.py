@@ -70,7 +70,7 @@ def spawn(world, wire, robot, namespace='/', old='', new='', name='bot'):
         assert old in text
         text = text.replace(old, new)
     model = world.spawn(load_urdf(text, name, robot_namespace=namespace)[0], name)
-    return [wire.join(plugin) for plugin in model.plugins]
+    return [wire.join(plugin) for plugin in model.plugins.values()]
 
 
 @pytest.mark.parametrize(('robot', 'edit', 'namespace', 'topics', 'services'), [

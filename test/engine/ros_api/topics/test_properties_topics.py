@@ -37,7 +37,7 @@ def listeners(bench, monkeypatch):
     wire = Wire(monkeypatch)
     monkeypatch.setattr(state_commands, 'rospy', wire)
     state_commands.subscribe_states(bench.server)
-    (drive,) = bench.world.models['rosbots'].plugins
+    (drive,) = bench.world.models['rosbots'].plugins.values()
     wire.join(drive)
     heard = {name.rpartition('/')[2].lstrip('~'): take for name, take in wire.subscribers.items()}
     assert sorted(heard) == sorted(KINDS)

@@ -81,7 +81,7 @@ def test_controllers_run_once_per_period(world):
 
 def test_another_simulation_library_is_refused(world, caplog):
     model = world.spawn(arm(change=plugin_tags('<robotSimType>my/Sim</robotSimType>')), name='arm')
-    assert model.plugins == []
+    assert model.plugins == {}
     assert '<robotSimType> is my/Sim, a library that is not available here' in caplog.text
 
 

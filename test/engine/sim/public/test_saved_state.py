@@ -27,7 +27,7 @@ def digest(world, steps=1500, chunk=70):
         world.run(chunk)
         for model in world.models.values():
             found.update(repr((world.time, model.state(), model.joint_states)).encode())
-            for plugin in model.plugins:
+            for plugin in model.plugins.values():
                 for output in plugin.outputs.values():
                     found.update(repr(output.latched).encode())
     return found.hexdigest()

@@ -73,8 +73,7 @@ def test_a_robot_drives_on_where_it_was_saved(name, tmp_path, caplog):
             errors = [record for record in caplog.records if record.levelno >= logging.ERROR]
             assert errors == []
             require_same(world, other)
-            assert [plugin.spec.name for plugin in other.model('rosbots').plugins] == [
-                plugin.spec.name for plugin in robot.plugins]
+            assert [*other.model('rosbots').plugins] == [*robot.plugins]
             other.model('rosbots').plugin('diff_drive').command(0.6, 0.4)
             world.run(AHEAD)
             other.run(AHEAD)

@@ -31,7 +31,7 @@ def test_each_is_spawned_driven_and_sensed_without_an_error(number, caplog):
             robots[k] = world.spawn(
                 urdf(k), name=f'r{k}', x=FIRST, y=APART * len(robots), z=0.1)
         for robot in robots.values():
-            for part in (*robot.plugins, *robot.sensors):
+            for part in robot.parts:
                 for output in outputs(part):
                     output.latch()
         world.run(seconds=0.2)
@@ -43,7 +43,7 @@ def test_each_is_spawned_driven_and_sensed_without_an_error(number, caplog):
             assert robot.plugin('drive').odometry.newest is not None, k
             way = math.dist(robot.pose.position, starts[k])
             assert 0.05 < way < 0.8, f'robot {k} has moved {way:.2f} m'
-            for sensor in robot.sensors:
+            for sensor in robot.sensors.values():
                 if sensor.measures:
                     sensor.read()
     errors = [record.getMessage() for record in caplog.records

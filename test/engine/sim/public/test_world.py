@@ -42,7 +42,7 @@ def test_robot_moves_as_in_the_world_of_the_server(world):
     world.run(seconds=1.5)
     with empty_world() as inner:
         other = inner.spawn(robot_spec(), 'rosbots', Pose((0.0, 0.0, 0.5)))
-        other.plugins[0].command(0.5, 0.2)
+        next(iter(other.plugins.values())).command(0.5, 0.2)
         inner.run(1500)
         assert (robot.name, robot.state()) == ('rosbots', other.state())
 
@@ -136,7 +136,20 @@ def test_parts_print_as_their_kind_and_name(world):
     assert repr(robot) == '<Model robot>'
     assert repr([*robot.links.values()][:1]) == '[<Link robot::base_footprint>]'
     assert repr(robot.joint('wheel_left_joint')) == '<Joint robot::wheel_left_joint>'
-    assert repr(robot.plugins) == '[<DiffDrive differential_drive_controller>]'
+    drive = 'differential_drive_controller'
+    assert repr(robot.plugins) == f"{{'{drive}': <DiffDrive {drive}>}}"
+    collision = next(iter(robot.link('wheel_left_link').collisions.values()))
+    assert repr(collision) == f'<CollisionFrame robot::wheel_left_link::{collision.name}>'
+
+
+def test_outputs_states_and_clock_print_what_they_hold(world):
+    odometry = world.spawn(XACRO, 'robot').plugin('diff_drive').odometry
+    assert repr(odometry) == '<Output with 0 readers>'
+    odometry.latch()
+    assert repr(odometry) == '<Output with 1 reader, latched>'
+    world.run(3)
+    assert repr(world.clock) == '<SimClock at 0.003 s, step 3>'
+    assert repr(world.save_state()) == '<SavedState at 0.003 s with ground_plane, robot>'
 
 
 def test_time_advances_by_steps_and_by_seconds():
@@ -157,7 +170,7 @@ def test_links_joints_and_plugins_are_found_by_name_or_the_error_lists_them(worl
     robot = world.spawn(XACRO, 'robot', z=0.5)
     assert robot.link('robot::wheel_left_link') is robot.link('wheel_left_link')
     assert robot.joint('robot::wheel_left_joint') is robot.joint('wheel_left_joint')
-    (plugin,) = robot.plugins
+    (plugin,) = robot.plugins.values()
     for name in ('differential_drive_controller', 'diff_drive', 'libgazebo_ros_diff_drive.so',
                  'gazebo_ros_diff_drive'):
         assert robot.plugin(name) is plugin
@@ -166,6 +179,43 @@ def test_links_joints_and_plugins_are_found_by_name_or_the_error_lists_them(worl
         with pytest.raises(NotFoundError) as raised:
             find('nothing')
         assert known in str(raised.value)
+
+
+def test_models_links_joints_plugins_and_sensors_are_dicts_by_name(world):
+    robot = world.spawn(XACRO, 'robot', z=0.5, arguments={'laser': 'true', 'imu': 'true'})
+    assert list(robot.sensors) == ['imu', 'laser']
+    assert list(robot.plugins) == [
+        'differential_drive_controller', 'imu_controller', 'laser_controller']
+    for found, find in ((world.models, world.model), (robot.links, robot.link),
+                        (robot.joints, robot.joint), (robot.plugins, robot.plugin),
+                        (robot.sensors, robot.sensor)):
+        assert found
+        for name, one in found.items():
+            assert one is find(name)
+            assert one.name == name
+
+
+def test_plugins_and_sensors_of_one_name_have_different_keys(world):
+    push = '<plugin name="{}" filename="libgazebo_ros_force.so"><bodyName>b</bodyName>' \
+        '<topicName>t</topicName></plugin>'
+    inner = '<plugin name="push" filename="libgazebo_ros_bumper.so"/>'
+    contact = '<sensor name="feel" type="contact">{}<contact><collision>c</collision></contact>' \
+        '</sensor>'
+    link = '<link name="{}"><collision name="c"><geometry><sphere><radius>0.1</radius></sphere>' \
+        '</geometry></collision>{}</link>'
+    model = world.spawn(
+        '<sdf version="1.6"><model name="m">' + link.format('a', contact.format(inner))
+        + link.format('b', contact.format('')) + 3 * push.format('push') + push.format('')
+        + '</model></sdf>')
+    assert [*model.sensors] == ['feel', 'b::feel']
+    assert [*model.plugins] == [
+        'push', 'push_2', 'push_3', 'libgazebo_ros_force.so', 'a::feel::push']
+    assert len({*model.plugins.values()}) == 5
+    for key, plugin in model.plugins.items():
+        assert model.plugin(key) is plugin
+    for key, sensor in model.sensors.items():
+        assert model.sensor(key) is sensor
+    assert model.sensor('a::feel') is model.sensors['feel']
 
 
 def test_joint_states_are_those_of_the_joints(world):

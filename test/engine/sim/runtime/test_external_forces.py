@@ -191,7 +191,7 @@ def test_model_keeps_its_motion_when_its_description_changes():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(2500)
-        model.plugins[0].command(0.5, 0.0)
+        next(iter(model.plugins.values())).command(0.5, 0.0)
         world.run(2000)
         before, joint = model.state(), model.joint('wheel_left_joint').state()
         model.respecify(model.spec)

@@ -14,7 +14,7 @@ def drive_and_hash(world, model):
     """Return a hash of all poses of a drive."""
     digest = hashlib.sha256()
     world.run(1000)
-    model.plugins[0].command(0.5, 0.5)
+    next(iter(model.plugins.values())).command(0.5, 0.5)
     for _ in range(50):
         world.run(20)
         digest.update(repr(model.state()).encode())
@@ -29,12 +29,12 @@ def fresh_drive():
 def test_run_in_parts_is_identical_to_a_single_run():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        model.plugins[0].command(0.3, 0.2)
+        next(iter(model.plugins.values())).command(0.3, 0.2)
         world.run(1500)
         at_once = model.state()
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        model.plugins[0].command(0.3, 0.2)
+        next(iter(model.plugins.values())).command(0.3, 0.2)
         for _ in range(500):
             world.run(3)
         assert model.state() == at_once
@@ -48,7 +48,7 @@ def test_readers_of_outputs_do_not_change_the_motion():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         found = []
-        for output in model.plugins[0].outputs.values():
+        for output in next(iter(model.plugins.values())).outputs.values():
             output.connect(found.append)
         assert drive_and_hash(world, model) == fresh_drive()
         assert len(found) > 2 * 200  # of 2 s at 100 Hz

@@ -64,7 +64,7 @@ def test_reset_world_resets_poses_and_keeps_time_and_joint_angles():
     with empty_world() as world:
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.run(SETTLED)
-        model.plugins[0].command(0.5, 0.0)
+        next(iter(model.plugins.values())).command(0.5, 0.0)
         world.run(2000)
         angle = model.joint('wheel_left_joint').position
         world.reset_world()
@@ -86,7 +86,7 @@ def test_repeated_spawns_and_deletions_do_not_leak_memory():
         for cycle in range(CYCLES):
             model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
             if cycle % 2:
-                model.plugins[0].command(0.5, 0.5)
+                next(iter(model.plugins.values())).command(0.5, 0.5)
             world.run(30)
             world.delete('rosbots')
             if cycle == 20:
@@ -171,7 +171,7 @@ def test_model_is_spawned_without_an_unknown_plugin(caplog):
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
     with empty_world() as world:
         model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (plugin,)}), 'b', Pose())
-        assert model.plugins == []
+        assert model.plugins == {}
         assert model.left_out == ["plugin 'libnope.so'"]
     assert caplog.messages == [
         "model 'b', plugin 'p': unknown library 'libnope.so'; nothing is loaded "
@@ -195,7 +195,7 @@ def test_model_is_spawned_without_a_failing_plugin(caplog):
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
     with empty_world() as world:
         model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (drive,)}), 'b', Pose())
-        assert model.plugins == []
+        assert model.plugins == {}
         world.run(10)
     assert "couldn't get wheel hinge joint named left_joint" in caplog.text
 
@@ -210,7 +210,7 @@ def test_failing_plugin_does_not_set_motors():
     broken = replace(drive, element=replace(drive.element, children=tags))
     with empty_world() as world:
         model = world.spawn(replace(spec, plugins=(broken,)), 'rosbots', SPAWN_POSE)
-        assert model.plugins == []
+        assert model.plugins == {}
         assert model.body.motors['wheel_left_joint'] == (0.0, 0.0)
 
 

@@ -102,7 +102,7 @@ def test_walls_of_the_maze_stop_the_robot(world):
     populate(world, own('maze'))
     robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
     world.run(SETTLED)
-    robot.plugins[0].command(1.0, 0.0)
+    next(iter(robot.plugins.values())).command(1.0, 0.0)
     world.run(10000)  # far longer than to the first wall, 3 m ahead
     assert 2.0 < robot.pose.position[0] < 3.0
 
@@ -186,7 +186,7 @@ def test_wheels_on_a_fixed_stand_turn(world):
       <rightJoint>right_joint</rightJoint><wheelSeparation>0.4</wheelSeparation>
       <wheelDiameter>0.2</wheelDiameter><wheelTorque>100</wheelTorque></plugin></model>''')
     stand = world.models['stand']
-    stand.plugins[0].command(0.5, 0.0)
+    next(iter(stand.plugins.values())).command(0.5, 0.0)
     world.run(1000)
     for joint in stand.joints.values():
         assert abs(joint.velocity) == pytest.approx(5.0, rel=0.1)

@@ -32,7 +32,7 @@ def spawn_all(world, robots, are_read=True):
         text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text('utf-8')
         model = world.spawn(load_urdf(text, name, robot_namespace='/')[0], name,
                             y=3.0 * (number - len(robots) // 2), z=0.02)
-        for plugin in model.plugins:
+        for plugin in model.plugins.values():
             if hasattr(plugin, 'target'):
                 plugin.command(0.4, 0.3)
             for output, readings in plugin.outputs.items() if are_read else ():
@@ -122,7 +122,7 @@ def test_reset_of_the_world_stops_a_diff_drive_and_keeps_its_steps(world):
     found.clear()
     world.run(100)
     assert found[0][1] == 167  # the fifth of 30 Hz
-    assert world.models['burger'].plugins[0].target == (0.0, 0.0, 0.0)
+    assert next(iter(world.models['burger'].plugins.values())).target == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize('is_read', [True, False])

@@ -30,7 +30,7 @@ def spawn(world, robot, old='', new=''):
     assert old in text
     model = world.spawn(load_urdf(text.replace(old, new, 1), 'bot')[0], 'bot')
     times = []
-    for plugin in model.plugins:
+    for plugin in model.plugins.values():
         for name, output in plugin.outputs.items():
             if name in ('scan', 'imu', 'contacts', 'wrench'):
                 output.connect(lambda _: times.append(world.clock.now_ns // 10**6))
@@ -158,10 +158,10 @@ def test_sum_of_all_rays_is_limited_until_models_are_deleted(world, caplog):
 
 def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(world):
     models = spawn_lasers(world, range(4), 100_000)
-    fans = [weakref.ref(model.sensors[0].fan) for model in models]
+    fans = [weakref.ref(next(iter(model.sensors.values())).fan) for model in models]
     assert len(set(fans)) == 1
     for model in models:
-        model.sensors[0].read()
+        next(iter(model.sensors.values())).read()
     gc.disable()  # no cycle may keep megabytes
     try:
         for number in range(4):
@@ -174,7 +174,7 @@ def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(world):
 
 def test_deleted_models_are_referenced_by_no_ray_scene(world):
     models = [weakref.ref(one) for one in spawn_lasers(world, range(2), 720)]
-    models[0]().sensors[0].read()
+    next(iter(models[0]().sensors.values())).read()
     for number in range(2):
         world.delete(f'bot{number}')
     gc.collect()

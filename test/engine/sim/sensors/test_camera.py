@@ -155,7 +155,7 @@ def test_cameras_of_a_multicamera_have_their_own_poses(scene):
 
 
 def test_16_bit_image_matches_the_8_bit_one_and_the_recorded_mean(scene):
-    camera = scene.spawn(robot_with('>R8G8B8<', '>L16<')).sensors[0]
+    camera = next(iter(scene.spawn(robot_with('>R8G8B8<', '>L16<')).sensors.values()))
     images = []
     plugin_of(camera).outputs['image'].connect(images.append)
     plugin_of(camera).process(camera.read())
@@ -173,7 +173,7 @@ def test_16_bit_image_matches_the_8_bit_one_and_the_recorded_mean(scene):
 ])
 def test_image_rate_is_the_lesser_of_sensor_and_plugin(scene, old, new, times):
     found = []
-    camera = scene.spawn(robot_with(old, new)).sensors[0]
+    camera = next(iter(scene.spawn(robot_with(old, new)).sensors.values()))
     plugin_of(camera).outputs['image'].connect(lambda image: found.append(image.stamp_ns // 10**6))
     scene.run(seconds=0.41)
     assert found[:4] == times
@@ -226,7 +226,7 @@ def test_numbers_have_six_digits_as_gazebos_sensors_read_them():
         camera = world.spawn(
             '<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" type="camera">'
             '<camera><horizontal_fov>1.3962634</horizontal_fov><image><width>800</width>'
-            '<height>800</height></image></camera></sensor></link></model></sdf>', 'm').sensors[0]
+            '<height>800</height></image></camera></sensor></link></model></sdf>', 'm').sensor('s')
     assert camera.cameras[0].lens.focal_length == pytest.approx(476.7030836014194, abs=1e-12)
 
 
@@ -271,7 +271,7 @@ def test_millimetres_are_rounded_down_and_none_is_zero(scene):
     """As recorded but for 21 pixels, which are 1 mm off there, too."""
     text = (ROBOTS / 'openni_kinect.urdf').read_text(encoding='utf-8').replace(
         '<pointCloudCutoff>', '<useDepth16UC1Format>true</useDepth16UC1Format><pointCloudCutoff>')
-    depths, kind, _ = depths_of(scene.spawn(text).sensors[0], '<u2')
+    depths, kind, _ = depths_of(next(iter(scene.spawn(text).sensors.values())), '<u2')
     assert kind[:2] == ('16UC1', 640)
     expected = np.nan_to_num(recorded_depths() * np.float32(1000.0)).astype(int)
     assert np.abs(depths - expected).max() <= 1
@@ -287,7 +287,7 @@ def test_depth_of_a_wall_is_constant(scene):
                 '</geometry></visual></link></model></sdf>')
     text = (ROBOTS / 'openni_kinect.urdf').read_text(encoding='utf-8').replace(
         'xyz="0.2 0 0.4" rpy="0 0.1 0"', 'xyz="0 0 0.75" rpy="0 0 0"')
-    depths, _, _ = depths_of(scene.spawn(text).sensors[0])
+    depths, _, _ = depths_of(next(iter(scene.spawn(text).sensors.values())))
     assert np.isnan(depths).sum() == np.isnan(depths[:30]).sum() == 9600
     assert depths[30:236] == pytest.approx(2.0, abs=DEPTH)
     assert depths[-1] == pytest.approx(PLANE_LOWEST, abs=DEPTH)
@@ -330,7 +330,7 @@ def test_triggered_camera_takes_one_image_for_each_trigger(scene, robot, plugin,
     text = (FILES.parent / 'robots' / f'{robot}.urdf').read_text(encoding='utf-8')
     name = plugin.removeprefix('triggered_')
     model = scene.spawn(text.replace(f'libgazebo_ros_{name}.so', f'libgazebo_ros_{plugin}.so'), 'm')
-    camera = plugin_of(model.sensors[0])
+    camera = plugin_of(next(iter(model.sensors.values())))
     camera.trigger()  # nobody reads
     found = []
     camera.outputs[output].connect(lambda image: found.append(image.stamp_ns // 1_000_000))
@@ -512,7 +512,7 @@ def test_rate_of_zero_or_above_that_of_the_steps_is_every_step(rate):
             '<sdf version="1.6"><model name="m"><static>1</static><link name="l"><sensor name="s" '
             f'type="camera"><update_rate>{rate}</update_rate><camera/></sensor></link></model>'
             '</sdf>', 'm')
-        taken = stamps(model.sensors[0])
+        taken = stamps(next(iter(model.sensors.values())))
         world.run(steps=5)
         assert [stamp // 1_000_000 for stamp, _ in taken] == [1, 2, 3, 4, 5]
 
@@ -525,7 +525,7 @@ def test_smallest_and_largest_images_are_rendered():
                 '<link name="l"><sensor name="s" type="camera"><camera><image>'
                 f'<width>{size}</width><height>{size}</height></image></camera></sensor></link>'
                 '</model></sdf>', 'm')
-            assert model.sensors[0].read().pixels.shape == (size, size, 3)
+            assert next(iter(model.sensors.values())).read().pixels.shape == (size, size, 3)
 
 
 def test_robot_can_be_deleted_while_its_image_is_rendered(scene):
@@ -542,7 +542,8 @@ def test_robot_can_be_deleted_while_its_image_is_rendered(scene):
 def test_the_bytes_of_bgr8_are_in_its_order(scene, robot):
     """The recorded picture of each, decoded as bgr8, is that of the camera in rgb8."""
     text = (ROBOTS / 'camera_BGR8.urdf').read_text(encoding='utf-8')
-    camera = scene.spawn(text.replace('BGR8', robot.removeprefix('camera_'))).sensors[0]
+    model = scene.spawn(text.replace('BGR8', robot.removeprefix('camera_')))
+    camera = next(iter(model.sensors.values()))
     seen = camera.read().pixels[:, :, ::-1].astype(int)
     away = np.abs(seen - recorded_picture('camera_320')).max(axis=2)
     assert (away > LEVELS).mean() < EDGES
@@ -596,7 +597,7 @@ def test_texture_has_the_right_orientation(tmp_path):
         eye = world.spawn(
             '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 1 0 0 0</pose><link '
             'name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>', 'm')
-        seen = eye.sensors[0].read().pixels.astype(int)
+        seen = next(iter(eye.sensors.values())).read().pixels.astype(int)
     left, right, upper, lower = 120, 200, 80, 160  # [pixels] within the quarters of the square
     assert [int(seen[row, column].argmax()) for row, column in (
         (upper, right), (upper, left), (lower, right))] == [0, 1, 2]
@@ -622,7 +623,7 @@ def test_an_image_of_a_script_lies_on_the_ground_with_its_top_along_y(tmp_path):
             '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 3 0 1.5708 0</pose>'
             '<link name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>',
             'm')
-        seen = eye.sensors[0].read().pixels.astype(int)
+        seen = next(iter(eye.sensors.values())).read().pixels.astype(int)
     # The picture's top is +x and its left is +y.
     x_left_y_top, x_right_y_top, x_left_y_bottom = seen[160, 120], seen[80, 120], seen[160, 200]
     assert [int(one.argmax()) for one in (x_left_y_top, x_right_y_top, x_left_y_bottom)] == [

@@ -29,7 +29,7 @@ def spawn_gpu(scene, robot, old='', new=''):
 
 @pytest.mark.parametrize('robot', ['laser_nonoise', 'laser_short'])
 def test_scan_agrees_with_the_recording_of_a_ray_sensor(scene, robot):
-    scan = spawn_gpu(scene, robot).sensors[0].read()
+    scan = next(iter(spawn_gpu(scene, robot).sensors.values())).read()
     expected = np.array([float(value) for value in recordings('laser')[robot]['message']['ranges']])
     assert np.array_equal(np.isinf(scan.ranges), np.isinf(expected))
     met = np.isfinite(expected)
@@ -40,9 +40,9 @@ def test_scan_agrees_with_the_recording_of_a_ray_sensor(scene, robot):
 def test_noise_is_limited_to_the_range_and_no_return_has_none(scene):
     """As recorded of a ray with a deviation of 0.05 m up to 3.5 m."""
     model = spawn_gpu(scene, 'laser_short', '</ray>', NOISE)
-    clean = model.sensors[0].cast()[0]
+    clean = next(iter(model.sensors.values())).cast()[0]
     scans = []
-    model.sensors[0].readings.connect(scans.append)
+    next(iter(model.sensors.values())).readings.connect(scans.append)
     scene.run(2000)
     ranges, met = np.array([scan.ranges for scan in scans]), clean < 3.5
     assert np.isposinf(ranges[:, ~met]).all()

@@ -27,7 +27,7 @@ def spawn(world, robot, yaw=0.0, edit=str):
     """Return the model, and a list that takes times [ms] and readings from now on."""
     text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
     model = world.spawn(edit(text), 'ibot', yaw=yaw)
-    (plugin,) = model.plugins
+    (plugin,) = model.plugins.values()
     found = []
     plugin.outputs['imu'].connect(
         lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
@@ -75,7 +75,7 @@ def test_integrated_readings_give_the_velocity_of_the_sensor(world):
     world.run(5)
     fall(model)
     world.run(5)
-    sensor = model.sensors[0]
+    sensor = next(iter(model.sensors.values()))
 
     def velocity():
         pose, (linear, angular) = model.links['base_footprint'].state()
@@ -108,7 +108,8 @@ def test_imu_on_a_reduced_link_has_its_true_orientation(world):
     model, found = spawn(world, 'imu_model_lumped')
     world.run(20)
     assert found[-1][1].orientation == pytest.approx(from_rpy(0.2, -0.3, 0.5), abs=STILL)
-    assert model.plugins[0].params.values['frameName'] == 'base_footprint'  # as recorded
+    (plugin,) = model.plugins.values()
+    assert plugin.params.values['frameName'] == 'base_footprint'  # as recorded
     fall(model)
     world.run(40)
     attitude = found[-1][1].orientation
@@ -155,7 +156,7 @@ def test_model_plugin_without_a_rate_updates_every_step_with_defaults(world):
     model, found = spawn(world, 'imu_model', edit=bare)
     world.run(3)
     assert [time for time, _ in found] == [1, 2, 3]
-    values = model.plugins[0].params.values
+    values = next(iter(model.plugins.values())).params.values
     assert (values['topicName'], values['serviceName'], values['frameName']) == (
         '/default_imu', '/default_imu', 'base_footprint')
 
@@ -198,4 +199,5 @@ def test_reading_does_not_depend_on_earlier_readers(world):
     del found[:]
     world.run(30)
     assert [numbers(reading).tobytes() for _, reading in found] == expected
-    assert model.sensors[0].read().linear_acceleration[2] == pytest.approx(GRAVITY, abs=0.01)
+    (sensor,) = model.sensors.values()
+    assert sensor.read().linear_acceleration[2] == pytest.approx(GRAVITY, abs=0.01)

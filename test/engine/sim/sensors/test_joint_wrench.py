@@ -27,7 +27,7 @@ def spawn(world, arm=ARM):
     model = world.spawn(arm, 'arm')
     model.joint('shoulder').set_position(math.pi)
     found = {}
-    for plugin in model.plugins:
+    for plugin in model.plugins.values():
         if 'wrench' in plugin.outputs:
             readings = found.setdefault(plugin.params.values['topicName'], [])
             plugin.outputs['wrench'].connect(
@@ -88,7 +88,8 @@ LOAD = ('<sdf version="1.6"><model name="load"><link name="l"><inertial><mass>1<
 @pytest.mark.parametrize('lower', [-1, 0])  # 0: as of a fixed joint that is kept for its sensor
 def test_reaction_at_a_joint_limit_is_the_weight_of_rod_and_load(world, lower):
     found = []
-    world.spawn(ROD.format(lower=lower)).plugins[0].outputs['wrench'].connect(found.append)
+    (plugin,) = world.spawn(ROD.format(lower=lower)).plugins.values()
+    plugin.outputs['wrench'].connect(found.append)
     world.run(200)
     assert (*found[-1].force, *found[-1].torque) == pytest.approx(
         (0.0, 0.0, -19.6, 0.0, 9.8, 0.0), abs=0.01)

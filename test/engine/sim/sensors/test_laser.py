@@ -62,14 +62,15 @@ def test_gpu_rays_are_those_of_the_processor(scene):
     expected = scene.spawn(ROBOT, 'cpu').sensor('head_hokuyo_sensor').read()
     scene.delete('cpu')
     robot = scene.spawn(gpu, 'gpu')
-    assert robot.plugin('gpu_laser').sensor is robot.sensors[0]
-    found = robot.sensors[0].read()
+    assert robot.plugin('gpu_laser').sensor is next(iter(robot.sensors.values()))
+    found = next(iter(robot.sensors.values())).read()
     assert np.array_equal(found.ranges, expected.ranges)
     assert np.array_equal(found.intensities, expected.intensities)
 
 
 def test_angles_have_six_digits_as_gazebos_sensors_read_them(scene):
-    sensor = scene.spawn(robot_with(min_angle=-1.570796, max_angle=1.570796)).sensors[0]
+    robot = scene.spawn(robot_with(min_angle=-1.570796, max_angle=1.570796))
+    sensor = next(iter(robot.sensors.values()))
     assert np.float32(sensor.read().angle_min) == np.float32(-1.57079994678)
     assert sensor.read().angle_max == 1.5708
 

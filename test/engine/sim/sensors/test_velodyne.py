@@ -122,5 +122,5 @@ def test_empty_range_of_limits_is_reported(world, caplog):
                                   '<gaussianNoise>-1</gaussianNoise>'])
 def test_plugin_with_an_invalid_number_is_left_out_with_an_error(world, tags, caplog):
     robot = world.spawn(ROBOT.format(tags=tags, library='laser', kind='ray'), 'car')
-    assert robot.plugins == []
+    assert robot.plugins == {}
     assert 'gaussianNoise' in caplog.text or 'min_range' in caplog.text

@@ -24,7 +24,7 @@ from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 
 
 def _model(plugin):
-    return SimpleNamespace(name=plugin.model.name, plugins=[plugin])
+    return SimpleNamespace(name=plugin.model.name, plugins={plugin.name: plugin})
 
 
 @pytest.fixture

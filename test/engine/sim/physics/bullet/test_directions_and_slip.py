@@ -145,7 +145,7 @@ def drift(lateral, longitudinal, force, yaw):
         model = world.spawn(load_urdf(text, 'skid4')[0], 'robot',
                             Pose((0.0, 0.0, 0.02), from_rpy(0.0, 0.0, yaw)))
         world.run(500)
-        model.plugins[0].command(SPEED, 0.0)
+        next(iter(model.plugins.values())).command(SPEED, 0.0)
         body, start = model.links['base_footprint'], None
         for step in range(2000):
             body.apply_wrench(rotate(model.pose.orientation, force), (0.0, 0.0, 0.0))

@@ -45,7 +45,7 @@ HEAVY = castered(50.0, 1.0, casters=2, mu=0.1)
 
 
 def command(model, forward, turning):
-    for plugin in model.plugins:
+    for plugin in model.plugins.values():
         plugin.command(forward, turning)
 
 
@@ -405,7 +405,7 @@ def test_turning_robot_stops_at_once_on_command(spec, turning):
         command(model, 0.0, turning)
         world.run(3210)
         command(model, 0.0, 0.0)
-        plugin = model.plugins[0]
+        plugin = next(iter(model.plugins.values()))
         ramp = abs(turning) * plugin.wheel_separation / 2.0  # at 1 m/s^2
         world.run(round(1000 * ramp) + 500)
         for _ in range(100):
@@ -587,7 +587,7 @@ def test_wheel_angles_of_transform_joint_states_and_odometry_agree(spec, driven)
         plugin, element=replace(plugin.element, children=children)),))
     with empty_world() as world:
         model = placed(world, spec)
-        drive = model.plugins[0]
+        drive = next(iter(model.plugins.values()))
         told = {}
         for output in (drive.joint_states, drive.wheel_transform, drive.odometry):
             output.connect(lambda reading: told.setdefault(type(reading), []).append(reading))

@@ -25,9 +25,9 @@ def spawn(world, name, z=0.0):
     text = (DATA / 'robots' / f'{name}.urdf').read_text(encoding='utf-8')
     model = world.spawn(load_urdf(text, name, robot_namespace='/')[0], name, Pose((0.0, 0.0, z)))
     found = {}
-    for output, readings in model.plugins[0].outputs.items():
+    for output, readings in next(iter(model.plugins.values())).outputs.items():
         readings.connect(found.setdefault(output, []).append)
-    return model.plugins[0], found
+    return next(iter(model.plugins.values())), found
 
 
 def test_planar_move_in_the_air_sinks_by_gravity_in_each_step(world):

@@ -42,7 +42,7 @@ def test_encoder_odometry_is_the_dead_reckoning_of_the_wheels(command):
     spec = load_urdf(text, 'rosbots', robot_namespace='/', find_package=package_directory)[0]
     with empty_world() as world:
         model = world.spawn(spec, 'rosbots', SPAWN_POSE)
-        plugin = model.plugins[0]
+        plugin = next(iter(model.plugins.values()))
         world.run(SETTLED)
         plugin.reset()  # both start here
         reckoned = DeadReckoning(world, plugin)
