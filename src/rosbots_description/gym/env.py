@@ -10,6 +10,7 @@ import numpy as np
 from gymnasium import spaces
 
 from ..sim import Model, Pose, SimError, World
+from ..sim.rendering import Figure
 from .actions import Limits
 from .parent_watch import end_with_parent
 from .placement import Place, Range
@@ -145,6 +146,10 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         """Return what is true of the world now, for `info`: time [s], pose (x, y, yaw) [m, rad]."""
         return {'time': self._stage.time, 'pose': np.array(self.pose)}
 
+    def figures(self) -> Sequence[Figure]:
+        """Return what pictures show besides the world, such as a goal; by default nothing."""
+        return ()
+
     # What a task can ask.
 
     @property
@@ -224,16 +229,18 @@ class SimEnv(gymnasium.Env[Observation, Any]):
     def render(self) -> Any:  # noqa: ANN401
         """Return what `render_mode` asks for.
 
-        By 'rgb_array' a picture (480, 640, 3) of the robot in its world. By 'web' the address of a
-        page on this machine, which shows every step; while somebody looks, time runs at the speed
-        that is chosen there. None otherwise.
+        By 'rgb_array' a picture (480, 640, 3) of the robot in its world, and of `figures`. By 'web'
+        the address of a page on this machine, which shows every step; while a browser is connected,
+        time runs at the speed that is chosen there. None otherwise.
 
         Raises:
             SimError: nothing can be drawn on this machine.
         """
         if self._window is not None:
             return self._window.address
-        return self._stage.pictures.take() if self.render_mode == 'rgb_array' else None
+        if self.render_mode != 'rgb_array':
+            return None
+        return self._stage.pictures.take(self.figures() if self._ready else ())
 
     def close(self) -> None:
         """Free the world; idempotent."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..sim import Pose, SimError, World, yaw_of
 from .actions import Actions, Limits
+from .load_warnings import warnings_as_one
 from .observations import forget, observed
 from .pictures import Pictures
 from .placement import Place, Range, move, move_freely
@@ -53,6 +54,15 @@ class Stage:
         self._load()
 
     def _load(self) -> None:
+        with warnings_as_one(logger, 'loading the robot and its world'):
+            self._load_parts()
+        self.touched = frozenset(self.world.touching(self.robot))
+        forget(self.robot)
+        self._start = self.world.save_state()
+        self._started_ns = self.world.clock.now_ns
+        self._rebuilds = self.world.rebuilds
+
+    def _load_parts(self) -> None:
         given = self._setting
         self.world = World.from_file(
             given.world, package_path=given.package_path, model_path=given.model_path)
@@ -67,11 +77,6 @@ class Stage:
         except BaseException:
             self.world.close()
             raise
-        self.touched = frozenset(self.world.touching(self.robot))
-        forget(self.robot)
-        self._start = self.world.save_state()
-        self._started_ns = self.world.clock.now_ns
-        self._rebuilds = self.world.rebuilds
 
     def close(self) -> None:
         """Free the world; idempotent."""

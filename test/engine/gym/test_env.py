@@ -161,6 +161,32 @@ def test_environment_that_cannot_be_made_is_named(options, kind, said):
     assert said in str(error.value)
 
 
+def test_warnings_of_a_description_are_one_message_once_in_a_process(caplog):
+    wheels = [f'<robot name="{name}"><link name="l"><inertial><mass value="1"/><inertia ixx="1" '
+              'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><gazebo><plugin '
+              'name="push" filename="libgazebo_ros_planar_move.so"><unread/><strange/></plugin>'
+              '<plugin name="other" filename="libgazebo_ros_planar_move.so"><unread/></plugin>'
+              f'</gazebo></robot>' for name in ('one', 'two')]
+    found = []
+    for text in (wheels[0], wheels[0], wheels[1].replace('strange', 'odd')):
+        caplog.clear()
+        Push(text, settle=0.0).close()
+        found.append([record.getMessage() for record in caplog.records])
+    (first,), second, (third,) = found
+    assert first.startswith('loading the robot and its world gave ')
+    assert first.count('<unread>') == 2
+    assert second == []
+    assert '<odd>' in third
+
+
+def test_errors_of_a_description_are_logged_each_time(caplog):
+    for _ in range(2):
+        caplog.clear()
+        Push(CART.replace('libgazebo_ros_force.so', 'libgazebo_ros_nothing.so'),
+             settle=0.0).close()
+        assert [record.levelname for record in caplog.records].count('ERROR') == 1
+
+
 def test_picture_follows_the_robot():
     env = Forward(render_mode='rgb_array', settle=0.3)
     env.reset(seed=0)

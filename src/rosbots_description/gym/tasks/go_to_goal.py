@@ -1,15 +1,17 @@
 """Drive to a goal in the room."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
 
+from ...sim.rendering import Figure
 from ..env import Info, Observation
 from ..observations import box
 from ..parallel import make_parallel
+from . import figures
 from .driving import BUMPED, Driving
 
 REACHED = 0.4  # [m] distance to the goal at which it is reached
@@ -62,6 +64,10 @@ class GoToGoal(Driving):
         """Add where the goal is, and whether it is reached."""
         return {**super().truth(), 'goal': np.array(self.goal),
                 'is_success': self._left < REACHED}
+
+    def figures(self) -> Sequence[Figure]:
+        """Return the goal, as large as it counts as reached."""
+        return figures.goal(self.goal[0], self.goal[1], REACHED)
 
     def _distance(self) -> float:
         return math.dist(self.pose[:2], self.goal)

@@ -2,14 +2,16 @@
 
 import heapq
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Any, ClassVar
 
 from ...sim import World
 from ...sim.description import Box
+from ...sim.rendering import Figure
 from ..env import Info, Observation
 from ..parallel import make_parallel
+from . import figures
 from .driving import BUMPED, Driving
 
 GOAL = (8.0, 6.0)  # [m] the green spot, outside the only door
@@ -83,6 +85,10 @@ class Maze(Driving):
     def truth(self) -> Info:
         """Add the shortest way that is left [m], and whether the robot is out."""
         return {**super().truth(), 'left': self._left, 'is_success': self._is_out}
+
+    def figures(self) -> Sequence[Figure]:
+        """Return the goal outside, as large as it counts as reached."""
+        return figures.goal(*GOAL, REACHED)
 
     @cached_property
     def _distances(self) -> Distances:

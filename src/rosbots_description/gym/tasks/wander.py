@@ -1,11 +1,13 @@
 """See as much of the rooms as possible without touching anything."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, ClassVar
 
+from ...sim.rendering import Figure
 from ..env import Info, Observation
 from ..parallel import make_parallel
+from . import figures
 from .driving import BUMPED, Driving
 
 CELL = 0.5  # [m] edge of the squares that are visited
@@ -39,6 +41,10 @@ class Wander(Driving):
     def truth(self) -> Info:
         """Add the area that was visited [m^2]."""
         return {**super().truth(), 'visited': len(self._visited) * CELL ** 2}
+
+    def figures(self) -> Sequence[Figure]:
+        """Return the squares that were visited."""
+        return [figures.square(i * CELL, j * CELL, CELL) for i, j in sorted(self._visited)]
 
     def _cell(self) -> tuple[int, int]:
         x, y, _ = self.pose

@@ -3,6 +3,7 @@
 from .camera import EYE, OVERVIEW, TARGET, look_at
 from .gl import BYTES, Lens, Wants
 from .gltf import Look, visual_gltf
+from .illustration import Figure, Illustrator
 from .image_capture import ImageCapture, Picture
 from .render_process import MAX_PENDING, NoRendererError, RenderError
 from .sunlit_meshes import SunlitMeshes
@@ -13,6 +14,8 @@ __all__ = [
     'MAX_PENDING',
     'OVERVIEW',
     'TARGET',
+    'Figure',
+    'Illustrator',
     'ImageCapture',
     'Lens',
     'Look',

@@ -3,16 +3,16 @@
 import weakref
 from collections import deque
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Pose
 from ..runtime import World
-from .gl import Lens, Wants
+from .gl import Lens, Scene, Wants
 from .render_process import MAX_PENDING, RenderedCamera, RenderError, RenderProcess
-from .scene import SceneMirror
+from .scene import SceneMirror, Triangles
 
 
 class Picture(NamedTuple):
@@ -28,12 +28,27 @@ class Picture(NamedTuple):
     jpeg: bytes | None = None
 
 
-class SceneRenderer:
-    """Draws a world for its cameras; the process starts with the first picture."""
+class Mirror(Protocol):
+    """A world as a scene; see `SceneMirror`."""
 
-    def __init__(self, world: World) -> None:
-        self._mirror = SceneMirror(world)
+    scene: Scene
+    meshes: dict[str, Triangles]
+
+    def update(self) -> bool:
+        """Update `scene`; return whether it has changed."""
+
+    def poses(self) -> NDArray[Any]:
+        """Return the poses of its bodies (n, 7)."""
+
+
+class SceneRenderer:
+    """Draws a world; the process starts with the first picture and is closed with the world."""
+
+    def __init__(self, world: World, mirror: Mirror) -> None:
+        self._mirror = mirror
         self.process = RenderProcess(lambda key: self._mirror.meshes[key]())
+        world.resources.callback(self.process.close)
+        weakref.finalize(world, self.process.close)  # if the world is never closed
 
     def update(self) -> NDArray[Any]:
         """Update the scene; return the poses of its bodies (n, 7)."""
@@ -46,12 +61,10 @@ _RENDERERS: 'weakref.WeakKeyDictionary[World, SceneRenderer]' = weakref.WeakKeyD
 
 
 def renderer_of(world: World) -> SceneRenderer:
-    """Return the renderer of a world, which is closed with the world."""
+    """Return the renderer of a world, which all its cameras share."""
     renderer = _RENDERERS.get(world)
     if renderer is None:
-        renderer = _RENDERERS[world] = SceneRenderer(world)
-        world.resources.callback(renderer.process.close)
-        weakref.finalize(world, renderer.process.close)  # if the world is never closed
+        renderer = _RENDERERS[world] = SceneRenderer(world, SceneMirror(world))
     return renderer
 
 
@@ -61,8 +74,9 @@ class ImageCapture:
     Pictures are drawn asynchronously: the world may continue after a request.
     """
 
-    def __init__(self, world: World) -> None:
-        self._world = world
+    def __init__(self, world: World, renderer: SceneRenderer | None = None) -> None:
+        """Take pictures of a world by a renderer; None for that of its cameras."""
+        self._world, self._renderer = world, renderer
         self._cameras: list[RenderedCamera] = []
         self._stamps: deque[int] = deque()  # [ns] of pending pictures
 
@@ -94,7 +108,7 @@ class ImageCapture:
         Raises:
             RenderError: drawing was given up.
         """
-        renderer = renderer_of(self._world)
+        renderer = self._renderer or renderer_of(self._world)
         bodies = renderer.update()
         if not self._cameras:
             self._cameras = [renderer.process.camera(lens) for lens, _ in lenses]

@@ -29,7 +29,7 @@ from ..runtime import Link, World
 from .gl import Appearance, Light, Scene, ScenePart
 from .shapes import mesh_corners, unit_box, unit_cylinder, unit_sphere, unit_square
 
-_LIGHT_TYPES = {DIRECTIONAL: 0, POINT: 1, SPOT: 2}
+LIGHT_TYPES = {DIRECTIONAL: 0, POINT: 1, SPOT: 2}
 Triangles = Callable[[], NDArray[Any]]
 
 
@@ -63,7 +63,7 @@ class SceneMirror:
         self.meshes = {}
         parts = tuple(
             part for number, link in enumerate(self._links) for visual in link.spec.visuals
-            for part in self._parts(visual, number, link.model.static))
+            for part in visual_parts(visual, number, link.model.static, self.meshes))
         scene = world.scene
         self.scene = Scene(
             parts, tuple(_light(light) for light in world.lights.values()), scene.ambient[:3],
@@ -80,11 +80,22 @@ class SceneMirror:
         return np.array([(*pose.position, *pose.orientation)
                          for pose in (link.pose for link in self._links)])
 
-    def _parts(self, visual: Visual, body: int, still: bool) -> Iterator[ScenePart]:
-        for key, triangles, size, appearance in _surfaces(visual):
-            self.meshes[key] = triangles
-            yield ScenePart(key, body, _matrix(visual, size).tobytes(), appearance,
-                       not isinstance(visual.geometry, Plane), still)
+
+def visual_parts(
+    visual: Visual, body: int, still: bool, meshes: dict[str, Triangles]
+) -> Iterator[ScenePart]:
+    """Yield the surfaces of a visual, and add their triangles to `meshes`.
+
+    Args:
+        visual: of a body.
+        body: its row in the poses.
+        still: whether it seldom moves.
+        meshes: triangles by key.
+    """
+    for key, triangles, size, appearance in _surfaces(visual):
+        meshes[key] = triangles
+        yield ScenePart(key, body, _matrix(visual, size).tobytes(), appearance,
+                        not isinstance(visual.geometry, Plane), still)
 
 
 def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Appearance]]:
@@ -121,7 +132,7 @@ def _light(light: LightSpec) -> Light:
     direction = rotate(light.pose.orientation, light.direction)
     length = math.hypot(*direction) or 1.0
     return Light(
-        _LIGHT_TYPES[light.type], light.pose.position,
+        LIGHT_TYPES[light.type], light.pose.position,
         (direction[0] / length, direction[1] / length, direction[2] / length),
         light.diffuse[:3], light.specular[:3], light.range,
         (light.attenuation_constant, light.attenuation_linear, light.attenuation_quadratic),

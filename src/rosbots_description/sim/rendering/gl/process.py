@@ -64,12 +64,12 @@ class _Service:
 
     def _scene(
         self, parts: list[Any], lights: list[Any], ambient: Colour, background: Colour,
-        shadows: bool,
+        shadows: bool, soft: bool,
     ) -> None:
         self._renderer.set_scene(Scene(
             tuple(ScenePart(key, body, matrix, Appearance(*appearance), *others)
                   for key, body, matrix, appearance, *others in parts),
-            tuple(Light(*light) for light in lights), ambient, background, shadows))
+            tuple(Light(*light) for light in lights), ambient, background, shadows, soft))
 
     def _camera(self, number: int, lens: tuple[Any, ...], size: int) -> None:
         """Add a camera with the shared memory sent along."""

@@ -80,7 +80,7 @@ class Renderer:
         self._moving_casters = [one for one in casters if not one.part.still]
         self._static_bodies = sorted({part.body for part in scene.parts if part.still})
         self._stood: NDArray[Any] | None = None  # poses of still bodies in the last shadow map
-        key = tuple(light.type for light in self._lights), self._sun
+        key = tuple(light.type for light in self._lights), self._sun, scene.soft
         if key != self._program_key:
             for program in self._programs.values():
                 program.release()
@@ -92,7 +92,7 @@ class Renderer:
         if program is None:
             types = [light.type for light in self._lights]
             program = self._programs[variant] = self._context.program(
-                *surface_shaders(types, self._sun, variant))
+                *surface_shaders(types, self._sun, variant, self._scene.soft))
             if 'Lights' in program:
                 cast(moderngl.UniformBlock, program['Lights']).binding = _LIGHTS
         if variant not in frame.prepared:

@@ -51,7 +51,8 @@ vec3 map_point(mat4 map_view, float texel) {
     // Off the surface, the more so the more it is slanted, or it would be in its own shadow.
     vec3 turned = world_normal / max(length(world_normal), 1e-9);
     float slant = 1.0 + dot(turned, lights[SUN].direction.xyz);
-    return 0.5 * (map_view * vec4(world + turned * texel * (0.7 + 2.0 * slant), 1.0)).xyz + 0.5;
+    float distance = texel * (0.7 + 2.0 * slant) + BLUR * sqrt(max(slant * (2.0 - slant), 0.0));
+    return 0.5 * (map_view * vec4(world + turned * distance, 1.0)).xyz + 0.5;
 }
 
 void main() {
@@ -75,7 +76,9 @@ uniform vec3 emissive;
 uniform float lit;          // 1, or 0 for what shows its diffuse colour whatever the light
 LIGHT_BLOCK
 uniform sampler2DShadow still_shadows;
+uniform float still_texel;
 uniform sampler2DShadow moving_shadows;
+uniform float moving_texel;
 uniform sampler2D image;
 in vec3 world;
 in vec3 world_normal;
@@ -88,8 +91,9 @@ vec3 towards_eye;
 vec3 reflected;
 vec3 shine;
 
-float share_of_light(sampler2DShadow map, vec3 point) {
-    float share = texture(map, point);  // of the four texels around the point
+BLURRED
+float share_of_light(sampler2DShadow map, vec3 point, float texel) {
+    float share = SHARE;
     vec3 off = abs(point - 0.5);
     return max(max(off.x, off.y), off.z) > 0.5 ? 1.0 : share;
 }
@@ -138,6 +142,20 @@ _SHINE = {
 }
 
 
+_BLUR = 0.02  # [m] on both sides of an edge of a shadow
+
+# The share of the light by nine texture reads, each of the four texels around a point.
+_BLURRED = """
+float blurred(sampler2DShadow map, vec3 point, float texel) {
+    vec2 apart = BLUR / (texel * vec2(textureSize(map, 0)));
+    float sum = 0.0;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            sum += texture(map, point + vec3(float(x) * apart.x, float(y) * apart.y, 0.0));
+    return sum / 9.0;
+}
+"""
+
 _GLOSS = """
     float glance = max(dot(normal, normalize(towards_light + towards_eye)), 0.0);
     shine += share * (specular.a > 0.0 ? pow(glance, specular.a) : 1.0)
@@ -163,7 +181,7 @@ def light_block(lights: Sequence[Light]) -> bytes:
 
 
 def surface_shaders(
-    types: Sequence[int], sun: int | None, variant: ShaderVariant
+    types: Sequence[int], sun: int | None, variant: ShaderVariant, soft: bool = False
 ) -> tuple[str, str]:
     """Return the vertex and fragment shaders of surfaces.
 
@@ -171,9 +189,11 @@ def surface_shaders(
         types: of the lights.
         sun: index of the light that casts shadows; without one `variant` has no maps.
         variant: what they compute.
+        soft: whether the edges of shadows are blurred.
     """
     sunshine = ' * '.join(
-        f'share_of_light({name}_shadows, {name}_point)' for name in variant.maps) or '1.0'
+        f'share_of_light({name}_shadows, {name}_point, {name}_texel)'
+        for name in variant.maps) or '1.0'
     words = {
         'LIGHT_BLOCK': _LIGHT_BLOCK,
         'SHINE': ''.join(
@@ -181,6 +201,8 @@ def surface_shaders(
             for i, kind in enumerate(types)),
         'POINTS': ' '.join(
             f'{name}_point = map_point({name}_view, {name}_texel);' for name in variant.maps),
+        'SHARE': 'blurred(map, point, texel)' if soft else 'texture(map, point)',
+        'BLURRED': _BLURRED if soft else '', 'BLUR': str(_BLUR if soft else 0.0),
         'GLOSS': _GLOSS if variant.glossy else '',
         'IMAGE': 'texture(image, uv)' if variant.textured else '1.0',
         'LIGHTS': str(max(1, len(types))), 'SUN': str(sun or 0),

@@ -61,6 +61,7 @@ class Scene(NamedTuple):
     ambient: Colour = (0.4, 0.4, 0.4)
     background: Colour = (0.7, 0.7, 0.7)
     shadows: bool = True
+    soft: bool = False  # whether the edges of shadows are blurred
 
 
 class Wants(NamedTuple):
