@@ -28,7 +28,7 @@ FOLDER = Path(__file__).resolve().parent
 PARTS = {'fidelity': 45.0, 'physics': 330.0, 'veer': 260.0, 'speed': 560.0, 'real_time': 140.0,
          'sensors': 235.0, 'arm': 60.0, 'gym': 180.0, 'web': 130.0,
          'classroom': 60.0}
-LONG = {'batch': 240.0, 'mechanics': 600.0, 'soak': 1530.0, 'mutants': 9000.0,
+LONG = {'batch': 240.0, 'returns': 720.0, 'mechanics': 600.0, 'soak': 1530.0, 'mutants': 9000.0,
         'fuzz': 1800.0}  # only by name
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
 GRACE = 2.0  # [s, wall] for processes to end after a signal
