@@ -6,9 +6,14 @@ rooms. The simulator says where the robot really is, so the frames map and world
 """
 
 import math
+import socket
 import sys
+import xmlrpc.client
+from http.client import HTTPException
+from xml.parsers.expat import ExpatError
 
 import actionlib
+import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from gazebo_msgs.srv import GetModelState
@@ -44,6 +49,18 @@ def drive_to(move_base, model_state, x, y, yaw):
     return state == GoalStatus.SUCCEEDED
 
 
+def require_master():
+    """End the program with a sentence if no ROS master answers; rospy would wait for ever."""
+    socket.setdefaulttimeout(20.0)
+    try:
+        rosgraph.Master('/drive_to_goals').getUri()
+    except (OSError, ValueError, HTTPException, xmlrpc.client.Error, ExpatError,
+            rosgraph.MasterException):
+        sys.exit(f'drive_to_goals.py: no ROS master answers at {rosgraph.get_master_uri()}')
+    finally:
+        socket.setdefaulttimeout(None)
+
+
 def main():
     """Drive to the goals of the command line; return 1 if one was not reached."""
     words = rospy.myargv()[1:] or ROOMS
@@ -51,6 +68,7 @@ def main():
         goals = [parse(word) for word in words]
     except ValueError:
         sys.exit(f'drive_to_goals.py: a goal is X,Y or X,Y,YAW, not {" ".join(words)}')
+    require_master()
     rospy.init_node('drive_to_goals')
     move_base = actionlib.SimpleActionClient('move_base', MoveBaseAction)
     move_base.wait_for_server()
@@ -61,4 +79,9 @@ def main():
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except rospy.ROSInterruptException:
+        sys.exit('drive_to_goals.py: stopped before the last goal')
+    except (rospy.ROSException, rospy.ServiceException, OSError) as error:
+        sys.exit(f'drive_to_goals.py: {error}')

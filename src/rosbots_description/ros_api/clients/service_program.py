@@ -69,7 +69,7 @@ def _connect(node: str, ros_arguments: Sequence[str]) -> None:
 
     Raises:
         CommandError: there is no ROS master.
-        SimError: its address is not valid.
+        SimError: its address is not valid, or something else answers there.
     """
     require_address()
     if not is_master_running(f'/{node}'):

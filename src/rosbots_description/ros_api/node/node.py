@@ -193,7 +193,7 @@ def _wait_for_master() -> None:
     """Wait for a ROS master, with Gazebo's warning; ROS logging does not work yet.
 
     Raises:
-        SimError: ROS_MASTER_URI is invalid.
+        SimError: ROS_MASTER_URI is invalid, or something else than a ROS master answers there.
     """
     require_address()
     reminder = time.monotonic()

@@ -13,7 +13,7 @@ from typing import Any
 import rosgraph
 import rospy
 
-from .master import require_address
+from .master import is_master_running, require_address
 from .process import init_node
 
 logger = logging.getLogger(__name__)
@@ -39,14 +39,14 @@ def start_node(
 
     Raises:
         KeyboardInterrupt: Ctrl-C while waiting.
-        AddressError: ROS_MASTER_URI is not a valid address.
+        AddressError: ROS_MASTER_URI is not a valid address, or not that of a ROS master.
     """
     require_address()
-    if not rosgraph.is_master_online():
+    if not is_master_running(f'/{name}'):
         # Without a node, logging writes to standard error.
         logger.warning('No ROS master at %s. Start roscore; waiting for it.',
                        rosgraph.get_master_uri())
-        while not rosgraph.is_master_online():
+        while not is_master_running(f'/{name}'):
             time.sleep(_RETRY)
     init_node(name, arguments, anonymous=anonymous, disable_signals=True,
               disable_rostime=wall_time)

@@ -3,10 +3,11 @@
 import contextlib
 import time
 from collections.abc import Callable, Iterable, Mapping
-from http.client import HTTPException
+from http.client import HTTPConnection, HTTPException
 from typing import TypeVar
 from xml.parsers.expat import ExpatError
-from xmlrpc.client import MultiCall, ProtocolError
+from xmlrpc.client import Error as XmlRpcError
+from xmlrpc.client import MultiCall, ProtocolError, dumps, loads
 
 import rosgraph
 import rospy
@@ -17,6 +18,9 @@ from ...sim.core import SimError
 # Errors of a call if nothing answers, or something other than a ROS master.
 NO_MASTER = (OSError, HTTPException, ProtocolError, ExpatError)
 _PERIOD = 0.2  # between calls to an unavailable master, as in rospy [s, wall]
+
+_PATIENCE = 20.0  # for an answer of what listens at the address [s, wall]
+_LONGEST = 10_000  # bytes of an answer that are read
 
 Answer = TypeVar('Answer')
 
@@ -38,11 +42,31 @@ def require_address() -> None:
 
 
 def is_master_running(name: str) -> bool:
-    """Tell whether a master answers the node `name`, which need not be registered."""
-    try:
-        rosgraph.Master(name).getPid()
-    except (*NO_MASTER, rosgraph.MasterException):
-        return False
+    """Tell whether a master answers the node `name`, which need not be registered.
+
+    Raises:
+        AddressError: what listens at ROS_MASTER_URI is no ROS master, or does not answer.
+    """
+    address = rosgraph.get_master_uri()
+    host, port = parse_http_host_and_port(address)
+    connection = HTTPConnection(host, port, timeout=_PATIENCE)
+    with contextlib.closing(connection):
+        try:
+            connection.connect()
+        except OSError:
+            return False
+        try:
+            connection.request('POST', '/RPC2', dumps((name,), 'getUri'),
+                               {'Content-Type': 'text/xml'})
+            loads(connection.getresponse().read(_LONGEST).decode(errors='replace'))
+        except ConnectionError:  # it is ending
+            return False
+        except TimeoutError:
+            raise AddressError(f'what listens at ROS_MASTER_URI, {address}, has not answered for '
+                               f'{_PATIENCE:.0f} s; is it a ROS master?') from None
+        except (OSError, HTTPException, XmlRpcError, ExpatError, ValueError, TypeError):
+            raise AddressError(f'what answers at ROS_MASTER_URI, {address}, is not a ROS master; '
+                               'roscore starts one at http://localhost:11311') from None
     return True
 
 

@@ -1,7 +1,10 @@
 """Calls to a ROS master that is running, missing, or restarted."""
 
+import socket
 import threading
-from xmlrpc.server import SimpleXMLRPCServer
+from http.server import BaseHTTPRequestHandler
+from socketserver import BaseRequestHandler, TCPServer
+from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
 import rosgraph
@@ -11,6 +14,7 @@ from rosbots_description.ros_api.clients import spawn_model
 from rosbots_description.ros_api.transport import master, registrations
 from rosbots_description.ros_api.transport.master import (
     AddressError,
+    is_master_running,
     require_address,
     retry_call,
     topics_of,
@@ -102,6 +106,65 @@ def test_invalid_address_of_the_master_is_an_error_at_once(monkeypatch, capsys, 
 def test_missing_master_at_a_valid_address_is_awaited(monkeypatch, address):
     monkeypatch.setenv('ROS_MASTER_URI', address)
     require_address()
+
+
+class Stranger(BaseHTTPRequestHandler):
+    """Answers like a server of web pages."""
+
+    def do_POST(self):
+        self.send_response(200)
+        self.end_headers()
+        self.wfile.write(b'<html>no</html>')
+
+    def log_message(self, *_arguments):
+        pass
+
+
+class Banner(BaseRequestHandler):
+    """Answers like a server of another protocol."""
+
+    def handle(self):
+        self.request.sendall(b'SSH-2.0-OpenSSH_9.2\r\n')
+        self.request.recv(1000)
+
+
+@pytest.mark.parametrize('handler', [Stranger, Banner, SimpleXMLRPCRequestHandler])
+def test_what_is_not_a_master_is_an_error_of_each_program(monkeypatch, capsys, handler):
+    kind = SimpleXMLRPCServer if handler is SimpleXMLRPCRequestHandler else TCPServer
+    with kind(('localhost', 0), handler) as server:
+        threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True).start()
+        monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{server.server_address[1]}')
+        try:
+            with pytest.raises(AddressError, match='is not a ROS master'):
+                is_master_running('/me')
+            assert spawn_model.run(None, []) == 1
+        finally:
+            server.shutdown()
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if 'spawn_model' in line]
+    assert 'is not a ROS master; roscore starts one' in line
+
+
+def test_what_listens_and_is_silent_is_an_error_after_a_while(monkeypatch):
+    monkeypatch.setattr(master, '_PATIENCE', 0.1)
+    with socket.create_server(('localhost', 0)) as silent:
+        monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{silent.getsockname()[1]}')
+        with pytest.raises(AddressError, match='has not answered for'):
+            is_master_running('/me')
+
+
+def test_master_that_is_absent_or_ending_is_not_running(monkeypatch, there):
+    there.register_function(lambda _: (1, '', 'http://localhost'), 'getUri')
+    assert is_master_running('/me')
+    with socket.create_server(('localhost', 0)) as listening:
+        monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{listening.getsockname()[1]}')
+        def hang_up():
+            listening.accept()[0].close()
+
+        thread = threading.Thread(target=hang_up, daemon=True)
+        thread.start()
+        assert not is_master_running('/me')
+        thread.join()
+    assert not is_master_running('/me')
 
 
 def test_call_is_repeated_until_a_master_runs():
