@@ -95,7 +95,7 @@ ARROWS = {
     'gym':
         'sim sim/controllers sim/description sim/plugins sim/rendering sim/runtime sim/sensors '
         'viewer',
-    'gym/tasks': 'gym sim sim/description',
+    'gym/tasks': 'gym sim sim/description sim/rendering',
     'cli':
         'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '
         'ros_api/window ros_api/node web viewer batch',

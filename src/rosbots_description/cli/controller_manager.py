@@ -74,7 +74,7 @@ def spawner(arguments: Sequence[str] | None = None) -> int:
     options = spawner_parser().parse_args(_own(arguments))
     # Imported late: help and wrong usage are fast, and need no ROS.
     from ..ros_api.controller_programs import spawner as program
-    return program.run(options, arguments)
+    return _reported('spawner', lambda: program.run(options, arguments))
 
 
 def unspawner(arguments: Sequence[str] | None = None) -> int:
@@ -85,7 +85,7 @@ def unspawner(arguments: Sequence[str] | None = None) -> int:
         print(_UNSPAWNER_USAGE)
         return FAILED
     from ..ros_api.controller_programs import unspawner as program
-    return program.run(names, arguments)
+    return _reported('unspawner', lambda: program.run(names, arguments))
 
 
 def manager(arguments: Sequence[str] | None = None) -> int:
@@ -130,7 +130,17 @@ def group(arguments: Sequence[str] | None = None) -> int:
 
 def _run(node: str, arguments: Sequence[str], act: Callable[[], None]) -> int:
     from ..ros_api.controller_programs import program
-    return program.run(node, arguments, act)
+    return _reported(node, lambda: program.run(node, arguments, act))
+
+
+def _reported(name: str, run: Callable[[], int]) -> int:
+    """Return `run()`; print that ROS_MASTER_URI is wrong as one sentence."""
+    from ..ros_api.transport import AddressError
+    try:
+        return run()
+    except AddressError as error:
+        print(f'{name}: {error}', file=sys.stderr)
+        return FAILED
 
 
 def _own(arguments: Sequence[str]) -> list[str]:
