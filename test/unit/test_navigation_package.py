@@ -3,12 +3,15 @@
 import math
 import re
 import runpy
+import socket
 import subprocess
 import sys
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import rospy
 import yaml
 from support import ROOT, robot_spec, robot_urdf
 
@@ -152,3 +155,32 @@ def test_goals_that_cannot_be_read_are_refused_in_one_sentence(monkeypatch, word
         runpy.run_path(str(PACKAGE / 'scripts' / 'drive_to_goals.py'), run_name='__main__')
     assert end.value.code == (
         f'drive_to_goals.py: a goal is X,Y or X,Y,YAW, not {" ".join(words)}')
+
+
+def test_drive_to_goals_says_in_a_sentence_that_there_is_no_master(monkeypatch, capsys):
+    script = PACKAGE / 'scripts' / 'drive_to_goals.py'
+    monkeypatch.setattr(sys, 'argv', [str(script), '1,2'])
+    with socket.create_server(('localhost', 0)) as free:
+        address = f'http://localhost:{free.getsockname()[1]}'
+    monkeypatch.setenv('ROS_MASTER_URI', address)
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(script), run_name='__main__')
+    assert ended.value.code == f'drive_to_goals.py: no ROS master answers at {address}'
+
+
+@pytest.mark.parametrize(('error', 'said'), [
+    (rospy.ServiceException('unable to contact master'), 'unable to contact master'),
+    (ConnectionRefusedError(111, 'Connection refused'), '[Errno 111] Connection refused'),
+    (rospy.ROSInterruptException('shutdown'), 'stopped before the last goal'),
+])
+def test_drive_to_goals_says_in_a_sentence_that_the_master_has_died(monkeypatch, error, said):
+    def fail(*_arguments, **_options):
+        raise error
+
+    script = PACKAGE / 'scripts' / 'drive_to_goals.py'
+    monkeypatch.setattr(sys, 'argv', [str(script), '1,2'])
+    monkeypatch.setattr('rosgraph.Master', lambda _name: SimpleNamespace(getUri=lambda: ''))
+    monkeypatch.setattr(rospy, 'init_node', fail)
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(script), run_name='__main__')
+    assert ended.value.code == f'drive_to_goals.py: {said}'
