@@ -10,7 +10,7 @@ _SIMULATOR: Final = logging.getLogger(f'{__package__.rpartition(".")[0]}.sim')
 _logged: set[str] = set()  # messages of this process
 
 
-class _Collector(logging.Handler):
+class _WarningCollector(logging.Handler):
     """Collects warnings; whatever else is logged goes on to the parent of the logger."""
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ def warnings_as_one(logger: logging.Logger, what: str) -> Iterator[None]:
         logger: that logs the one.
         what: is done, with which the message begins.
     """
-    collector, propagates = _Collector(), _SIMULATOR.propagate
+    collector, propagates = _WarningCollector(), _SIMULATOR.propagate
     _SIMULATOR.addHandler(collector)
     _SIMULATOR.propagate = False
     try:

@@ -67,7 +67,7 @@ class WorldJoints:
     def _controllers(self) -> list[tuple[CommandTopic, Controller]]:
         found: list[tuple[CommandTopic, Controller]] = []
         for model in tuple(self._world.models.values()):
-            for plugin in tuple(model.plugins):
+            for plugin in tuple(model.plugins.values()):
                 for name, one in tuple(plugin.controllers.items()):
                     if isinstance(one, (*_OF_ONE, *_OF_SEVERAL)):
                         found.append((_topic(f'{model.name}/{name}', one), one))

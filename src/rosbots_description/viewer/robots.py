@@ -28,7 +28,7 @@ class WorldRobots:
     def _drives(self) -> dict[str, Drive | DriveController]:
         found: dict[str, Drive | DriveController] = {}
         for model in tuple(self._world.models.values()):
-            for plugin in tuple(model.plugins):
+            for plugin in tuple(model.plugins.values()):
                 if isinstance(plugin, Drive):
                     found[f'{model.name}/{plugin.spec.name}'] = plugin
                 for name, one in tuple(plugin.controllers.items()):

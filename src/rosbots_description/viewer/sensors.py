@@ -57,7 +57,7 @@ class WorldSensors:
     def _sensors(self) -> dict[str, Sensor]:
         return {sensor.scoped_name.replace('::', '/'): sensor
                 for model in tuple(self._world.models.values())
-                for sensor in tuple(model.sensors)
+                for sensor in tuple(model.sensors.values())
                 if isinstance(sensor, Sensor) and sensor.measures}
 
 

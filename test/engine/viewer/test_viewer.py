@@ -171,7 +171,7 @@ def test_sensors_are_read_while_they_are_open_only(world):
         for name in sensors.offered():
             sensors.close(name)
         viewer.commands.call(lambda: None)  # after them
-    assert not any(sensor.readings.wanted for sensor in arm.sensors)
+    assert not any(sensor.readings.wanted for sensor in arm.sensors.values())
 
 
 def test_models_are_changed_as_by_services(world):
