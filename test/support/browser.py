@@ -19,7 +19,8 @@ CAMERA = {
 }
 
 
-WORDS = '<div class="words"'  # begins lines of text
+WORDS = '<div class="words'  # begins lines of text
+OWN = ('<div class="bar', '<div class="pad', '<style', '<img')  # begins what only lays out
 
 
 class Browser:
@@ -30,6 +31,7 @@ class Browser:
             address.replace('http', 'ws', 1), subprotocols=[f'viser-v{viser.__version__}'],
             additional_headers=headers, max_size=None)
         self.messages = []
+        self.windows = 0  # of messages: what comes at once
         self.nodes = {}  # of the scene: name -> [type, position, wxyz]
         self.renders = 0  # how many pictures were given
         self.keys = {}  # what is bound to each
@@ -62,6 +64,7 @@ class Browser:
             unpacked, packed = struct.unpack_from('<QQ', content)
             inner = zstandard.ZstdDecompressor().decompress(
                 content[16:16 + packed], max_output_size=unpacked)
+            self.windows += 1
             for message in msgspec.msgpack.decode(inner)['messages']:
                 self.messages.append(message)
                 self._take(message)
@@ -171,7 +174,7 @@ class Browser:
 
     def tables(self):
         """Return the HTML that is shown of what is selected, in one."""
-        return ''.join(content for content in self._html() if not content.startswith(WORDS))
+        return ''.join(content for content in self._html() if not content.startswith((WORDS, *OWN)))
 
     def _html(self):
         return [props['content'] for kind, props in self.controls.values()

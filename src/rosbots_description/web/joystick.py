@@ -15,18 +15,20 @@ from .ticker import Ticker
 PERIOD = 0.1  # [s, wall] between two commands while it is held
 DEPTH = 0.3  # [m] of the pad ahead of the camera
 RADIUS, KNOB, CORNER = 0.12, 0.05, 0.16  # parts of the picture's height; CORNER to both its edges
+ABOVE_SHEET = 0.08  # further up, in parts of the height, where it is upright: on a phone
+THICKNESS = 0.001  # [m] of discs: they face the camera, and so are round also in a corner
 NODE = '/joystick'
 
 
 @dataclass
 class _Pad:
     frame: viser.FrameHandle
-    knob: viser.IcosphereHandle
+    knob: viser.CylinderHandle
     radius: float  # [m]
 
 
 class Joystick(Panel):
-    """Pads while the box is checked; whoever drags the knob steers, and it returns when let go."""
+    """Pads while the box is checked; whoever drags on one steers. Its knob returns when let go."""
 
     def __init__(self, site: viser.ViserServer, steer: Callable[[float, float], None]) -> None:
         """Add the box; `steer` gets ahead and left, -1 to 1, again and again while it is held."""
@@ -57,17 +59,21 @@ class Joystick(Panel):
 
     def _add(self, client: viser.ClientHandle) -> None:
         scene, height = client.scene, 2.0 * DEPTH * math.tan(client.camera.fov / 2.0)
-        frame = scene.add_frame(NODE, show_axes=False)
-        scene.add_cylinder(f'{NODE}/pad', RADIUS * height, 0.001, (120, 120, 120), opacity=0.4,
-                           cast_shadow=False, receive_shadow=False, side='double')
-        knob = scene.add_icosphere(f'{NODE}/knob', KNOB * height, (40, 90, 255),
-                                   cast_shadow=False, receive_shadow=False)
-        pad = self._pads[client.client_id] = _Pad(frame, knob, RADIUS * height)
-        place(frame, corner(client.camera))
+        with client.atomic():  # what is pressed before it can be dragged would turn the camera
+            frame = scene.add_frame(NODE, show_axes=False)
+            base = scene.add_cylinder(
+                f'{NODE}/pad', RADIUS * height, THICKNESS, (120, 120, 120), opacity=0.4,
+                cast_shadow=False, receive_shadow=False, side='double')
+            knob = scene.add_cylinder(
+                f'{NODE}/knob', KNOB * height, 3.0 * THICKNESS, (40, 90, 255),
+                cast_shadow=False, receive_shadow=False)
+            pad = self._pads[client.client_id] = _Pad(frame, knob, RADIUS * height)
+            place(frame, corner(client.camera))
 
-        async def drag(event: viser.SceneNodeDragEvent[viser.IcosphereHandle]) -> None:
-            self._drag(event, pad)  # not in threads, which would change the order
-        knob.on_drag(drag)
+            async def drag(event: viser.SceneNodeDragEvent[viser.CylinderHandle]) -> None:
+                self._drag(event, pad)  # not in threads, which would change the order
+            for disc in (base, knob):
+                disc.on_drag(drag)
 
     def _watch(self, client: viser.ClientHandle) -> None:
         client.camera.on_update(self._follow)
@@ -79,7 +85,7 @@ class Joystick(Panel):
             if pad is not None:
                 place(pad.frame, corner(camera))
 
-    def _drag(self, event: viser.SceneNodeDragEvent[viser.IcosphereHandle], pad: _Pad) -> None:
+    def _drag(self, event: viser.SceneNodeDragEvent[viser.CylinderHandle], pad: _Pad) -> None:
         with self._lock:
             # A drag goes on when its pad was removed, and ends when its browser has disconnected.
             is_there = (self._pads.get(event.client_id) is pad
@@ -117,7 +123,8 @@ def corner(camera: viser.CameraHandle) -> Pose:
 def _corner(camera: viser.CameraHandle) -> Vector:
     """Return its position in the frame of the camera: x right, y down, z ahead [m]."""
     half = DEPTH * math.tan(camera.fov / 2.0)
-    return half * (2.0 * CORNER - camera.aspect), half * (1.0 - 2.0 * CORNER), DEPTH
+    low = CORNER + (ABOVE_SHEET if camera.aspect < 1.0 else 0.0)
+    return half * (2.0 * CORNER - camera.aspect), half * (1.0 - 2.0 * low), DEPTH
 
 
 def _pose(camera: viser.CameraHandle) -> Pose:

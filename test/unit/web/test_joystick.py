@@ -1,12 +1,15 @@
 """The joystick: a knob that is dragged steers, and returns when it is let go."""
 
 import math
+import time
+from types import SimpleNamespace
 
 import pytest
+import viser
 from support.browser import Browser
 from support.patience import wait_until
 
-from rosbots_description.web.joystick import NODE, Joystick, corner
+from rosbots_description.web.joystick import DEPTH, NODE, RADIUS, Joystick, _corner, corner
 
 KNOB = f'{NODE}/knob'
 
@@ -30,17 +33,17 @@ def browser(site, joystick):
         yield browser
 
 
-def drag(browser, joystick, phase, right=0.0, down=0.0):
-    """Drag the knob to a place on the pad, in parts of its radius."""
+def drag(browser, joystick, phase, right=0.0, down=0.0, node=KNOB):
+    """Drag the knob, or another node, to a place on the pad, in parts of its radius."""
     at = [0.0, 0.0, 0.0]
     for pad in joystick._pads.values():
         # The camera of the browser looks ahead along z, x is right and y is down.
         at = [float(part) for part in pad.frame.position]
         at[0] += right * pad.radius
         at[1] += down * pad.radius
-    owner = next(m['owner'] for m in browser.messages if m.get('name') == KNOB and 'owner' in m)
+    owner = next(m['owner'] for m in browser.messages if m.get('name') == node and 'owner' in m)
     browser.send({
-        'type': 'SceneNodeDragMessage', 'phase': phase, 'name': KNOB, 'instance_index': None,
+        'type': 'SceneNodeDragMessage', 'phase': phase, 'name': node, 'instance_index': None,
         'start_position': at, 'start_screen_pos': [0.5, 0.5], 'end_position': at,
         'end_screen_pos': [0.5, 0.5], 'button': 'left', 'modifier': None, 'owner': owner})
 
@@ -84,6 +87,51 @@ def test_it_steers_while_it_is_held_and_then_stops(browser, joystick, commands):
     browser.read(0.4)
     assert len(commands) == told
     assert tuple(next(iter(joystick._pads.values())).knob.position) == (0.0, 0.0, 0.0)
+
+
+def test_a_finger_anywhere_on_the_pad_steers(browser, joystick, commands):
+    drag(browser, joystick, 'start', node=f'{NODE}/pad')
+    drag(browser, joystick, 'update', right=0.5, node=f'{NODE}/pad')
+    browser.wait_until(lambda: pytest.approx((0.0, -0.5), abs=1e-3) in commands)
+    drag(browser, joystick, 'end', node=f'{NODE}/pad')
+    browser.wait_until(lambda: commands[-1] == (0.0, 0.0))
+
+
+def test_it_can_be_dragged_as_soon_as_it_is_there(site, joystick, monkeypatch):
+    """Else a press would turn the camera: a browser shows all of a window of messages at once."""
+    add = viser.SceneApi.add_cylinder
+
+    def add_slowly(*arguments, **options):
+        node = add(*arguments, **options)
+        time.sleep(0.2)  # windows are sent every 1/60 s
+        return node
+
+    monkeypatch.setattr(viser.SceneApi, 'add_cylinder', add_slowly)
+    windows = {}
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: browser.control('Joystick') and site.get_clients())
+        take = browser._take
+
+        def note(message):
+            if message.get('name') in (KNOB, f'{NODE}/pad'):
+                windows.setdefault(message['type'], set()).add(browser.windows)
+            take(message)
+
+        browser._take = note
+        browser.choose('Joystick', True)
+        browser.wait_until(lambda: 'SetSceneNodeDragBindingsMessage' in windows)
+    assert windows['SetSceneNodeDragBindingsMessage'] == windows['CylinderMessage']
+    assert len(windows['CylinderMessage']) == 1
+
+
+def test_an_upright_picture_has_it_above_the_sheet_of_a_phone():
+    def height(aspect):
+        camera = SimpleNamespace(fov=1.0, aspect=aspect)
+        down = _corner(camera)[1] / (2.0 * DEPTH * math.tan(0.5))  # from the middle
+        return 0.5 - down
+
+    assert height(0.46) - RADIUS > 0.08 > 56.0 / 844.0  # of the sheet's handle on such a phone
+    assert height(2.0) == pytest.approx(0.16)
 
 
 def test_beyond_the_pad_it_is_at_its_edge(browser, joystick, commands):
