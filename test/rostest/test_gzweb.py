@@ -209,6 +209,11 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: browser.control("Undo: move 'box'"))
         browser.click("Undo: move 'box'")
         browser.wait_until(lambda: abs(state('box', '').pose.position.x - 2.0) < 0.01)
+        browser.click('Insert light')
+        browser.wait_until(lambda: browser.control("Undo: insert 'light'"))
+        browser.wait_until(lambda: '/lights/light' in browser.nodes)
+        browser.click("Undo: insert 'light'")  # an error in the log would fail this file
+        browser.wait_until(lambda: '/lights/light' not in browser.nodes)
 
     def wait_for_gizmo(self, browser, point):
         x, y = point.x, point.y

@@ -2,7 +2,13 @@
 
 import rospy
 from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import ApplyBodyWrench, DeleteLight, DeleteModel, SetModelState
+from gazebo_msgs.srv import (
+    ApplyBodyWrench,
+    DeleteLight,
+    DeleteModel,
+    GetWorldProperties,
+    SetModelState,
+)
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Vector3, Wrench
 from rosbots_msgs.srv import GetModelDescription, HoldModel, InsertModel
@@ -31,13 +37,11 @@ class RosHands:
 
     def delete(self, name: str) -> None:
         """Delete a model, else the light of that name."""
-        try:
+        # Asked first: the simulator logs an error when there is no model of the name.
+        if name in call('get_world_properties', GetWorldProperties).model_names:
             call('delete_model', DeleteModel, model_name=name)
-        except SimError as error:
-            try:
-                call('delete_light', DeleteLight, light_name=name)
-            except SimError:
-                raise error from None
+        else:
+            call('delete_light', DeleteLight, light_name=name)
 
     def describe(self, name: str) -> ModelText:
         """Return what is needed to spawn a model again as it is."""
