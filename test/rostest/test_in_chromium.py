@@ -30,6 +30,7 @@ from selenium.webdriver import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import staleness_of
+from sensor_msgs.msg import LaserScan
 from server_process import ServerProcess
 from simulator import BOX, GROUND, pose, proxy, wait_until
 from std_srvs.srv import Empty
@@ -39,13 +40,15 @@ from rosbots_description.cli.launched import descendants
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 sys.path.append(str(Path(__file__).resolve().parents[2] / 'tools'))
-from chromium import chromium, faults, picture
+from chromium import chromium, clock, faults, picture
 from support.similarity import structural_similarity
 
 REFERENCE = Path(__file__).resolve().parents[1] / 'data' / 'web' / 'robot.png'
 ROBOT = (slice(120, 320), slice(380, 630))  # rows and columns of it in the picture
 ALIKE = 0.85  # structural similarity; 0.3 without the robot
-SIZE = (1000, 400)  # [pixels] of a page; its controls cover 335 at the right
+SIZE = (1388, 400)  # [pixels] of a page; its controls have 388 at the right
+DESKTOP, PHONE = (1280, 800), (390, 844)  # [pixels]
+SCANS = '/a_robot/with_a_long_name/front_laser_of_the_upper_deck/scan'
 TOP = (0.0, 0.0, 0.6)  # [m] a point on the robot
 # From a point on the handle along x of its frame, which is below the ground, to one behind [m].
 HANDLE, BEHIND = (0.8, 0.0, -0.12), (0.3, 0.0, -0.12)
@@ -79,7 +82,7 @@ class Page:
         self.driver = driver
         driver.get(address + QUERY)
         driver.execute_script(COLLECT_TEXTS)
-        self.wait_for_text('Iterations')
+        wait_until(lambda: clock(driver), 'the clock', SLOW)
 
     def text(self):
         return self.driver.find_element(By.TAG_NAME, 'body').text
@@ -119,7 +122,9 @@ class Page:
 
     def wait_for_red(self, eye, point, what):
         """Wait until something red, like the handle along x, is seen at a point [m]."""
-        x, y = np.add(eye.pixel(point), np.floor_divide(SIZE, 2))
+        scene = self.scene().rect
+        x, y = np.add(eye.pixel(point), (
+            round(scene['x'] + scene['width'] / 2.0), round(scene['y'] + scene['height'] / 2.0)))
         end = monotonic() + SLOW
         while not np.any((red := self.red())[y - 4:y + 5, x - 4:x + 5]):
             if monotonic() > end:
@@ -227,7 +232,8 @@ class ChromiumTest(unittest.TestCase):
         self.page.press(Keys.ESCAPE)  # select nothing
         steps = self.prepare()
         # Until then it may show the robot before, and would forget with it what is selected.
-        wait_until(lambda: re.search(rf'\b{steps}\b', self.page.text()), 'the new world', SLOW)
+        now = f'00:00:{0.001 * steps:06.3f}'
+        wait_until(lambda: clock(self.page.driver) == now, 'the new world', SLOW)
 
     @classmethod
     def prepare(cls):
@@ -297,6 +303,43 @@ class ChromiumTest(unittest.TestCase):
         self.assertAlmostEqual(time(), before + 0.001, places=9)
         self.page.click('Reset time and world')
         wait_until(lambda: time() == 0.0, 'a reset', SLOW)
+
+    def test_chosen_tab_has_two_thirds_of_the_panel(self):
+        with chromium(DESKTOP) as driver:
+            page = Page(driver, self.address)
+            panel, strip = (driver.find_element(By.CSS_SELECTOR, selector).rect for selector in (
+                '[data-testid=floating-panel]', '[role=tablist]'))
+            below = panel['y'] + panel['height'] - strip['y'] - strip['height']
+            self.assertGreaterEqual(below, 2.0 / 3.0 * panel['height'])
+            scene = page.scene().rect
+            self.assertLessEqual(scene['x'] + scene['width'], panel['x'])  # not behind it
+            self.assertEqual(driver.title, 'default')
+            self.assertEqual(faults(driver), [])
+
+    def test_long_label_has_one_line_and_keeps_its_end(self):
+        publisher = rospy.Publisher(SCANS, LaserScan, queue_size=1)
+        self.addCleanup(publisher.unregister)
+        self.page.open_tab('Sensors')
+        label = f'//label[normalize-space()="{SCANS}"]'
+        wait_until(lambda: self.page.driver.find_elements(By.XPATH, label), 'its box', SLOW)
+        label = self.page.driver.find_element(By.XPATH, label)
+        shown, whole = label.find_element(By.XPATH, '..').rect, label.rect
+        self.assertLess(whole['x'], shown['x'])
+        self.assertLessEqual(whole['x'] + whole['width'], shown['x'] + shown['width'] + 1.0)
+        self.assertLess(shown['height'], 25.0)
+
+    def test_phone_shows_the_world_and_a_sheet_that_opens(self):
+        with chromium(PHONE) as driver:
+            page = Page(driver, self.address)
+            self.assertEqual([page.scene().rect[side] for side in ('width', 'height')], [*PHONE])
+            sheet = driver.find_element(By.CSS_SELECTOR, '[style*="position: fixed"]:has(.bar)')
+            wait_until(lambda: sheet.rect['y'] > 0.9 * PHONE[1], 'a closed sheet', SLOW)
+            sheet.find_element(By.CSS_SELECTOR, '[style*="cursor: pointer"]').click()
+            wait_until(lambda: sheet.rect['y'] < 0.5 * PHONE[1], 'an open sheet', SLOW)
+            self.assertEqual(sheet.rect['width'], PHONE[0])
+            page.click('Play')
+            wait_until(lambda: not is_paused(), 'time', SLOW)
+            self.assertEqual(faults(driver), [])
 
     def test_key_drives_the_robot(self):
         proxy('unpause_physics', Empty)()

@@ -1,17 +1,15 @@
-"""The controls of time: play, pause, steps, resets, speed; and the clock."""
+"""The controls of time: play, pause, steps, speed, resets."""
 
-from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
+from .layout import BAR
 from .panel import Panel, attempt, fill
 from .text import Words
 
-PERIOD = 0.2  # [s, wall] between two clocks shown
-WINDOW = 1.0  # [s, wall] over which the real-time factor is taken
 SPEEDS = {'0.1x': 0.1, '1x': 1.0, '10x': 10.0, 'as fast as possible': 0.0}
 
 
@@ -44,18 +42,16 @@ class Bar(Panel):
         self, gui: viser.GuiApi, time: TimeControl, complain: Callable[[str], None]
     ) -> None:
         self._time, self._complain = time, complain
-        self._shown = 0.0  # real time of the clock shown [s]
-        self._past: deque[tuple[float, float]] = deque()  # real time and simulated time
         self._warning = Words(gui, visible=False)
-        self._clock = Words(gui, 'The simulator has not answered yet.')
-        self._play = gui.add_button('Pause', icon=viser.Icon.PLAYER_PAUSE, hint='Space')
-        self._speed = gui.add_dropdown(
-            'Speed', list(SPEEDS), initial_value='1x', hint='target real-time factor')
-        self._steps = gui.add_number('Steps', 1, min=1, max=1_000_000, step=1)
+        gui.add_html(BAR)
+        self._play = gui.add_button('Pause', icon=viser.Icon.PLAYER_PAUSE)
         self._step = gui.add_button('Step', icon=viser.Icon.PLAYER_TRACK_NEXT)
-        self._reset_world = gui.add_button(
-            'Reset world', hint='models return to where they were spawned; time is kept')
-        self._reset = gui.add_button('Reset time and world', hint='everything starts again')
+        self._steps = gui.add_number(
+            'Steps', 1, min=1, max=1_000_000, step=1, hint='number of steps that Step makes')
+        self._speed = gui.add_dropdown(
+            'Speed', list(SPEEDS), initial_value='1x', hint='speed: target real-time factor')
+        self._reset_world = gui.add_button('Reset world', icon=viser.Icon.RELOAD)
+        self._reset = gui.add_button('Reset time and world', icon=viser.Icon.PLAYER_SKIP_BACK)
         self._paused = False
         self._target = 1.0  # real-time factor that the simulator reported last
         self._play.on_click(lambda _: self._toggle())
@@ -76,36 +72,17 @@ class Bar(Panel):
                 fill(self._speed, name)
 
     def move(self, motion: ShownMotion) -> None:
-        """Show times, and whether time runs."""
+        """Show whether time runs."""
         if motion.paused != self._paused:
             self._paused = motion.paused
             self._play.label = 'Play' if motion.paused else 'Pause'
             self._play.icon = (
                 viser.Icon.PLAYER_PLAY if motion.paused else viser.Icon.PLAYER_PAUSE)
-        factor = self._factor(motion)
-        if abs(motion.real_time - self._shown) < PERIOD:
-            return
-        self._shown = motion.real_time
-        self._clock.show('', [
-            ('Simulated time', _time(motion.time)), ('Real time', _time(motion.real_time)),
-            ('Real-time factor', 'paused' if motion.paused else format(factor, '.2f')),
-            ('Iterations', str(motion.iterations))])
 
     def warn(self, sentence: str) -> None:
-        """Show a sentence above the clock until it is withdrawn with ''."""
+        """Show a sentence above the bar until it is withdrawn with ''."""
         self._warning.show('', bold=sentence)
         self._warning.visible = bool(sentence)
-
-    def _factor(self, motion: ShownMotion) -> float:
-        """Return the real-time factor of the last second."""
-        past = self._past
-        if past and (motion.time < past[-1][1] or motion.real_time < past[-1][0]):
-            past.clear()  # time was reset, or it is another simulator
-        past.append((motion.real_time, motion.time))
-        while len(past) > 2 and motion.real_time - past[0][0] > WINDOW:
-            past.popleft()
-        passed = motion.real_time - past[0][0]
-        return (motion.time - past[0][1]) / passed if passed > 0.0 else 0.0
 
     def _choose(self, event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
         if event.client is not None:  # else it is what the simulator says
@@ -116,9 +93,3 @@ class Bar(Panel):
 
     def _do(self, command: Callable[[], None]) -> None:
         attempt(command, self._complain)
-
-
-def _time(seconds: float) -> str:
-    minutes, rest = divmod(seconds, 60.0)
-    hours, minutes = divmod(int(minutes), 60)
-    return f'{hours:02d}:{minutes:02d}:{rest:06.3f}'

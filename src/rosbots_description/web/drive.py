@@ -9,6 +9,7 @@ import viser
 
 from .camera_keys import CameraKeys
 from .choice import Choice
+from .layout import PAD
 from .panel import Panel
 
 HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a second
@@ -17,9 +18,9 @@ HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a
 DIRECTIONS: dict[str, tuple[float, float, Any]] = {
     'Forward': (1.0, 0.0, 'I'),
     'Left': (0.0, 1.0, 'J'),
+    'Stop': (0.0, 0.0, 'K'),
     'Right': (0.0, -1.0, 'L'),
     'Backward': (-1.0, 0.0, ','),
-    'Stop': (0.0, 0.0, 'K'),
 }
 CURVES: dict[str, tuple[float, float, Any]] = {
     'Forward and left': (1.0, 1.0, 'U'),
@@ -60,6 +61,7 @@ class DrivePanel(Panel):
             self._turn = gui.add_slider('Turn [rad/s]', 0.1, 4.0, 0.1, 1.0)
             self._keys = gui.add_checkbox('W A S D and arrows drive', initial_value=True,
                                           hint='else they move the camera')
+            gui.add_html(PAD)  # last in the folder: a cross of the directions
             for name, (ahead, left, key) in DIRECTIONS.items():
                 button = gui.add_button(name, hint=f'hold; or hold the key {key}')
                 button.on_hold(partial(self._command, ahead, left))

@@ -21,8 +21,7 @@ class History(Panel):
         self._lock = threading.Lock()
         self._changes: deque[tuple[str, Callable[[], object]]] = deque(maxlen=MOST)
         self._real_time = 0.0  # of the simulator [s]
-        self._button = gui.add_button('Undo', icon=viser.Icon.ARROW_BACK_UP, disabled=True,
-                                      hint='Ctrl-Z takes back the last change by hand')
+        self._button = gui.add_button('Undo', icon=viser.Icon.ARROW_BACK_UP, disabled=True)
         self._button.on_click(lambda _: self.undo())
         gui.add_command('Undo', hotkey='Z', modifier='cmd/ctrl').on_trigger(lambda _: self.undo())
 

@@ -14,11 +14,13 @@ from ..sim.description import SceneChange, ShownMotion
 from .bar import Bar, TimeControl
 from .camera_keys import CameraKeys
 from .change import ChangePanel, Inspection
+from .clock import Clock
 from .contacts import Contacts, ContactsPanel
 from .drive import DrivePanel, Robots
 from .follow import FollowPanel
 from .gizmo import Gizmo
 from .goals import GoalPanel, Goals
+from .ground import Ground
 from .ground_clicks import GroundClicks
 from .hands import Hands, HandsPanel
 from .history import History
@@ -27,6 +29,8 @@ from .inspector import Inspector
 from .interpolation import Interpolation
 from .joints import JointPanel, Joints
 from .joystick import Joystick
+from .keys import KeyHelp
+from .layout import lay_out
 from .maps import MapPanel, Maps
 from .models import Models
 from .notices import Notices
@@ -42,6 +46,7 @@ from .take_away import TakeAwayPanel, Worlds
 from .topics import ShownTopics, TopicPanel
 from .tree import ModelTree
 from .views import ViewPanel, look
+from .world_name import WorldName
 
 logger = logging.getLogger(__name__)
 
@@ -131,19 +136,24 @@ class Page:
         self._lost = False
         notices = Notices(site)
         self._notify = notices.tell
-        site.gui.configure_theme(show_logo=False, show_share_button=False)
-        site.gui.set_panel_label('gzweb')
+        lay_out(site.gui)
         models = Models()
         self.selection = Selection(models, self._lock)
         site.gui.add_command('Select nothing', hotkey='escape').on_trigger(
             lambda _: self.selection.choose(None))
         self._start = StartView(models)
-        scene = SceneView(site, self.selection.click)
+        name = WorldName(site.gui)
         self._bar = Bar(site.gui, simulator.time, self._notify)
         history = History(site.gui, self._notify)
+        clock = Clock(site.gui)
+        views = ViewPanel(site, models, self.selection, self._start)
+        scene = SceneView(site, views.click)
+        self._ground = Ground(site, models)
         self._panels: list[Panel] = [
             models, self._start, scene, self.selection,
-            Outline(site.scene, models, self.selection), self._bar, history, notices]
+            Outline(site.scene, models, self.selection), self._bar, clock, name, history, notices,
+            FollowPanel(site, models, self.selection), self._ground]
+        KeyHelp(site)
         self._add_tabs(simulator, models, scene, history)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
@@ -180,10 +190,7 @@ class Page:
             self._panels.append(Gizmo(
                 site, models, self.selection, simulator.hands, history, self._notify))
         with tabs.add_tab('Show', viser.Icon.EYE):
-            ViewPanel(site, models, self.selection, self._start)
-            self._panels += [
-                FollowPanel(site, models, self.selection),
-                ShowPanel(site, scene, models, self.selection, self._lock)]
+            self._panels.append(ShowPanel(site, scene, models, self.selection, self._lock))
             if simulator.contacts is not None:
                 self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
         if simulator.sensors is not None:
@@ -253,11 +260,14 @@ class Page:
 
     def _look(self) -> None:
         """Let those who are new look at everything."""
-        eye, target = self._start.choose()
         camera = self._site.initial_camera
-        camera.position, camera.look_at = eye, target
+        with self._site.atomic():
+            camera.position, camera.look_at = self._start.choose()
         for client in self._new:
-            look(client.camera, eye, target)
+            eye, target = self._start.choose(client.camera.aspect)
+            self._ground.expect(client, eye, target)
+            with client.atomic():
+                look(client.camera, eye, target)
         self._new.clear()
 
     def _hear(self, motion: ShownMotion) -> None:

@@ -1,9 +1,10 @@
 """The content security policy of the page: its own scripts run, and no others.
 
 Viser's client is one file. Its first script unpacks a second one from an attribute, and the page
-has two handlers of its own (`camera_keys`); each is allowed by its hash. What a browser would
-take for markup of a stranger could run nothing and load nothing. These scripts may evaluate text,
-as one of viser's modules of WebAssembly does; that runs nothing that comes as markup.
+has handlers of its own (`camera_keys`, `layout`, `world_name`); each is allowed by its hash. What
+a browser would take for markup of a stranger could run nothing and load nothing. These scripts may
+evaluate text, as one of viser's modules of WebAssembly does; that runs nothing that comes as
+markup.
 """
 
 import base64
@@ -17,6 +18,8 @@ import viser
 import zstandard
 
 from .camera_keys import HANDLERS
+from .layout import CLOSE_SHEET
+from .world_name import SET_TITLE
 
 _NOTEBOOKS = 'http://127.0.0.1:* http://localhost:* vscode-webview:'
 _SCRIPT = re.compile(r'<script\b([^>]*)>(.*?)</script>', re.DOTALL)
@@ -27,7 +30,8 @@ _ALPHABET = bytes(code for code in range(0x21, 0x7f) if code not in b'"&<>\'`')
 
 def page_headers(is_framed: bool = False) -> dict[str, str]:
     """Return the headers of every response; pages of this machine may frame it, if it says so."""
-    scripts = ' '.join(_hash(script) for script in (*_client_scripts(), *HANDLERS))
+    scripts = ' '.join(_hash(script) for script in (
+        *_client_scripts(), *HANDLERS, CLOSE_SHEET, SET_TITLE))
     policy = {
         'default-src': "'none'",
         'script-src': f"'unsafe-hashes' 'unsafe-eval' {scripts}",

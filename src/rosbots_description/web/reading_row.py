@@ -29,7 +29,8 @@ class ReadingRow:
         """Add the box; `choose` is called when a browser changes it."""
         self._site, self._topic = site, topic
         with site.atomic():  # nobody clicks before it is listened to
-            self._box = site.gui.add_checkbox(plain(topic), checked, hint=plain(kind))
+            self._box = site.gui.add_checkbox(
+                plain(topic), checked, hint=f'{plain(topic)} ({plain(kind)})')
             self._box.on_update(lambda _: choose())
         self._folder = site.gui.add_folder(plain(kind), visible=False)
         with self._folder:

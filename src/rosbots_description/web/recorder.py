@@ -16,7 +16,7 @@ class Recorder:
         self._site = Site('127.0.0.1', 0)
         models = Models()
         self._start = StartView(models)
-        self._panels = models, self._start, SceneView(self._site, lambda _model, _link: None)
+        self._panels = models, self._start, SceneView(self._site, lambda _model, _link, _: None)
         self._take: SceneTake | None = None
 
     @property

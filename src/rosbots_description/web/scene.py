@@ -33,11 +33,12 @@ class _Shown:
 class SceneView(Panel):
     """Shows the scene to all that look; not thread-safe.
 
-    `click` is called with the names of model and link that are clicked on, from any
+    `click` is called with the names of model and link that are clicked on, and by whom, from any
     thread; grounds and other planes take no clicks.
     """
 
-    def __init__(self, site: viser.ViserServer, click: Callable[[str, str], None]) -> None:
+    def __init__(self, site: viser.ViserServer,
+                 click: Callable[[str, str, viser.ClientHandle], None]) -> None:
         self._site, self._click = site, click
         self._models: dict[str, _Shown] = {}
         self._frames: dict[int, viser.FrameHandle] = {}
@@ -127,8 +128,9 @@ class SceneView(Panel):
             elif plane.normal == UP:
                 self._add_grid(f'{name}/grid', plane)
 
-    def _clicked(self, model: str, link: str, _event: object) -> None:
-        self._click(model, link)
+    def _clicked(self, model: str, link: str,
+                 event: viser.SceneNodePointerEvent[viser.GlbHandle]) -> None:
+        self._click(model, link, event.client)
 
     def _add_grid(self, name: str, plane: Plane) -> None:
         width, depth = plane.size

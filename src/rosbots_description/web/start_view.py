@@ -30,13 +30,32 @@ class StartView(Panel):
     def __init__(self, models: Models) -> None:
         self._models = models
         self._scene = SceneSpec()
+        self._chosen: tuple[Vector, Vector] | None = None
+        self._for: frozenset[str] = frozenset()  # the models for which it is chosen
 
     def apply(self, change: SceneChange) -> None:
         """Take in the view that the world asks for."""
+        if change.scene.user_camera != self._scene.user_camera:
+            self._chosen = None
         self._scene = change.scene
 
-    def choose(self) -> tuple[Vector, Vector]:
-        """Return eye and target [m]; grounds and other planes are not looked at."""
+    def choose(self, aspect: float = 1.0) -> tuple[Vector, Vector]:
+        """Return eye and target [m], the same ones until a model comes or goes.
+
+        Grounds and other planes are not looked at.
+
+        Args:
+            aspect: width of the picture by its height; the eye is further away if it is narrow.
+        """
+        names = frozenset(self._models.all)
+        if self._chosen is None or names != self._for:
+            self._chosen, self._for = self._best(), names
+        eye, target = self._chosen
+        if self._scene.user_camera is not None or aspect >= 1.0:
+            return eye, target
+        return add(target, as_vector(part / aspect for part in subtract(eye, target))), target
+
+    def _best(self) -> tuple[Vector, Vector]:
         boxes = list(self._boxes())
         points = np.concatenate([box for _, box in boxes] or [np.array([[-1.0] * 3, [1.0] * 3])])
         low, high = points.min(axis=0), points.max(axis=0)

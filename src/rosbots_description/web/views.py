@@ -1,12 +1,14 @@
 """Buttons and keys that turn the camera of a browser to everything, or to what is selected."""
 
 import math
+import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
 import numpy as np
 import viser
+from viser import Icon
 
 from ..sim.core import Vector, as_vector
 from ..sim.description import ShownLink
@@ -22,6 +24,7 @@ ROOM = 1.1  # around what is looked at
 SMALLEST = 0.2  # radius of what is looked at [m]: nearer, nobody knows where one is
 STEEP = 1e-3  # of a view from the top: straight down, no direction of the picture would be up
 TOP, FRONT = (-STEEP, 0.0, 1.0), (1.0, 0.0, 0.25)  # from what is looked at to the eye
+DOUBLE = 0.4  # [s, wall] from the first click of a double click to the second, at most
 
 
 class ViewPanel(Panel):
@@ -30,23 +33,35 @@ class ViewPanel(Panel):
     def __init__(self, site: Site, models: Models, selection: Selection,
                  start: StartView) -> None:
         self._models, self._selection = models, selection
-        gui = site.gui
-        buttons = gui.add_button_group('View', ('Home', 'Top', 'Front', 'Fit all', 'Go to'), hint=(
-            'keys H, T, F, E; G goes to what is selected'))
-        looks: dict[str, tuple[str, Callable[[viser.CameraHandle], None]]] = {
-            'Home': ('H', lambda camera: look(camera, *start.choose())),
-            'Top': ('T', lambda camera: self._fit(camera, self._everything(), TOP)),
-            'Front': ('F', lambda camera: self._fit(camera, self._everything(), FRONT)),
-            'Fit all': ('E', lambda camera: self._fit(camera, self._everything())),
-            'Go to': ('G', lambda camera: self._fit(camera, self._chosen())),
+        self._clicked = (-1, '', -math.inf)  # last: client, model, and when [s, monotonic]
+        looks: dict[str, tuple[viser.IconName, str, Callable[[viser.CameraHandle], None]]] = {
+            'Home': (Icon.HOME, 'H', lambda camera: look(camera, *start.choose(camera.aspect))),
+            'Top': (Icon.BOX_ALIGN_TOP, 'T',
+                    lambda camera: self._fit(camera, self._everything(), TOP)),
+            'Front': (Icon.BOX_ALIGN_BOTTOM, 'F',
+                      lambda camera: self._fit(camera, self._everything(), FRONT)),
+            'Fit all': (Icon.ARROWS_MAXIMIZE, 'X',
+                        lambda camera: self._fit(camera, self._everything())),
+            'Go to selection': (Icon.FOCUS_2, 'G',
+                                lambda camera: self._fit(camera, self._chosen())),
         }
-        site.allow_viewers(buttons)
-        buttons.on_click(lambda event: _turn(looks[buttons.value][1], event))
-        for name, (key, turn) in looks.items():
-            label = 'Go to what is selected' if name == 'Go to' else f'View: {name}'
-            command = gui.add_command(label, hotkey=key)  # type: ignore[arg-type]  # any letter
+        for name, (icon, key, turn) in looks.items():
+            button = site.gui.add_button(name, icon=icon)
+            button.on_click(partial(_turn, turn))
+            site.allow_viewers(button)
+            command = site.gui.add_command(f'View: {name}', hotkey=key)  # type: ignore[arg-type]  # any
             command.on_trigger(partial(_turn, turn))
             site.allow_viewers(command)
+
+    def click(self, model: str, link: str, client: viser.ClientHandle) -> None:
+        """Select what a browser clicked on; the second click of two goes there."""
+        *last, moment = self._clicked
+        self._clicked = client.client_id, model, time.monotonic()
+        if last == [client.client_id, model] and self._clicked[2] - moment < DOUBLE:
+            with client.atomic():
+                self._fit(client.camera, self._chosen())
+        else:
+            self._selection.click(model, link)
 
     def _everything(self) -> list[Vector]:
         return self._corners(link for model in self._models.all.values() for link in model.links)

@@ -121,12 +121,13 @@ def test_everything_is_in_view_and_the_start_looks_there(browser, simulator):
 def test_a_view_is_chosen_for_those_who_come_only(browser, simulator, site, page, monkeypatch):
     simulator.change(SceneChange(True, (model('a', 1),)))
     chosen = []
+    eye, target = (3.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     monkeypatch.setattr(page._start, 'choose',
-                        lambda: chosen.append(1) or ((3.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+                        lambda aspect=None: chosen.append(aspect) or (eye, target))
     simulator.change(SceneChange(models=(model('b', 2),)))
     assert chosen == []
     with Browser(site.address) as second:
-        second.wait_until(lambda: chosen == [1])
+        second.wait_until(lambda: chosen == [None, 1.0])
 
 
 def test_lights_are_those_of_the_world(browser, simulator):
@@ -154,9 +155,10 @@ def test_the_clock_shows_times_and_the_real_time_factor(browser, simulator):
     simulator.motion(clock(10.0, 20.0))
     browser.wait_until(lambda: any('00:00:10.000' in text for text in browser.texts()))
     simulator.motion(clock(10.5, 21.0))
-    browser.wait_until(lambda: any('00:00:10.500' in text and '00:00:21.000' in text
-                                   and '0.50' in text and '10500' in text
+    browser.wait_until(lambda: any('00:00:10.500' in text and '0.50\u00d7' in text
                                    for text in browser.texts()))
+    assert any('real time 00:00:21.000, 10500 iterations' in props.get('content', '')
+               for _, props in browser.controls.values())  # as a tooltip
     simulator.motion(clock(0.0, 22.0))  # reset
     simulator.motion(clock(2.0, 23.0, paused=True))
     browser.wait_until(lambda: any('paused' in text for text in browser.texts()))

@@ -6,6 +6,7 @@ from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Plane, SceneChange, ShownLink, ShownModel
+from rosbots_description.web import views
 from rosbots_description.web.models import Models
 
 CLICK = '/models/a/link/0 v'
@@ -17,7 +18,9 @@ def two_links(name, number):
     return ShownModel(name, (link, ShownLink(number + 1, 'other', Pose(), link.visuals)))
 
 
-def test_a_click_selects_the_model_and_a_second_one_its_link(browser, simulator, page, site):
+def test_a_click_selects_the_model_and_a_second_one_its_link(
+        browser, simulator, page, site, monkeypatch):
+    monkeypatch.setattr(views, 'DOUBLE', 0.0)
     simulator.change(SceneChange(True, (two_links('a', 1), model('b', 3))))
     browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
     browser.click_node(CLICK)

@@ -155,7 +155,8 @@ def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
 def test_cameras_follow_the_selected_model_and_keep_their_offset(browser, simulator, page):
     simulator.change(SceneChange(True, (model('a', 1),)))
     page.selection.choose('a')
-    browser.choose('Follow', True)
+    browser.click('Follow the selection')
+    browser.wait_until(lambda: browser.control('Stop following'))
     browser.send(CAMERA | {'position': [3.0, 0.0, 2.0], 'look_at': [1.0, 0.0, 1.0]})
     browser.wait_until(lambda: page_camera(page) == (3.0, 0.0, 2.0))
     simulator.motion(clock(_1=Pose((10.0, 5.0, 0.0))))

@@ -15,9 +15,13 @@ def view():
     return StartView(Models())
 
 
-def show(view, *models, camera=None):
+def take_in(view, *models, camera=None):
     for panel in (view._models, view):
         panel.apply(SceneChange(True, models, scene=SceneSpec(user_camera=camera)))
+
+
+def show(view, *models, camera=None):
+    take_in(view, *models, camera=camera)
     return view.choose()
 
 
@@ -31,7 +35,7 @@ def test_everything_is_looked_at_from_above_and_grounds_are_not(view):
 
 
 def test_links_are_where_they_have_moved(view):
-    show(view, model('box', 2))
+    take_in(view, model('box', 2))
     view._models.move(ShownMotion(0.0, 0.0, 0, False, {2: Pose((5.0, 0.0, 0.0))}))
     assert view.choose()[1] == pytest.approx((5.0, 0.0, 1.0))
 
@@ -39,7 +43,7 @@ def test_links_are_where_they_have_moved(view):
 @pytest.mark.parametrize('yaw', [0.0, 0.4])
 def test_the_view_is_not_from_behind_a_wall(view, yaw):
     box, wall = model('box', 1, Box((0.2, 0.2, 0.2))), model('wall', 2, Box((0.1, 20.0, 6.0)))
-    show(view, box, wall)
+    take_in(view, box, wall)
     turned = Pose((1.0, 0.0, 0.0), from_rpy(0.0, 0.0, yaw))
     view._models.move(ShownMotion(0.0, 0.0, 0, False, {2: turned}))
     eye, _ = view.choose()
@@ -66,3 +70,19 @@ def test_a_camera_of_the_world_is_the_view(view):
     assert target == pytest.approx((0.0, 0.0, 1.0))
     away = Pose((4.0, 0.0, 1.0))
     assert show(view, model('box', 1), camera=away)[1] == pytest.approx((5.0, 0.0, 1.0))
+
+
+def test_the_view_stays_the_same_until_a_model_comes(view):
+    first = show(view, model('box', 2))
+    view._models.move(ShownMotion(0.0, 0.0, 0, False, {2: Pose((5.0, 0.0, 0.0))}))
+    assert view.choose() == first
+    assert show(view, model('box', 2)) == first  # the page was closed and opened again
+    assert show(view, model('box', 2), model('other', 3, position=(9.0, 0.0, 0.0))) != first
+
+
+def test_a_picture_that_is_narrow_is_seen_from_further_away(view):
+    eye, target = map(np.array, show(view, model('box', 2)))
+    assert view.choose(2.0) == (tuple(eye), tuple(target))
+    narrow, same = view.choose(0.5)
+    assert narrow - target == pytest.approx(2.0 * (eye - target))
+    assert same == tuple(target)

@@ -45,11 +45,13 @@ def site(served):
     simulator.told.clear()
     yield site
     with Browser(site.address) as browser:
-        browser.wait_until(lambda: simulator.change)
-        simulator.change(SceneChange(True))
-        browser.wait_until(lambda: browser.control('Pause') and browser.control(UPLOAD)
-                           and {'SetCameraPositionMessage'} <= {
-                               message['type'] for message in browser.messages})
+        def is_shown():
+            if show := simulator.change:
+                show(SceneChange(True))  # again: the page closes when the one before has left
+            return (browser.control('Pause') and browser.control(UPLOAD)
+                    and {'SetCameraPositionMessage'} <= {
+                        message['type'] for message in browser.messages})
+        browser.wait_until(is_shown)
 
 
 @pytest.fixture

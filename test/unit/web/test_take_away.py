@@ -100,7 +100,7 @@ def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page
     browser.wait_until(lambda: browser.control('Record a recording'))
     browser.click('Record a recording')
     browser.wait_until(lambda: browser.control('Stop the recording'))
-    simulator.motion(clock(real_time=1.0))
+    simulator.motion(clock(1.0, real_time=1.0))
     browser.wait_until(lambda: any('00:00:01.000' in text for text in browser.texts()))
     page.poll()
     assert browser.control('Stop the recording')

@@ -117,7 +117,7 @@ def test_the_own_camera_moves_by_hand_and_by_the_buttons_of_the_view(viewer, sit
     clients = site.get_clients().values()
     viewer.wait_until(lambda: any(list(client.camera.look_at) == [1.0, 2.0, 3.0]
                                   for client in clients))
-    for act in (lambda: viewer.choose('View', 'Top'), lambda: viewer.press('F')):
+    for act in (lambda: viewer.click('Top'), lambda: viewer.press('F')):
         viewer.messages.clear()
         act()
         viewer.wait_until(lambda: any(message['type'] == 'SetCameraPositionMessage'

@@ -9,6 +9,8 @@ from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Plane, SceneChange
+from rosbots_description.web import views
+from rosbots_description.web.ground import CLEARANCE
 
 
 @pytest.fixture
@@ -20,10 +22,18 @@ def looking(browser, simulator, page):
     browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
     browser.wait_until(lambda: '/models/b/link' in browser.nodes
                        and browser.nodes['/models/b/link'][1] == [10.0, 0.0, 0.0])
+    browser.wait_until(lambda: page._ground._expected)
+    catch_up(browser, page, 'told')
+    report(browser, *told(browser))
+    browser.wait_until(lambda: not page._ground._expected)
     browser.send(CAMERA | {'position': [0.0, 0.0, 50.0], 'look_at': [0.0, 0.0, 0.0]})
-    browser.wait_until(lambda: browser.control('View'))
+    browser.wait_until(lambda: browser.control('Home'))
     catch_up(browser, page, 'begin')
     return browser
+
+
+def report(browser, eye, target):
+    browser.send(CAMERA | {'position': [*map(float, eye)], 'look_at': [*map(float, target)]})
 
 
 def catch_up(browser, page, word):
@@ -58,7 +68,7 @@ def test_the_top_view_shows_everything_but_planes(looking, page):
 
 
 def test_a_view_from_the_front_is_ahead(looking, page):
-    eye, target = turned(looking, page, lambda: looking.choose('View', 'Front'))
+    eye, target = turned(looking, page, lambda: looking.click('Front'))
     assert eye[0] > 15.0
     assert eye[1] == pytest.approx(target[1])
     assert eye[2] > target[2]
@@ -66,9 +76,9 @@ def test_a_view_from_the_front_is_ahead(looking, page):
 
 def test_what_is_selected_is_gone_to_from_where_one_is(looking, page):
     page.selection.choose('b')
-    looking.send(CAMERA | {'position': [0.0, -20.0, 0.0], 'look_at': [0.0, 0.0, 0.0]})
+    looking.send(CAMERA | {'position': [0.0, -20.0, 2.0], 'look_at': [0.0, 0.0, 2.0]})
     looking.wait_until(lambda: tuple(
-        next(iter(page._site.get_clients().values())).camera.position) == (0.0, -20.0, 0.0))
+        next(iter(page._site.get_clients().values())).camera.position) == (0.0, -20.0, 2.0))
     eye, target = turned(looking, page, lambda: looking.press('G'))
     assert target[:2] == pytest.approx([10.0, 0.0], abs=0.05)
     assert (eye - target)[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-6)
@@ -83,7 +93,7 @@ def test_home_is_the_first_view(looking, page):
 
 def test_other_browsers_keep_their_views(looking, page, site):
     with Browser(site.address) as other:
-        other.wait_until(lambda: other.control('View') and len(site.get_clients()) == 2)
+        other.wait_until(lambda: other.control('Home') and len(site.get_clients()) == 2)
         catch_up(other, page, 'there')
         seen = len(other.messages)
         turned(looking, page, lambda: looking.press('T'))
@@ -96,3 +106,50 @@ def test_nothing_to_go_to_is_no_fault(looking, page):
     looking.press('G')
     turned(looking, page, lambda: looking.press('T'))
     assert sum(m['type'] == 'SetCameraPositionMessage' for m in looking.messages) == 1
+
+
+def test_a_double_click_goes_to_the_model_and_keeps_it_selected(looking, page, monkeypatch):
+    monkeypatch.setattr(views, 'DOUBLE', math.inf)
+    looking.click_node('/models/b/link/0 v')
+    looking.wait_until(lambda: page.selection.model == 'b')
+    _, target = turned(looking, page, lambda: looking.click_node('/models/b/link/0 v'))
+    assert target[:2] == pytest.approx([10.0, 0.0], abs=0.05)
+    assert (page.selection.model, page.selection.link) == ('b', None)
+
+
+def test_a_camera_below_the_ground_is_lifted_above_it(looking, page):
+    ground = 1.0  # [m] height of the fake's
+    eye, target = turned(looking, page, lambda: looking.send(
+        CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [1.0, 0.0, 0.0]}))
+    assert eye == pytest.approx([0.0, -20.0, ground + CLEARANCE])
+    assert target == pytest.approx([1.0, 0.0, 0.0])
+
+
+def test_a_camera_that_looks_straight_up_from_below_looks_down_from_above(looking, page):
+    eye, target = turned(looking, page, lambda: looking.send(
+        CAMERA | {'position': [0.0, 0.0, -3.0], 'look_at': [0.0, 0.0, 0.0]}))
+    assert eye[2] > target[2]
+
+
+def test_without_a_ground_a_camera_may_be_anywhere(looking, page, simulator):
+    simulator.change(SceneChange(removed=('ground',)))
+    looking.messages.clear()
+    looking.send(CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [0.0, 0.0, 0.0]})
+    looking.wait_until(lambda: next(iter(
+        page._site.get_clients().values())).camera.position[2] == -3.0)
+    catch_up(looking, page, 'below')
+    assert not [m for m in looking.messages if m['type'] == 'SetCameraPositionMessage']
+
+
+def test_a_report_from_before_the_first_view_is_no_reason_to_leave_it(browser, simulator, page):
+    simulator.change(SceneChange(True, (model('a', 1), model('ground', 3, Plane()))))
+    browser.wait_until(lambda: page._ground._expected)
+    catch_up(browser, page, 'told')
+    first = told(browser)
+    below = turned(browser, page, lambda: report(browser, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0)))
+    for found, wanted in zip(below, first, strict=True):
+        assert found == pytest.approx(wanted)
+    report(browser, *first)
+    browser.wait_until(lambda: not page._ground._expected)
+    eye, _ = turned(browser, page, lambda: report(browser, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0)))
+    assert eye == pytest.approx([1.0, 2.0, 1.0 + CLEARANCE])

@@ -60,6 +60,7 @@ class SceneChange:
     scene: SceneSpec = field(default_factory=SceneSpec)
     step_size: float = 0.001
     max_update_rate: float = 1000.0
+    name: str = ''  # of the world; '' if unknown
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ class ShownWorld:
                       if self._models.get(name) != found[name])
         self._models, self._settings = found, settings
         return SceneChange(reset, added, removed, dict(world.lights), world.scene,
-                           world.physics.step_size, world.physics.max_update_rate)
+                           world.physics.step_size, world.physics.max_update_rate, world.name)
 
     def motion(self, real_time: float) -> ShownMotion:
         """Return the clock, and the links that moved since they were last shown."""

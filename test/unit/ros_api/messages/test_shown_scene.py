@@ -46,7 +46,7 @@ def test_a_change_arrives_as_it_was_sent():
     change = SceneChange(
         True, (ShownModel('a/b::c', (whole, ShownLink(8, 'm', POSE)), (joint,), True, POSE),),
         ('gone',), {'class': LightSpec('lamp', SPOT, POSE, cast_shadows=True)},
-        SceneSpec(background=(0.0, 0.1, 0.2, 1.0), user_camera=POSE), 0.002, 0.0)
+        SceneSpec(background=(0.0, 0.1, 0.2, 1.0), user_camera=POSE), 0.002, 0.0, '"kitchen"')
     assert scene_change(scene_message(change)) == change
 
 
