@@ -14,6 +14,7 @@ OPTIONS = [
     '--disable-background-networking', '--disable-component-update', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
 ]
+CLOCK = "return document.querySelector('.clock b')?.textContent ?? ''"
 UNTIDY = 'Tried to update non-existent component'  # of what was removed in the same frame
 # [ms] before each frame: pages that draw all the time, in software, would keep the processors busy.
 PAUSE = 500
@@ -72,6 +73,11 @@ def drawn(driver: webdriver.Chrome) -> None:
     """Return when the page has been drawn again, with all that it knows of now."""
     driver.execute_async_script(
         'const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))')
+
+
+def clock(driver: webdriver.Chrome) -> str:
+    """Return the simulated time that the window's page shows, as hours:minutes:seconds, or ''."""
+    return str(driver.execute_script(CLOCK))
 
 
 def faults(driver: webdriver.Chrome) -> list[str]:

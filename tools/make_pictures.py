@@ -2,7 +2,7 @@
 """Regenerate the README's pictures: `./rosbots exec tools/make_pictures.py [folder [picture …]]`.
 
 The windows are opened on a virtual display (Xvfb), which stores its pixels in a file; the
-demo draws its own two; `web.png`, `web_dark.png` and `arm.png` are what Chromium shows. The
+demo draws its own two; `web*.png` and `arm.png` are what Chromium shows. The
 default is all of them, into doc/images; `speed.png` is drawn by `./rosbots bench`, and `map.png`
 is RViz after a minute of map_while_driving.launch.
 """
@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from chromium import chromium, picture
+from chromium import chromium, clock, picture
 from numpy.typing import NDArray
 from PIL import Image
 from selenium.webdriver import Chrome
@@ -53,6 +53,7 @@ WINDOWS: dict[str, Steps] = {
     ],
     'see.png': [(['rosbots_description', 'see.launch'], 'pictures are drawn by')],
 }
+SHEET = '[style*="position: fixed"] [style*="cursor: pointer"]'  # its handle, on a phone
 NOTICE = '.mantine-Notification-closeButton'  # that the page is drawn in software
 ROOM: Steps = [
     (['gazebo_ros', 'empty_world.launch', 'gui:=false', 'web:=true', 'web_port:=0',
@@ -61,15 +62,19 @@ ROOM: Steps = [
      'Successfully spawned entity'),
 ]
 ARM: Steps = [(['rosbots_description', 'arm.launch', 'gui:=false', 'web:=true'], 'The box is at')]
-BROWSER = {  # what is started, and what the address ends with
-    'web.png': (ROOM, ''), 'web_dark.png': (ROOM, '&darkMode'), 'arm.png': (ARM, ''),
+DESKTOP, LARGE, PHONE, WIDE_PHONE = (1280, 800), (1920, 1080), (390, 844), (844, 390)  # [pixels]
+BROWSER = {  # what is started, what the address ends with, the size of the page, what is clicked on
+    'web.png': (ROOM, '', DESKTOP, ''), 'web_dark.png': (ROOM, '&darkMode', DESKTOP, ''),
+    'web_large.png': (ROOM, '', LARGE, ''), 'web_phone.png': (ROOM, '', PHONE, ''),
+    'web_phone_sheet.png': (ROOM, '&darkMode', PHONE, SHEET),
+    'web_phone_wide.png': (ROOM, '', WIDE_PHONE, ''), 'arm.png': (ARM, '', DESKTOP, ''),
 }
 # Viser fades the scene in as it draws frames; in software that may stop halfway.
 FADED_IN = """const style = document.createElement('style');
 style.textContent = 'canvas { opacity: 1 !important }';
 document.head.append(style)"""
-PAGE = (1200, 700)  # [pixels]
 LOADING = 30.0  # [s, wall] for all meshes, drawn in software
+OPENING = 5.0  # [s, wall] for what slides in
 DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
 
 
@@ -134,14 +139,20 @@ def picture_of(steps: Steps, folder: Path) -> NDArray[np.uint8]:
         return steady(pixels)
 
 
-def picture_in_browser(steps: Steps, query: str, folder: Path) -> Image.Image:
+def picture_in_browser(steps: Steps, query: str, size: tuple[int, int], button: str,
+                       folder: Path) -> Image.Image:
     """Open the window of a world in a browser; return what it shows.
 
     Args:
         steps: launch files; the first opens the window.
         query: what the address ends with.
+        size: of the page [pixels].
+        button: selector of what is clicked on before; '': nothing.
     """
-    with started(steps, folder), opened(address_in(folder) + query, PAGE) as browser:
+    with started(steps, folder), opened(address_in(folder) + query, size) as browser:
+        if button:
+            browser.find_element(By.CSS_SELECTOR, button).click()
+            time.sleep(OPENING)
         return picture(browser)
 
 
@@ -157,7 +168,7 @@ def opened(address: str, size: tuple[int, int]) -> Iterator[Chrome]:
     with chromium(size) as browser:
         browser.get(address)
         end = time.monotonic() + START
-        while 'Iterations' not in browser.find_element(By.TAG_NAME, 'body').text:
+        while not clock(browser):
             if time.monotonic() > end:
                 raise PictureError(f'no page at {address} within {START:g} s')
             time.sleep(POLL_PERIOD)

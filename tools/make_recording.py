@@ -7,7 +7,6 @@ paused, and a picture is taken after each few steps.
 """
 
 import os
-import re
 import signal
 import sys
 import tempfile
@@ -16,13 +15,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rospy
-from chromium import drawn, picture
+from chromium import clock, drawn, picture
 from geometry_msgs.msg import Twist
 from make_pictures import ROOT, PictureError, Steps, address_in, opened, started
 from PIL import Image
 from rosbots_msgs.srv import Step
 from selenium.webdriver import Chrome
-from selenium.webdriver.common.by import By
 
 WORLD = ROOT / 'src' / 'rosbots_description' / 'worlds' / 'room.world'
 VIEW = '<gui><camera><pose>2.4 -1.8 2.2 0 0.5 2.5</pose></camera></gui>'
@@ -66,9 +64,8 @@ def frames(browser: Chrome) -> Iterator[Image.Image]:
 
 def shown_at(moment: float, browser: Chrome) -> Image.Image:
     """Return what the page shows when its clock is there [s]."""
-    clock = re.compile(rf'Simulated time\s+00:00:{moment:06.3f}')
     end = time.monotonic() + SLOW
-    while not clock.search(browser.find_element(By.TAG_NAME, 'body').text):
+    while clock(browser) != f'00:00:{moment:06.3f}':
         if time.monotonic() > end:
             raise PictureError(f'the page does not show {moment:.3f} s within {SLOW:g} s')
     drawn(browser)
