@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
-import rosgraph
 
 from rosbots_description.ros_api.node import node
 from rosbots_description.ros_api.transport import name_conflict
@@ -121,10 +120,9 @@ def test_without_a_master_there_is_a_warning_at_once_and_then_every_ten_seconds(
     def sleep(seconds):
         now[0] += seconds
         warned.extend([now[0]] * capsys.readouterr().err.count('No ROS master'))
-        if now[0] > 25.0:
-            monkeypatch.setattr(rosgraph.Master, 'getPid', lambda _master: 1)
 
     monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:1')
+    monkeypatch.setattr(node, 'is_master_running', lambda _name: now[0] > 25.0)
     monkeypatch.setattr(node.time, 'monotonic', lambda: now[0])
     monkeypatch.setattr(node.time, 'sleep', sleep)
     node._wait_for_master()
