@@ -1,6 +1,7 @@
 """Shared code of tests of the running simulator: services, and waiting for conditions."""
 
 import contextlib
+import socket
 import subprocess
 import sys
 import time
@@ -42,6 +43,13 @@ def wait_until(condition, what, deadline=DEADLINE):
         if now > end:
             raise AssertionError(f'not within {deadline:g} s: {what}')
         time.sleep(min(max(0.005, 2.0 * (now - began)), 1.0))
+
+
+def free_port():
+    """Return a port of this machine on which nothing listens, for another ROS master."""
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        return probe.getsockname()[1]
 
 
 def proxy(name, service_type):

@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -16,7 +15,7 @@ from pathlib import Path
 import debian_rviz
 import readme
 import rostest
-from simulator import BOX, wait_until
+from simulator import BOX, free_port, wait_until
 from terminal import Terminal
 
 sys.path.insert(0, str(readme.ROOT / 'test'))
@@ -133,12 +132,6 @@ class Walk:
         self.end(signal.SIGTERM)
         for command in list(self._terminals):
             self.close(command)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('localhost', 0))
-        return probe.getsockname()[1]
 
 
 def count_lines(shown):
