@@ -24,7 +24,7 @@ from results import (
 FOLDER = ROOT / 'test' / 'rostest'
 LANES = 2 + (os.cpu_count() or 1)  # a third of their time they wait for simulated time
 # Begun first, the longest first, so that the lanes end together.
-LONGEST = ('own_package', 'simulator', 'never_down', 'hostile_names', 'soak', 'chromium',
+LONGEST = ('own_package', 'simulator', 'lessons', 'never_down', 'hostile_names', 'soak', 'chromium',
            'neighbours', 'frames', 'hostile')
 # Independent of the caller's master and addresses, and of unbuffered output.
 NOT_OURS = ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED')

@@ -8,7 +8,7 @@ from support import ROOT
 
 from rosbots_description import batch, gym, sim
 
-DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').glob('*.md'))]
+DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').glob('**/*.md'))]
 LINK = re.compile(r'\[[^]]*\]\(([^)\s]+)\)')
 
 
