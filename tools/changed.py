@@ -3,7 +3,8 @@
 Tests of test/unit and test/engine are chosen if a chain of imports leads to a changed file. The
 import of a package counts as that of all its modules, since packages import some only when used.
 Tests that start other programs or read the source have no such chain and always run. Every change
-of the product runs all rostests; a test program runs the files that name it.
+of the product runs all rostests; a test program runs the files that name it, and a lesson the one
+that follows it.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pathlib import Path
 from results import ROOT
 
 PROSE = ('.md', '.rst')
+LESSONS = 'doc/lessons/'  # pages that a rostest follows
 GRAPHED = ('src/rosbots_description/', 'test/unit/', 'test/engine/', 'test/support/', 'benchmark/',
            'tools/')
 PLACES = (ROOT / 'src', ROOT / 'test', ROOT / 'benchmark', ROOT / 'tools')  # of absolute imports
@@ -47,6 +49,7 @@ def changed_files() -> list[str]:
 
 def choose(changed: Iterable[str]) -> Choice:
     """Return the tests that changes of these files can have touched."""
+    changed = list(changed)
     code = [name for name in changed if not name.endswith(PROSE)]
     every = test_files()
     unknown = [name for name in code if not (
@@ -56,7 +59,8 @@ def choose(changed: Iterable[str]) -> Choice:
         return Choice(None, None, f'nothing: {unknown[0]} can touch every test')
     seeds = {ROOT / name for name in code}
     cases = [path for path in every if reaches_beyond(path) or seeds & dependencies(path)]
-    rostests = touched_rostests(code)
+    rostests = touched_rostests([*code, *(
+        'test/rostest/lessons.test' for name in changed if name.startswith(LESSONS))])
     files = sorted((ROOT / 'test' / 'rostest').glob('*.test'))
     chosen = len(files if rostests is None else rostests)
     return Choice([str(path.relative_to(ROOT)) for path in cases], rostests,

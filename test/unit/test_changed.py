@@ -54,6 +54,11 @@ def test_a_program_of_rostests_runs_the_files_that_name_it(changed):
     assert changed.choose(['test/rostest/simulator.py']).rostests is None
 
 
+def test_a_lesson_runs_the_rostest_that_follows_it(changed):
+    choice = changed.choose(['doc/lessons/two_robots.md'])
+    assert [path.name for path in choice.rostests] == ['lessons.test']
+
+
 @pytest.mark.parametrize('name', [
     'package.xml', 'urdf/rosbots.xacro', 'test/data/hostile/cases.yaml', SOURCE + 'deleted.py'])
 def test_everything_runs_when_unsure(changed, name):
