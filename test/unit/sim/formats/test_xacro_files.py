@@ -39,6 +39,7 @@ def test_substitution_is_replaced_by_its_value(tmp_path, written, meant):
 
 
 @pytest.mark.parametrize(('name', 'said'), [
+    ('wide\ufeff', "r.xacro: there is no xacro argument 'wide'; there are"),  # on one line
     ('lazer', "r.xacro: there is no xacro argument 'lazer'; did you mean 'laser'?"),
     ('wings', "'wings'; there are 'laser', 'height', 'undeclared'"),
     ('laser', ''),

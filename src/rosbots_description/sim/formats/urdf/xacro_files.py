@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import partial
 from types import ModuleType
 
-from ...core import ModelError, suggestion
+from ...core import ModelError, printable, shortened, suggestion
 from ...resources import FindPackage
 from ...xacro_module import import_xacro
 
@@ -66,8 +66,9 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         vars(xacro)['eval_extension'] = resolve
     for name in arguments:
         if name not in known.asked:
-            logger.warning("%s: there is no xacro argument '%s'%s", path, name,
-                           suggestion(name, known.asked))
+            logger.warning('%s', printable(
+                f"{path}: there is no xacro argument '{shortened(name)}'"
+                f'{suggestion(name, known.asked)}'))
     return text
 
 
