@@ -21,6 +21,7 @@ enter() {
     fi
     tar -C "$bare" -xpf "$bare.tar"
     chroot "$bare" useradd --create-home --shell /bin/bash newcomer
+    chmod 755 "$bare/home/newcomer"  # Debian 13's are private: root's sandbox could not look in
   fi
   cp -a /etc/resolv.conf /etc/hosts "$bare/etc/"
   rm -f "$bare/etc/apt/sources.list" "$bare"/etc/apt/sources.list.d/*

@@ -5,7 +5,7 @@ import signal
 import sys
 
 import pytest
-from support.patience import wait_until
+from support.patience import PATIENCE, wait_until
 
 from rosbots_description.cli import gazebo
 
@@ -27,6 +27,7 @@ def folder(tmp_path, monkeypatch):
     """Return a folder that replaces that of the executables."""
     monkeypatch.setattr(sys, 'argv', [str(tmp_path / 'gazebo')])
     monkeypatch.setattr(gazebo, 'display_works', lambda: True)
+    monkeypatch.setattr(gazebo, '_GRACE', PATIENCE)  # a busy machine is slow to end a program
     monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:9')  # nothing answers there
     return tmp_path
 

@@ -67,7 +67,7 @@ def position(browser, node=NODE):
 def test_a_map_lies_where_the_robot_takes_it_to_be(browser, maps, models):
     browser.choose(MAP, True)
     browser.wait_until(lambda: position(browser) == [1.0, 0.0, 0.0])
-    assert '4 x 2 cells' in browser.texts()
+    browser.wait_until(lambda: '4 x 2 cells' in browser.texts())
     models.move(ShownMotion(0.0, 0.0, 0, False, {1: Pose((6.5, 0.0, 0.0))}))
     browser.wait_until(lambda: position(browser) == [1.5, 0.0, 0.0])
     maps.place = 'base', Pose((-5.5, 0.0, 0.0))  # the robot has corrected where it is
