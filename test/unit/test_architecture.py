@@ -93,8 +93,8 @@ ARROWS = {
         'sim sim/controllers sim/core sim/description sim/formats sim/placement sim/plugins '
         'sim/resources sim/runtime sim/sensors web',
     'gym':
-        'sim sim/controllers sim/description sim/plugins sim/rendering sim/runtime sim/sensors '
-        'viewer',
+        'sim sim/controllers sim/core sim/description sim/plugins sim/rendering sim/runtime '
+        'sim/sensors viewer',
     'gym/tasks': 'gym sim sim/description sim/rendering',
     'cli':
         'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '

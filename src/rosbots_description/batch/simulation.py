@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..sim import Joint, Link, Model, Odometry, SimError, World
-from ..sim.core import NANOSECONDS, one_line
+from ..sim.core import NANOSECONDS, held_records, one_line
 from .parameters import Run
 from .policy import Policy, PolicyError, commands_of, in_words, load_policy
 from .records import JointReading, Statistics, value_at
@@ -16,7 +16,6 @@ from .scenario import RecordEntry, Scenario, ScenarioError, ScenarioFile
 from .topics import Topics
 
 PASSED, FAILED, ERROR = 'passed', 'failed', 'error'
-_LIBRARY = __name__.rpartition('.batch.')[0]  # its logger
 
 
 def simulate(file: ScenarioFile, number: int) -> dict[str, Any]:
@@ -30,10 +29,10 @@ def simulate(file: ScenarioFile, number: int) -> dict[str, Any]:
     try:
         scenario = file.scenario(run)
         conditions = file.conditions(scenario)
-        with _logged_errors() as errors:
+        with held_records(logging.ERROR) as errors:
             row |= _Simulation(file, run, scenario).columns()
         if errors:
-            raise ScenarioError(errors[0])
+            raise ScenarioError(errors[0].getMessage())
         faults = filter(None, (condition.fault(row) for condition in conditions))
         reason = next(faults, '')
     except (SimError, PolicyError, ValueError, OSError) as error:
@@ -161,18 +160,3 @@ def _within(place: str) -> Iterator[None]:
         yield
     except (SimError, ValueError) as error:
         raise ScenarioError(f'{place}: {error}') from None
-
-
-@contextlib.contextmanager
-def _logged_errors() -> Iterator[list[str]]:
-    """Yield a list of the library's errors in the log, which is silent meanwhile."""
-    errors: list[str] = []
-    handler = logging.Handler(logging.ERROR)
-    handler.emit = lambda record: errors.append(record.getMessage())  # type: ignore[method-assign]
-    logger = logging.getLogger(_LIBRARY)
-    handlers, logger.handlers, propagate = logger.handlers, [handler], logger.propagate
-    logger.propagate = False
-    try:
-        yield errors
-    finally:
-        logger.handlers, logger.propagate = handlers, propagate

@@ -2,16 +2,14 @@
 
 import logging
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..sim import Pose, World
+from ..sim.core import held_records
 from ..sim.description import WORLD
 from ..sim.placement import box_around, placed
 from ..sim.resources import MAX_XML_BYTES, parse_xml, read_file, root_tag
-
-PACKAGE = __name__.partition('.')[0]
 
 
 @dataclass(frozen=True)
@@ -34,11 +32,11 @@ def open_file(path: str | os.PathLike[str],
     Raises:
         SimError: the file cannot be read, or nothing in it can be simulated.
     """
-    with _collected() as collector:
+    with held_records(logging.WARNING) as records:
         file = os.fspath(path)
         world = World.from_file(file) if _is_world(file) else _with_model(file, arguments or {})
-    faults = sorted(collector.found, key=lambda sentence: -collector.found[sentence])
-    return OpenedFile(world, tuple(faults))
+    worst_first = sorted(records, key=lambda record: -record.levelno)
+    return OpenedFile(world, tuple(dict.fromkeys(one.getMessage() for one in worst_first)))
 
 
 def _with_model(path: str, arguments: Mapping[str, str]) -> World:
@@ -67,27 +65,3 @@ def _is_world(path: str) -> bool:
     text = read_file(path, MAX_XML_BYTES, 'model file')
     return root_tag(text) in ('sdf', 'gazebo') and any(
         child.tag == 'world' for child in parse_xml(text, path))
-
-
-class _Collector(logging.Handler):
-    """Collects warnings and errors."""
-
-    def __init__(self) -> None:
-        super().__init__(logging.WARNING)
-        self.found: dict[str, int] = {}  # sentences with their levels
-
-    def emit(self, record: logging.LogRecord) -> None:
-        self.found.setdefault(record.getMessage(), record.levelno)
-
-
-@contextmanager
-def _collected() -> Iterator[_Collector]:
-    """Collect what this library logs, in place of its output."""
-    collector, log = _Collector(), logging.getLogger(PACKAGE)
-    propagates, log.propagate = log.propagate, False
-    log.addHandler(collector)
-    try:
-        yield collector
-    finally:
-        log.removeHandler(collector)
-        log.propagate = propagates

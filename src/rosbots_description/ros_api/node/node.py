@@ -21,6 +21,7 @@ from types import FrameType
 
 import rospy
 
+from ...sim.core import held_records, replay
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
 from ...sim.physics import CrashSandbox, EngineFactory, make_engine
@@ -53,7 +54,7 @@ from ..views.overview_picture import advertise_view
 from ..views.scene import advertise_scene
 from ..views.visuals import advertise_visuals
 from .packages import find_file, find_model, find_package
-from .world_loading import held_records, read_world, replay
+from .world_loading import read_world
 
 logger = logging.getLogger(__name__)
 

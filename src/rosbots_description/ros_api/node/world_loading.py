@@ -1,9 +1,7 @@
 """Find the world file named by `world_name:=`, and read it."""
 
-import logging
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from ...sim.core import NotFoundError
@@ -13,7 +11,6 @@ from ...sim.resources import find_world, path_directories
 from .packages import exported_directories, find_file, find_model, find_package
 
 _OWN = Path(__file__).resolve().parents[2]  # holds worlds/, wherever this library is installed
-_LIBRARY = __name__.partition('.')[0]
 
 
 def read_world(name: str) -> WorldSpec:
@@ -32,42 +29,6 @@ def read_world(name: str) -> WorldSpec:
 def own_worlds() -> list[str]:
     """Return the names of the included worlds, e.g. 'worlds/empty.world'."""
     return [f'worlds/{path.name}' for path in sorted(_OWN.glob('worlds/*.world'))]
-
-
-@contextmanager
-def held_records() -> Iterator[list[logging.LogRecord]]:
-    """Collect what is logged, for `replay` once there is a node to log it."""
-    logger, records = logging.getLogger(_LIBRARY), _Records()
-    propagate, level = logger.propagate, logger.level
-    logger.addHandler(records)
-    logger.propagate = False
-    logger.setLevel(logging.DEBUG)
-    try:
-        yield records.kept
-    finally:
-        logger.setLevel(level)
-        logger.propagate = propagate
-        logger.removeHandler(records)
-
-
-def replay(records: list[logging.LogRecord]) -> None:
-    """Log the held records, at the levels that are enabled now."""
-    for record in records:
-        logger = logging.getLogger(record.name)
-        if logger.isEnabledFor(record.levelno):
-            logger.handle(record)
-
-
-class _Records(logging.Handler):
-    """Keeps records."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.kept: list[logging.LogRecord] = []
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Keep a record."""
-        self.kept.append(record)
 
 
 def _find(name: str) -> Path:

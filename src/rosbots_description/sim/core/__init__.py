@@ -11,6 +11,7 @@ from .errors import (
     one_line,
     printable,
 )
+from .held_records import held_records, replay
 from .limits import MAX_COORDINATE, MAX_INERTIA, MAX_LENGTH, MAX_MASS, MIN_MASS, MIN_UPDATE_RATE
 from .messages import (
     MAX_NOTES,
@@ -95,6 +96,7 @@ __all__ = [
     'dot',
     'fault',
     'from_rpy',
+    'held_records',
     'inverse',
     'is_expanded_xacro',
     'line_of',
@@ -109,6 +111,7 @@ __all__ = [
     'plain_text',
     'printable',
     'relative',
+    'replay',
     'rotate',
     'shortened',
     'source_of',

@@ -7,12 +7,8 @@ import pytest
 from support import ROOT
 
 from rosbots_description.ros_api.node import packages
-from rosbots_description.ros_api.node.world_loading import (
-    held_records,
-    own_worlds,
-    read_world,
-    replay,
-)
+from rosbots_description.ros_api.node.world_loading import own_worlds, read_world
+from rosbots_description.sim.core import held_records, replay
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 
 EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'
