@@ -1,17 +1,11 @@
 """A world as a file, and what can be inserted into it."""
 
-from xml.sax.saxutils import escape
-
 from ..sim import SimError, World
-from ..sim.core import plain_text
 from ..sim.description import LightSpec, ModelSpec, ModelText
-from ..sim.formats import sdf_of_light, sdf_of_model, sdf_of_world
-from ..sim.resources import MAX_XML_BYTES
+from ..sim.formats import sdf_of_include, sdf_of_light, sdf_of_model, sdf_of_world
+from ..sim.resources import text_of_upload
 from ..sim.runtime import describe
 from .commands import WorldCommands
-
-INCLUDE = ('<sdf version="1.7"><world name="w"><include><uri>model://{}</uri></include></world>'
-           '</sdf>')
 
 
 class WorldFiles:
@@ -44,7 +38,7 @@ class WorldLibrary:
 
     def model(self, name: str) -> ModelText:
         """Return a model of the model path."""
-        return ModelText(name, INCLUDE.format(escape(name)))
+        return ModelText(name, sdf_of_include(f'model://{name}'))
 
     def parameter(self, name: str) -> ModelText:
         """Refuse: there is no parameter server.
@@ -63,12 +57,7 @@ class WorldLibrary:
         if name.lower().endswith('.xacro'):
             raise SimError(f"'{name}' is xacro, which can run code, so it is not taken from a "
                            'browser here; open it by rosbots-view, or upload its URDF')
-        if len(content) > MAX_XML_BYTES:
-            raise SimError(f"'{name}' has {len(content)} bytes; {MAX_XML_BYTES} are accepted")
-        try:
-            return ModelText('', plain_text(content, name))
-        except (LookupError, UnicodeDecodeError):
-            raise SimError(f"'{name}' is not text; upload a URDF or SDF") from None
+        return ModelText('', text_of_upload(name, content, 'URDF or SDF'))
 
     def shape(self, spec: ModelSpec) -> ModelText:
         """Return a model as SDF."""

@@ -1,6 +1,5 @@
 """Maps, paths, poses of particles and goals, where the robot takes them to be."""
 
-from collections.abc import Callable
 from typing import Protocol
 
 import viser
@@ -8,7 +7,6 @@ import viser
 from ..sim.core import IDENTITY, Pose, SimError
 from ..sim.description import ShownReading
 from .models import Models
-from .panel import attempt
 from .reading_row import ReadingRow, has_shape
 from .topics import ShownTopics, TopicPanel
 
@@ -34,14 +32,13 @@ class MapPanel(TopicPanel):
     be: what is shown moves along. One that TF does not connect with a robot is the world's.
     """
 
-    def __init__(self, site: viser.ViserServer, maps: Maps, models: Models,
-                 complain: Callable[[str], None]) -> None:
+    def __init__(self, site: viser.ViserServer, maps: Maps, models: Models) -> None:
         super().__init__(site, maps, models, 'maps and goals', NONE)
-        self._maps, self._complain = maps, complain
+        self._maps = maps
         # What is shown, by topics, and whether TF connects it with a robot.
         self._shown: dict[str, tuple[ShownReading, bool]] = {}
         self._truth = ReadingRow(site, TRUE, 'at a height', checked=False,
-                                 choose=lambda: attempt(self._show_truth, self._complain))
+                                 choose=self._show_truth)
         self._height = site.gui.add_number('Height of the true map [m]', 0.2, step=0.05)
 
     def _show_truth(self) -> None:

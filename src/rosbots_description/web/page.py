@@ -201,7 +201,7 @@ class Page:
             with tabs.add_tab('Map', viser.Icon.MAP):
                 self._panels += [
                     GoalPanel(site.gui, simulator.goals, models, clicks, self._notify),
-                    MapPanel(site, simulator.maps, models, self._notify)]
+                    MapPanel(site, simulator.maps, models)]
         if simulator.signals is not None:
             with tabs.add_tab('Plot', viser.Icon.CHART_LINE):
                 self._panels.append(PlotPanel(site, simulator.signals, self._notify))

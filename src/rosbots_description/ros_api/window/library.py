@@ -1,20 +1,15 @@
 """What can be inserted: models of the model path, robot descriptions on parameters, and files."""
 
-from xml.sax.saxutils import escape
-
 import rospy
 from rosbots_msgs.srv import GetModelLibrary
 
-from ...sim.core import SimError, plain_text
+from ...sim.core import SimError
 from ...sim.description import LightSpec, ModelSpec, ModelText
-from ...sim.formats import sdf_of_light, sdf_of_model
-from ...sim.resources import MAX_XML_BYTES, root_tag
+from ...sim.formats import sdf_of_include, sdf_of_light, sdf_of_model
+from ...sim.resources import MAX_XML_BYTES, root_tag, text_of_upload
 from ..transport import NO_MASTER
 from .calls import call
 from .xacro_sandbox import expanded
-
-INCLUDE = ('<sdf version="1.7"><world name="w"><include><uri>model://{}</uri></include></world>'
-           '</sdf>')
 
 
 class RosLibrary:
@@ -45,7 +40,7 @@ class RosLibrary:
 
     def model(self, name: str) -> ModelText:
         """Return a model of the model path."""
-        return ModelText(name, INCLUDE.format(escape(name)))
+        return ModelText(name, sdf_of_include(f'model://{name}'))
 
     def parameter(self, name: str) -> ModelText:
         """Return what a parameter holds, in the namespace of the parameter."""
@@ -59,14 +54,9 @@ class RosLibrary:
 
     def file(self, name: str, content: bytes) -> ModelText:
         """Return a URDF or SDF, or what a xacro file expands to, by the name of the file."""
-        if len(content) > MAX_XML_BYTES:
-            raise SimError(f"'{name}' has {len(content)} bytes; {MAX_XML_BYTES} are accepted")
-        if name.lower().endswith('.xacro'):
+        if name.lower().endswith('.xacro') and len(content) <= MAX_XML_BYTES:
             content = expanded(name, content)
-        try:
-            return ModelText('', plain_text(content, name))
-        except (LookupError, UnicodeDecodeError):
-            raise SimError(f"'{name}' is not text; upload a URDF, xacro or SDF") from None
+        return ModelText('', text_of_upload(name, content, 'URDF, xacro or SDF'))
 
     def shape(self, spec: ModelSpec) -> ModelText:
         """Return a model as SDF."""

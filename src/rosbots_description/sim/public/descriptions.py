@@ -3,11 +3,10 @@
 import logging
 import os
 from collections.abc import Iterable, Mapping
-from xml.sax.saxutils import escape
 
 from ..core import ModelError, Pose
 from ..description import ModelSpec
-from ..formats import expand_xacro, load_sdf, load_urdf
+from ..formats import expand_xacro, load_sdf, load_urdf, sdf_of_include
 from ..resources import (
     MAX_XML_BYTES,
     FileSearch,
@@ -77,8 +76,7 @@ class Descriptions:
             logger.warning('arguments are for xacro files only; %s are ignored',
                            ', '.join(map(repr, arguments)))
         if given.startswith('model://'):
-            given = f'<sdf version="1.7"><world name="w"><include><uri>{escape(given)}</uri>' \
-                '</include></world></sdf>'
+            given = sdf_of_include(given)
         text: str | bytes
         if given.lstrip('\ufeff \t\r\n').startswith('<'):
             text, source = given, _TEXT

@@ -24,7 +24,14 @@ from .uris import (
     substitute_in_tree,
     substitute_packages,
 )
-from .xml_parser import MAX_XML_BYTES, check_xml_bounds, own_name, parse_xml, root_tag
+from .xml_parser import (
+    MAX_XML_BYTES,
+    check_xml_bounds,
+    own_name,
+    parse_xml,
+    root_tag,
+    text_of_upload,
+)
 
 __all__ = [
     'MAX_XML_BYTES',
@@ -54,6 +61,7 @@ __all__ = [
     'root_tag',
     'substitute_in_tree',
     'substitute_packages',
+    'text_of_upload',
     'within',
     'write_file',
     'write_world',

@@ -9,7 +9,14 @@ from xml.parsers import expat
 
 from lxml import etree
 
-from ..core import ModelError, document_url, is_expanded_xacro, plain_text, shortened
+from ..core import (
+    ModelError,
+    SimError,
+    document_url,
+    is_expanded_xacro,
+    plain_text,
+    shortened,
+)
 
 MAX_XML_BYTES = 10_000_000
 MAX_XML_DEPTH = 200
@@ -62,6 +69,23 @@ def root_tag(text: str | bytes) -> str | None:
         text = plain_text(text[:MAX_XML_BYTES], 'the text')
         parser.Parse(text.lstrip().encode(errors='replace'), True)
     return tags[0] if tags else None
+
+
+def text_of_upload(name: str, content: bytes, kinds: str) -> str:
+    """Return the text of a file that a browser has sent.
+
+    Args:
+        name: of the file, for messages.
+        kinds: what may be sent, for messages: "URDF or SDF".
+    Raises:
+        SimError: it is too large, or not text.
+    """
+    if len(content) > MAX_XML_BYTES:
+        raise SimError(f"'{name}' has {len(content)} bytes; {MAX_XML_BYTES} are accepted")
+    try:
+        return plain_text(content, name)
+    except (LookupError, UnicodeDecodeError):
+        raise SimError(f"'{name}' is not text; upload a {kinds}") from None
 
 
 def own_name(text: str | bytes, source: str) -> str:

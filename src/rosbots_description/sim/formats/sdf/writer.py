@@ -1,6 +1,7 @@
 """Write a model as SDF: numbers so that they are read as the same, defaults left out."""
 
 import os
+from xml.sax.saxutils import escape
 
 from lxml import etree
 
@@ -75,6 +76,12 @@ def copy_of_model(spec: ModelSpec) -> str:
     root = new_document()
     add_model(root, spec, IDENTITY)
     return text_of_document(root)
+
+
+def sdf_of_include(address: str) -> str:
+    """Return SDF that includes a model by its address, such as model://sun."""
+    return (f'<sdf version="1.7"><world name="w"><include><uri>{escape(address)}</uri></include>'
+            '</world></sdf>')
 
 
 def add_model(parent: etree._Element, spec: ModelSpec, pose: Pose) -> None:
