@@ -112,8 +112,8 @@ def _collect(
 ) -> int:
     """Add the rows to the table, whatever ends this; return the number of repeated runs."""
     flushed, repeated = time.monotonic(), 0
-    try:
-        with closing(rows):  # type: ignore[type-var]
+    with closing(rows):  # type: ignore[type-var]
+        try:
             for row, repeated in rows:
                 table.add(row)
                 if time.monotonic() > flushed + FLUSH_PERIOD:
@@ -121,6 +121,6 @@ def _collect(
                     flushed = time.monotonic()
                 if progress:
                     progress(len(table.rows), total, repeated)
-    finally:
-        table.flush()
+        finally:
+            table.flush()  # before Ray is shut down, which may end this process
     return repeated
